@@ -1,0 +1,42 @@
+// The triangle mesh that everything else is made from.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "odds/math/error.hpp"
+#include "odds/math/types.hpp"
+
+namespace odds::mesh {
+
+using Triangle = std::array<std::uint32_t, 3>;  ///< three vertex indices, counter-clockwise seen from outside
+
+/// An immutable triangle soup that is valid if it exists: at least one triangle, indices in range, all coordinates
+/// finite and at most 1e15 in magnitude. Degenerate, duplicate and unoriented triangles are allowed (real meshes have
+/// them); `mesh::find_faults` tells. Coordinates in metres, in the mesh's own frame. Thread-safe to share.
+class TriangleMesh {
+ public:
+  /// Checks and takes the arrays. `name` stands in error messages (usually the file).
+  static Result<TriangleMesh> make(std::vector<Vec3> vertices, std::vector<Triangle> triangles, std::string name = "mesh");
+
+  [[nodiscard]] std::span<const Vec3> vertices() const noexcept { return vertices_; }
+  [[nodiscard]] std::span<const Triangle> triangles() const noexcept { return triangles_; }
+  [[nodiscard]] const std::string& name() const noexcept { return name_; }
+  [[nodiscard]] const Vec3& lower() const noexcept { return lower_; }  ///< least corner of the bounding box of used vertices
+  [[nodiscard]] const Vec3& upper() const noexcept { return upper_; }  ///< greatest corner
+  /// Length of the bounding box's diagonal, the "size" that relative distances in reports refer to.
+  [[nodiscard]] double size() const noexcept { return (upper_ - lower_).norm(); }
+
+ private:
+  TriangleMesh() = default;
+  std::vector<Vec3> vertices_;
+  std::vector<Triangle> triangles_;
+  std::string name_;
+  Vec3 lower_ = Vec3::Zero();
+  Vec3 upper_ = Vec3::Zero();
+};
+
+}  // namespace odds::mesh

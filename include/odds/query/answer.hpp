@@ -1,0 +1,59 @@
+// What a query returns.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "odds/math/types.hpp"
+
+namespace odds::query {
+
+enum class Verdict : std::uint8_t {
+  clear,  ///< no collision, or that is the likelier of the two
+  hit,    ///< collision, or that is the likelier of the two
+};
+
+enum class Basis : std::uint8_t {
+  proved,     ///< an intersecting pair of triangles was found (hit), or every pair was excluded (clear)
+  estimated,  ///< the probability passed the threshold that the caller set (p_min, k_min), or polygons were dropped
+  budget,     ///< the budget ran out; the verdict is the likelier one
+};
+
+constexpr std::uint32_t no_feature = std::numeric_limits<std::uint32_t>::max();
+
+/// One point of contact. Frames: A's mesh frame in an Answer; world where a name says so.
+struct Contact {
+  Vec3 position = Vec3::Zero();           ///< metres
+  Vec3 normal = Vec3::UnitZ();            ///< unit; points into A: moving A along it by `depth` ends this contact (ODE's rule)
+  double depth = 0.0;                     ///< metres, >= 0
+  std::uint32_t triangle_a = no_feature;  ///< index into A's mesh, or no_feature where the contact is an estimate
+  std::uint32_t triangle_b = no_feature;  ///< index into B's mesh, or no_feature
+};
+
+/// What the query spent. Times in microseconds by the budget's clock.
+struct Cost {
+  std::uint64_t node_pairs = 0;      ///< pairs of bounding volumes tested
+  std::uint64_t triangle_pairs = 0;  ///< pairs of triangles given to the exact kernel
+  std::uint64_t queue_full = 0;      ///< pairs that found the queue full and were searched depth-first instead
+  double gross_us = 0.0;             ///< from call to return
+  double stall_us = 0.0;             ///< gaps between two clock polls too long to be the query's own work (pre-emption)
+  double overshoot_us = 0.0;         ///< gross time beyond the budget, >= 0
+  double net_overshoot_us = 0.0;     ///< the same without the stalls, >= 0
+  std::uint32_t longest_unpolled_units = 0;  ///< most work units done between two polls of the clock
+  [[nodiscard]] double net_us() const noexcept { return gross_us - stall_us; }
+};
+
+/// The answer of one query. Always complete: whatever the budget, verdict, basis and probability are set.
+struct Answer {
+  Verdict verdict = Verdict::clear;
+  Basis basis = Basis::proved;
+  double probability = 0.0;              ///< of a hit, in [0, 1]; exactly 1 or 0 where proved
+  std::span<const Contact> contacts;     ///< in A's mesh frame, best first; valid until the pair's next run
+  bool has_cell_pair = false;            ///< whether `cell_pair` is set: some pair of nodes remained undecided
+  Contact cell_pair;                     ///< where the surfaces most probably meet: centroids, mean normals, depth estimate
+  double cell_pair_probability = 0.0;    ///< of an intersection within that pair of nodes
+  Cost cost;
+};
+
+}  // namespace odds::query

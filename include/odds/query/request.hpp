@@ -1,0 +1,32 @@
+// What a query is asked.
+#pragma once
+
+#include <cstdint>
+
+#include "odds/query/budget.hpp"
+
+namespace odds::query {
+
+enum class Method : std::uint8_t {
+  exact,          ///< depth-first search (Algorithm 4.2), no estimates; obeys the budget too
+  incremental,    ///< starts from the bottom slice of the previous run (Li and Chen 98); same verdicts as exact
+  time_critical,  ///< likeliest pair first (Algorithm 4.3)
+};
+
+enum class EstimatorKind : std::uint8_t {
+  cells,      ///< the book's: well-filled cells, balls into bins (4.15, 4.16)
+  kinematic,  ///< integral geometry: area densities and normal moments
+};
+
+/// One question to a Pair. Defaults ask for a proof without a limit and for one contact.
+struct Request {
+  Method method = Method::time_critical;
+  EstimatorKind estimator = EstimatorKind::kinematic;
+  Budget budget;
+  double p_min = 1.0;        ///< in (0, 1]; 1: never stop on probability. A pair of nodes with p >= p_min counts ...
+  std::uint32_t k_min = 10;  ///< ... and k_min such pairs end the query with an estimated hit (>= 1)
+  int max_contacts = 1;      ///< 0 .. 8; 0: verdict only
+  bool polygon_free = false; ///< leaves are judged by probability >= 0.5 instead of by their triangles (footnote 6)
+};
+
+}  // namespace odds::query

@@ -1,0 +1,66 @@
+// A mesh made ready for queries: hierarchy and node statistics, with the bounding volume chosen by name.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+
+#include "odds/math/error.hpp"
+#include "odds/math/types.hpp"
+#include "odds/mesh/triangle_mesh.hpp"
+#include "odds/volume/kind.hpp"
+
+namespace odds::query {
+
+/// Called with the share done in [0, 1] during a build, from the building thread; may be empty.
+using Progress = std::function<void(double share)>;
+
+struct ShapeOptions {
+  volume::Kind volume = volume::Kind::obb;
+  std::uint32_t leaf_triangles = 4;  ///< most triangles in a leaf, 1 .. 16
+  double tau = 0.25;                 ///< a cell is well filled from tau * MaxArea on, in (0, 1]; the book's value 1 is dead
+                                     ///< on smooth meshes (measured: 0-1 of 512 cells below the top levels)
+};
+
+/// Numbers about a hierarchy for people.
+struct ShapeSummary {
+  std::size_t triangles = 0;
+  std::size_t nodes = 0;
+  std::size_t leaves = 0;
+  std::uint32_t depth = 0;                ///< levels, root = 1
+  double mean_leaf_triangles = 0.0;
+  std::size_t bytes = 0;                  ///< hierarchy, statistics and triangles together
+  double mean_well_filled_cells = 0.0;    ///< of 512, over all inner nodes
+  double build_ms = 0.0;
+};
+
+/// Immutable; shareable among threads and pairs. Holds the mesh alive.
+class Shape {
+ public:
+  struct Data;  // private to src/query
+
+  static Result<std::shared_ptr<const Shape>> build(std::shared_ptr<const mesh::TriangleMesh> mesh,
+                                                    const ShapeOptions& options = {}, const Progress& progress = {});
+  ~Shape();
+  Shape(const Shape&) = delete;
+  Shape& operator=(const Shape&) = delete;
+
+  [[nodiscard]] const mesh::TriangleMesh& mesh() const noexcept;
+  [[nodiscard]] volume::Kind volume() const noexcept;
+  [[nodiscard]] const ShapeOptions& options() const noexcept;
+  [[nodiscard]] const ShapeSummary& summary() const noexcept;
+  [[nodiscard]] const Data& data() const noexcept { return *data_; }
+
+ private:
+  explicit Shape(std::unique_ptr<Data> data);
+  std::unique_ptr<Data> data_;
+};
+
+/// Indices of triangles whose bounding boxes meet the oriented box {center + axes * x, |x_i| <= half_extents_i} given in the
+/// mesh's frame, written to `found` until it is full or `budget_nodes` nodes were visited. Returns how many were written.
+/// noexcept, no allocation. `complete` (if not null) says whether nothing was cut off.
+std::size_t triangles_in_box(const Shape& shape, const Vec3& center, const Mat3& axes, const Vec3& half_extents,
+                             std::span<std::uint32_t> found, std::uint64_t budget_nodes, bool* complete) noexcept;
+
+}  // namespace odds::query
