@@ -1,0 +1,198 @@
+/* Budgeted mesh collision for programs that use ODE: one geom class, C interface in ODE's own style. C99 and C++. */
+#ifndef ODDS_ODE_H
+#define ODDS_ODE_H
+
+#include <ode/ode.h>
+#include <stddef.h>
+
+#ifdef __cplusplus
+#define ODDS_NOTHROW noexcept
+extern "C" {
+#else
+#define ODDS_NOTHROW
+#endif
+
+/* ---- General rules ------------------------------------------------------------------------------------------------
+ * Lengths in metres, times in microseconds, poses and contacts in ODE's world frame, meshes in their own frame (the
+ * geom's frame). Triangles are counter-clockwise seen from outside.
+ * Functions that can fail return 0 (or a null id) and leave a sentence in oddsGetLastError().
+ * A geom argument that is not a live geom of this class is the caller's error and is treated the same way: the function
+ * does nothing, returns 0, and says so in oddsGetLastError().
+ * Threads: set-up functions (init, close, build, create, destroy, prepare, setters) must not run while another thread
+ * collides the same geoms. dCollide itself may run in several threads at once on different pairs whose poses are clean
+ * (call dSpaceClean or dGeomGetAABB before); the same pair in two threads at once is refused, with 0 contacts, and counted. */
+
+/* ---- Library --------------------------------------------------------------------------------------------------- */
+
+/* Initialises ODE (dInitODE2(flags), data for the calling thread) and registers the one geom class. Counted: every
+ * successful call needs one oddsCloseODE. As long as the count is above 0, ODE stays initialised, whatever pairs of
+ * dInitODE/dCloseODE the program runs in between. Returns 1, or 0 if ODE refused. At most four user classes fit in a
+ * process; ODE itself aborts at the fifth, this library always takes one. */
+int oddsInitODE(unsigned flags) ODDS_NOTHROW;
+
+/* Gives back one oddsInitODE. Destroy all geoms of the class before the last one. */
+void oddsCloseODE(void) ODDS_NOTHROW;
+
+/* The class number (dGeomGetClass of every geom made here), or -1 while not initialised. */
+int oddsGetClass(void) ODDS_NOTHROW;
+
+/* What went wrong in the last failed call of this thread; never null, "" if nothing did. Valid until the next failure. */
+const char* oddsGetLastError(void) ODDS_NOTHROW;
+
+/* ---- Mesh data ------------------------------------------------------------------------------------------------- */
+
+typedef struct oddsMeshData* oddsMeshDataID;
+
+enum {
+  ODDS_VOLUME_AABB = 0, /* axis-aligned boxes */
+  ODDS_VOLUME_OBB = 1,  /* oriented boxes (default) */
+  ODDS_VOLUME_SPHERE = 2
+};
+
+typedef struct oddsBuildParams {
+  int volume;         /* ODDS_VOLUME_...; two meshes that meet must have the same one */
+  int leaf_triangles; /* most triangles in a leaf, 1 .. 16 */
+  double tau;         /* filling from which a cell counts, in (0, 1] */
+  const char* name;   /* stands in error messages; may be null */
+} oddsBuildParams;
+
+/* Fills in the defaults: OBB, 4 triangles, tau 0.25, no name. */
+void oddsBuildParamsInit(oddsBuildParams* params) ODDS_NOTHROW;
+
+/* An empty container. Build once, share among any number of geoms. */
+oddsMeshDataID oddsMeshDataCreate(void) ODDS_NOTHROW;
+/* Frees the container. Geoms made from it keep what they need. Null is allowed. */
+void oddsMeshDataDestroy(oddsMeshDataID data) ODDS_NOTHROW;
+
+/* Copies an indexed mesh and builds its hierarchy (allocates, takes time: before the loop). Strides are in bytes;
+ * `index_count` is three times the number of triangles. `params` may be null (defaults). A rebuilt container does not
+ * change geoms that exist. Returns 1, or 0 with an error (index out of range, coordinate not finite, bad parameter ...);
+ * then the container keeps what it had. */
+int oddsMeshDataBuildDouble(oddsMeshDataID data, const double* vertices, int vertex_stride, int vertex_count,
+                            const dTriIndex* indices, int index_count, int triangle_stride,
+                            const oddsBuildParams* params) ODDS_NOTHROW;
+int oddsMeshDataBuildSingle(oddsMeshDataID data, const float* vertices, int vertex_stride, int vertex_count,
+                            const dTriIndex* indices, int index_count, int triangle_stride,
+                            const oddsBuildParams* params) ODDS_NOTHROW;
+
+/* Adopts the triangles of an existing dTriMesh geom, in its mesh frame, triangle numbers kept. ODE gives them out rounded
+ * to single precision; equal vertices are welded. The dTriMesh geom is not changed. */
+int oddsMeshDataBuildFromTriMesh(oddsMeshDataID data, dGeomID trimesh, const oddsBuildParams* params) ODDS_NOTHROW;
+
+int oddsMeshDataGetTriangleCount(oddsMeshDataID data) ODDS_NOTHROW; /* 0 if not built */
+/* 1 if every edge is matched by its opposite (a solid: partners fully inside are pushed out), else 0. */
+int oddsMeshDataIsClosed(oddsMeshDataID data) ODDS_NOTHROW;
+
+/* ---- Geoms ----------------------------------------------------------------------------------------------------- */
+
+/* A placeable geom of built data, put into `space` (may be null). Everything that works on a geom works on it: bodies,
+ * offsets, category bits, dGeomTransform, all spaces. dGeomDestroy frees it and every pair workspace it takes part in. */
+dGeomID dCreateOddsMesh(dSpaceID space, oddsMeshDataID data) ODDS_NOTHROW;
+
+/* Settings. A pair of two such geoms uses the more careful of both settings, in either order of call:
+ *   budgets: the smaller; maximum of contacts: the smaller; p_min, k_min: the greater; method: exact before incremental
+ *   before time-critical; estimator: cells if either asks for cells; undecided: no contact if either says so, else the
+ *   greater probability.
+ * Setters return 1, or 0 (value out of range, nothing changed). Getters of a wrong geom return 0. */
+
+/* Wall time one collision may take, > 0; dInfinity: no limit. Default 100. */
+int dGeomOddsMeshSetBudget(dGeomID geom, dReal microseconds) ODDS_NOTHROW;
+dReal dGeomOddsMeshGetBudget(dGeomID geom) ODDS_NOTHROW;
+
+/* Work one collision may do: pairs of nodes plus pairs of triangles. Same bits on every run if the budget in microseconds
+ * is dInfinity. 0: no limit (default). */
+int dGeomOddsMeshSetWorkBudget(dGeomID geom, unsigned long units) ODDS_NOTHROW;
+unsigned long dGeomOddsMeshGetWorkBudget(dGeomID geom) ODDS_NOTHROW;
+
+/* k_min pairs of nodes with probability >= p_min end a query with an estimated hit. p_min in (0, 1]; 1: never (default).
+ * k_min >= 1 (default 10). */
+int dGeomOddsMeshSetPMin(dGeomID geom, dReal p_min) ODDS_NOTHROW;
+dReal dGeomOddsMeshGetPMin(dGeomID geom) ODDS_NOTHROW;
+int dGeomOddsMeshSetKMin(dGeomID geom, int k_min) ODDS_NOTHROW;
+int dGeomOddsMeshGetKMin(dGeomID geom) ODDS_NOTHROW;
+
+/* Most contacts of one collision, 0 .. 8 (default 8; 0: ask only, oddsGetLastAnswer tells). The flags of dCollide and
+ * this limit both hold. */
+int dGeomOddsMeshSetMaxContacts(dGeomID geom, int count) ODDS_NOTHROW;
+int dGeomOddsMeshGetMaxContacts(dGeomID geom) ODDS_NOTHROW;
+
+enum { ODDS_METHOD_EXACT = 0, ODDS_METHOD_INCREMENTAL = 1, ODDS_METHOD_TIME_CRITICAL = 2 /* default */ };
+int dGeomOddsMeshSetMethod(dGeomID geom, int method) ODDS_NOTHROW;
+int dGeomOddsMeshGetMethod(dGeomID geom) ODDS_NOTHROW;
+
+enum { ODDS_ESTIMATOR_CELLS = 0, ODDS_ESTIMATOR_KINEMATIC = 1 /* default */ };
+int dGeomOddsMeshSetEstimator(dGeomID geom, int estimator) ODDS_NOTHROW;
+int dGeomOddsMeshGetEstimator(dGeomID geom) ODDS_NOTHROW;
+
+/* What a query gives back that the budget ended before anything was proved:
+ *   ODDS_UNDECIDED_HIT         one contact at the most probable pair of cells if the probability of a hit exceeds p
+ *                              (0 <= p < 1; default policy, p = 0.5), else none;
+ *   ODDS_UNDECIDED_NO_CONTACT  none (p is kept but not used).
+ * The last answer says in each case what happened. */
+enum { ODDS_UNDECIDED_HIT = 0, ODDS_UNDECIDED_NO_CONTACT = 1 };
+int dGeomOddsMeshSetUndecidedPolicy(dGeomID geom, int policy, dReal p) ODDS_NOTHROW;
+int dGeomOddsMeshGetUndecidedPolicy(dGeomID geom) ODDS_NOTHROW;
+dReal dGeomOddsMeshGetUndecidedProbability(dGeomID geom) ODDS_NOTHROW;
+
+/* ---- Pairs ----------------------------------------------------------------------------------------------------- */
+
+/* Takes the memory that collisions between two geoms of this class need (some 100 KB), in either order, and warms it. Call
+ * it before the loop for every pair that can meet in a dSpaceCollide. Returns 1 (also if already prepared, and for a pair
+ * of one such geom with any other, which needs no memory), or 0 (unlike volumes, out of memory, no geom of ours).
+ * A pair that was not prepared is prepared at its first dCollide, inside the loop, and counted (lazy_pairs); if that fails
+ * the collision returns 0 contacts and is counted (failed_pairs). */
+int oddsPreparePair(dGeomID g1, dGeomID g2) ODDS_NOTHROW;
+
+enum { ODDS_CLEAR = 0, ODDS_HIT = 1 };
+enum { ODDS_PROVED = 0, ODDS_ESTIMATED = 1, ODDS_BUDGET = 2 };
+
+/* What the last collision of a pair found out. World frame of that moment; g1 and g2 as given to oddsGetLastAnswer. */
+typedef struct oddsAnswer {
+  int verdict;                       /* ODDS_CLEAR or ODDS_HIT: the likelier one */
+  int basis;                         /* ODDS_PROVED, ODDS_ESTIMATED, ODDS_BUDGET (ended by the budget) */
+  double probability;                /* of a hit, 0 .. 1; exactly 0 or 1 where proved */
+  int contacts;                      /* given back to ODE */
+  int from_cell_pair;                /* 1 if the contact given back is the cell pair below */
+  unsigned long long node_pairs;     /* pairs of bounding volumes tested */
+  unsigned long long triangle_pairs; /* pairs of triangles tested exactly */
+  double gross_us;                   /* from start to return of the query */
+  double stall_us;                   /* of these, not the query's own work (pre-emption) */
+  double overshoot_us;               /* beyond the budget, >= 0 */
+  double net_overshoot_us;           /* the same without stalls, >= 0 */
+  int has_cell_pair;                 /* 1 if the following are set: where the surfaces most probably meet */
+  double cell_probability;           /* of an intersection within that pair of cells */
+  double cell_position[3];
+  double cell_normal[3];             /* unit, into g1 */
+  double cell_depth;                 /* >= 0 */
+  int bad_pose;                      /* 1 if a pose was not finite or not rigid: no contacts, nothing tested */
+} oddsAnswer;
+
+/* The last collision of a pair of two geoms of this class, in either order. 0 if they never collided. */
+int oddsGetLastAnswer(dGeomID g1, dGeomID g2, oddsAnswer* answer) ODDS_NOTHROW;
+
+/* Counts since the start of the process or the last oddsResetStats, over all geoms and threads. */
+typedef struct oddsStats {
+  unsigned long long queries;            /* collisions between two geoms of this class */
+  unsigned long long queries_proved;     /* ... by basis of the answer */
+  unsigned long long queries_estimated;
+  unsigned long long queries_budget;
+  unsigned long long contacts;           /* given back to ODE by these */
+  unsigned long long cell_pair_contacts; /* ... of these, made from the most probable pair of cells */
+  unsigned long long primitive_queries;  /* collisions with planes, spheres and boxes */
+  unsigned long long primitive_cut_off;  /* ... of these, ended by their budget before all triangles were seen */
+  unsigned long long unsupported;        /* collisions with classes that are not supported: 0 contacts */
+  unsigned long long lazy_pairs;         /* pairs prepared inside dCollide */
+  unsigned long long failed_pairs;       /* collisions without a workspace (unlike volumes, out of memory) */
+  unsigned long long busy_pairs;         /* collisions refused: the pair was in use by another thread */
+  unsigned long long bad_poses;          /* collisions with a pose that was not finite or not rigid */
+  unsigned long long caught;             /* exceptions stopped at the border (never seen; a defect if not 0) */
+  unsigned long long live_geoms;         /* now, not reset */
+  unsigned long long live_pairs;         /* workspaces now, not reset */
+} oddsStats;
+void oddsGetStats(oddsStats* stats) ODDS_NOTHROW;
+void oddsResetStats(void) ODDS_NOTHROW;
+
+#ifdef __cplusplus
+}
+#endif
+#endif
