@@ -21,6 +21,9 @@ enum SafetyFlag : std::uint32_t {
   safety_faulted = 1U << 7,         ///< a fault is latched: zero force until reset
 };
 
+/// Value of a counter that nobody counted, so that "zero" is always a measurement.
+inline constexpr std::uint32_t not_measured = 0xFFFFFFFFU;
+
 /// One tick of the loop. Times by the loop's clock (nanoseconds, arbitrary origin); everything else SI as named.
 /// Vectors are in the world frame, x y z; quaternions w x y z. Trivially copyable, fixed size, no pointers: it is
 /// copied through the recorder's ring.
@@ -43,6 +46,9 @@ struct TickRecord {
   query::Basis basis = query::Basis::proved;       ///< the weakest among the queries: proved < estimated < budget
   double probability = 0.0;                        ///< of a hit, in [0, 1]; the largest among the queries
 
+  double collision_us = 0.0;  ///< gross time of the whole collision phase: broad phase, queries, contact joints
+  double step_us = 0.0;       ///< gross time of ODE's world step; 0 where nothing moves
+
   std::uint32_t contacts = 0;  ///< contact points used
   double max_depth_m = 0.0;    ///< deepest contact, >= 0
 
@@ -58,6 +64,9 @@ struct TickRecord {
   std::uint32_t major_faults = 0;        ///< page faults with I/O
   std::uint32_t voluntary_switches = 0;  ///< within the tick's work, not counting the sleep before it
   std::uint32_t involuntary_switches = 0;
+  /// Calls of malloc, operator new and their kin by the loop's thread within the tick's work; `not_measured` where the
+  /// program has no counter (the command `odds` has one).
+  std::uint32_t allocations = not_measured;
 };
 
 static_assert(std::is_trivially_copyable_v<TickRecord>);
