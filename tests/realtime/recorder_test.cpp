@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "odds/realtime/usage.hpp"
+#include "support/sanitizer.hpp"
 
 namespace odds::realtime {
 namespace {
@@ -69,9 +70,7 @@ TEST(Recorder, finishing_twice_or_without_a_record_is_fine) {
 }
 
 TEST(Recorder, pushing_into_a_fresh_ring_raises_no_page_fault) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "a sanitizer's own memory faults in pages";
-#endif
+  if (support::under_sanitizer) GTEST_SKIP() << "a sanitizer's own memory faults in pages";
   Recorder<Sample> recorder(
       4'096, [](std::span<const Sample>) {}, std::chrono::seconds(1));
   Sample sample;

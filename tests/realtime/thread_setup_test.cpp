@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "odds/realtime/usage.hpp"
+#include "support/sanitizer.hpp"
 
 namespace odds::realtime {
 namespace {
@@ -77,9 +78,7 @@ TEST(ThreadSetup, timer_slack_is_read_back_from_the_kernel) {
 }
 
 TEST(ThreadSetup, a_touched_stack_causes_no_page_faults_later) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "a sanitizer's own memory faults in pages";
-#endif
+  if (support::under_sanitizer) GTEST_SKIP() << "a sanitizer's own memory faults in pages";
   on_its_own_thread([] {
     const auto lines = set_up_this_thread({.prefault_stack_bytes = 512 * 1024});
     ASSERT_EQ(lines.size(), 1u);

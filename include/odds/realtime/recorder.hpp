@@ -1,7 +1,6 @@
 // Carries records from a real-time loop to a writer of normal priority, without ever holding up the loop.
 #pragma once
 
-#include <readerwriterqueue/readerwriterqueue.h>
 #include <sched.h>
 
 #include <atomic>
@@ -13,6 +12,8 @@
 #include <type_traits>
 #include <utility>
 #include <vector>
+
+#include "odds/realtime/spsc_ring.hpp"
 
 namespace odds::realtime {
 
@@ -33,7 +34,6 @@ class Recorder {
   /// `capacity` >= 1 records are held at least; one second of a loop is ample.
   Recorder(std::size_t capacity, Sink sink, std::chrono::microseconds look_every = std::chrono::milliseconds(2))
       : ring_(capacity), sink_(std::move(sink)), look_every_(look_every) {
-    touch();
     batch_.reserve(capacity);
     writer_ = std::thread([this] { write_until_finished(); });
   }
@@ -43,7 +43,7 @@ class Recorder {
 
   /// From one thread only. False if the ring was full and the record was dropped. Not after finish().
   bool push(const Record& record) noexcept {
-    if (ring_.try_enqueue(record)) return true;
+    if (ring_.try_push(record)) return true;
     dropped_.store(dropped_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);  // one pusher: no race
     return false;
   }
@@ -60,14 +60,6 @@ class Recorder {
   }
 
  private:
-  void touch() {
-    while (ring_.try_enqueue(Record{})) {
-    }
-    Record discarded;
-    while (ring_.try_dequeue(discarded)) {
-    }
-  }
-
   void write_until_finished() {
     const sched_param normal{};
     sched_setscheduler(0, SCHED_OTHER, &normal);  // lowering one's priority is always allowed
@@ -84,12 +76,12 @@ class Recorder {
     Record record;
     do {
       batch_.clear();
-      while (batch_.size() < batch_.capacity() && ring_.try_dequeue(record)) batch_.push_back(record);
+      while (batch_.size() < batch_.capacity() && ring_.try_pop(record)) batch_.push_back(record);
       if (!batch_.empty()) sink_(batch_);
     } while (!batch_.empty());
   }
 
-  moodycamel::ReaderWriterQueue<Record> ring_;
+  SpscRing<Record> ring_;
   Sink sink_;
   std::chrono::microseconds look_every_;
   std::vector<Record> batch_;
