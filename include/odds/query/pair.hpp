@@ -13,22 +13,25 @@
 namespace odds::query {
 
 struct PairOptions {
-  std::uint32_t queue_capacity = 4096;    ///< pairs of nodes in the priority queue, 64 .. 2^20
-  std::uint32_t hit_capacity = 256;       ///< intersecting triangle pairs kept for contacts, 8 .. 65536
+  std::uint32_t queue_capacity = 4096;  ///< pairs of nodes in the priority queue, 64 .. 2^20
+  std::uint32_t hit_capacity = 256;     ///< intersecting triangle pairs kept for contacts, 8 .. 65536
 };
 
-/// A workspace for queries between two shapes. All memory is taken in `make`; `run` never allocates, locks, throws or makes
-/// a system call (the clock is read from user space). One pair per thread; shapes may be shared.
+/// A workspace for queries between two shapes. All memory is taken in `make`; `run` never allocates, locks, throws or
+/// makes a system call (the clock is read from user space). One pair per thread; shapes may be shared.
 class Pair {
  public:
+  struct Implementation;  // private to src/query
+
   /// Refuses two shapes of unlike bounding volumes, and capacities out of range.
-  static Result<Pair> make(std::shared_ptr<const Shape> a, std::shared_ptr<const Shape> b, const PairOptions& options = {});
+  static Result<Pair> make(std::shared_ptr<const Shape> a, std::shared_ptr<const Shape> b,
+                           const PairOptions& options = {});
   ~Pair();
   Pair(Pair&&) noexcept;
   Pair& operator=(Pair&&) noexcept;
 
-  /// Answers for one pose of B's mesh frame in A's mesh frame. A pose that is not rigid or not finite is answered at once:
-  /// verdict clear, basis budget, probability 0.5, no contacts (it is the caller's error, and never a NaN).
+  /// Answers for one pose of B's mesh frame in A's mesh frame. A pose that is not rigid or not finite is answered at
+  /// once: verdict clear, basis budget, probability 0.5, no contacts (it is the caller's error, and never a NaN).
   [[nodiscard]] const Answer& run(const math::Pose& pose_b_in_a, const Request& request) noexcept;
 
   [[nodiscard]] const Shape& a() const noexcept;
@@ -37,7 +40,6 @@ class Pair {
   void reset() noexcept;
 
  private:
-  struct Implementation;
   explicit Pair(std::unique_ptr<Implementation> implementation);
   std::unique_ptr<Implementation> implementation_;
 };

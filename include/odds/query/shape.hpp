@@ -19,8 +19,8 @@ using Progress = std::function<void(double share)>;
 struct ShapeOptions {
   volume::Kind volume = volume::Kind::obb;
   std::uint32_t leaf_triangles = 4;  ///< most triangles in a leaf, 1 .. 16
-  double tau = 0.25;                 ///< a cell is well filled from tau * MaxArea on, in (0, 1]; the book's value 1 is dead
-                                     ///< on smooth meshes (measured: 0-1 of 512 cells below the top levels)
+  double tau = 0.25;  ///< a cell is well filled from tau * MaxArea on, in (0, 1]; the book's value 1 is dead
+                      ///< on smooth meshes (measured: 0-1 of 512 cells below the top levels)
 };
 
 /// Numbers about a hierarchy for people.
@@ -28,10 +28,10 @@ struct ShapeSummary {
   std::size_t triangles = 0;
   std::size_t nodes = 0;
   std::size_t leaves = 0;
-  std::uint32_t depth = 0;                ///< levels, root = 1
+  std::uint32_t depth = 0;  ///< levels, root = 1
   double mean_leaf_triangles = 0.0;
-  std::size_t bytes = 0;                  ///< hierarchy, statistics and triangles together
-  double mean_well_filled_cells = 0.0;    ///< of 512, over all inner nodes
+  std::size_t bytes = 0;                ///< hierarchy, statistics and triangles together
+  double mean_well_filled_cells = 0.0;  ///< of 512, over all inner nodes
   double build_ms = 0.0;
 };
 
@@ -50,6 +50,8 @@ class Shape {
   [[nodiscard]] volume::Kind volume() const noexcept;
   [[nodiscard]] const ShapeOptions& options() const noexcept;
   [[nodiscard]] const ShapeSummary& summary() const noexcept;
+  /// Closed, consistently wound, outwards: inside and outside are known. Otherwise the mesh is a two-sided sheet.
+  [[nodiscard]] bool is_solid() const noexcept;
   [[nodiscard]] const Data& data() const noexcept { return *data_; }
 
  private:
@@ -57,9 +59,9 @@ class Shape {
   std::unique_ptr<Data> data_;
 };
 
-/// Indices of triangles whose bounding boxes meet the oriented box {center + axes * x, |x_i| <= half_extents_i} given in the
-/// mesh's frame, written to `found` until it is full or `budget_nodes` nodes were visited. Returns how many were written.
-/// noexcept, no allocation. `complete` (if not null) says whether nothing was cut off.
+/// Indices of triangles whose bounding boxes meet the oriented box {center + axes * x, |x_i| <= half_extents_i} given
+/// in the mesh's frame, written to `found` until it is full or `budget_nodes` nodes were visited. Returns how many were
+/// written. noexcept, no allocation. `complete` (if not null) says whether nothing was cut off.
 std::size_t triangles_in_box(const Shape& shape, const Vec3& center, const Mat3& axes, const Vec3& half_extents,
                              std::span<std::uint32_t> found, std::uint64_t budget_nodes, bool* complete) noexcept;
 

@@ -1,0 +1,45 @@
+// What a bounding volume must offer to be built into hierarchies and searched. A new volume is one header that models
+// this concept and one word in volume/kind.hpp.
+#pragma once
+
+#include <concepts>
+#include <span>
+
+#include "odds/math/types.hpp"
+#include "odds/volume/relative_pose.hpp"
+
+namespace odds::volume {
+
+/// A box in a hierarchy's frame: {center + axes * x, |x_i| <= half_extents_i}. Metres.
+struct OrientedBox {
+  Vec3 center = Vec3::Zero();
+  Mat3 axes = Mat3::Identity();  ///< orthonormal columns
+  Vec3 half_extents = Vec3::Zero();
+};
+
+/// Surface moments that a fit may use: principal axes of the area-weighted covariance, thinnest first (columns).
+using PrincipalAxes = Mat3;
+
+/// `overlap` may say true wrongly, never false (points exactly shared count as overlap). `volume` and `overlap_volume`
+/// are estimates for probabilities: positive and finite for every volume, flat ones included (a flat extent counts as
+/// `thickness_floor` of the largest), overlap_volume <= both volumes. All lengths in metres, frames of hierarchy A for
+/// A and `pose` mapping B to A.
+template <class V>
+concept BoundingVolume = requires(const V& a, const V& b, const RelativePose& pose, std::span<const Vec3> points,
+                                  const PrincipalAxes& axes) {
+  { V::fit(points, axes) } -> std::same_as<V>;
+  { overlap(a, b, pose) }
+  noexcept->std::same_as<bool>;
+  { overlap_volume(a, b, pose) }
+  noexcept->std::same_as<double>;
+  { a.volume() }
+  noexcept->std::same_as<double>;
+  { a.radius() }
+  noexcept->std::same_as<float>;  // of some enclosing ball about its centre: decides which side to split
+  { a.cell_box() } -> std::same_as<OrientedBox>;  // the box whose 8^3 cells are counted
+};
+
+/// Flat volumes would have infinite area density: an extent counts at least as this share of the largest one.
+inline constexpr float thickness_floor = 0.02F;
+
+}  // namespace odds::volume

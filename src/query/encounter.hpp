@@ -1,0 +1,171 @@
+// Two hierarchies in one relative pose: what the searches ask about pairs of nodes and of leaves.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "odds/probability/kinematic.hpp"
+#include "odds/query/answer.hpp"
+#include "odds/query/request.hpp"
+#include "odds/tree/hierarchy.hpp"
+#include "query/bucket_queue.hpp"
+#include "query/leaf_test.hpp"
+#include "query/spending.hpp"
+
+namespace odds::query {
+
+/// Two triangles, as positions in leaf order or as indices into the meshes.
+struct TrianglePair {
+  std::uint32_t a = 0;
+  std::uint32_t b = 0;
+};
+
+/// Intersecting triangle pairs found so far, as positions in leaf order. Fixed capacity.
+class HitList {
+ public:
+  explicit HitList(std::uint32_t capacity) : pairs_(capacity) {}
+  void clear() noexcept { size_ = 0; }
+  [[nodiscard]] bool full(std::uint32_t wanted) const noexcept {
+    return size_ >= std::min<std::size_t>(wanted, pairs_.size());
+  }
+  [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
+  void add(TrianglePair pair) noexcept {
+    if (size_ < pairs_.size()) pairs_[size_++] = pair;
+  }
+  [[nodiscard]] std::span<TrianglePair> pairs() noexcept { return std::span(pairs_).first(size_); }
+
+ private:
+  std::vector<TrianglePair> pairs_;
+  std::size_t size_ = 0;
+};
+
+/// How a leaf pair or a search ended.
+enum class Progressed : std::uint8_t {
+  finished,  ///< everything asked was done
+  enough,    ///< as many hits as wanted
+  spent,     ///< the budget ended it
+};
+
+template <volume::BoundingVolume V>
+class Encounter {
+ public:
+  Encounter(const tree::Hierarchy<V>& a, const tree::Hierarchy<V>& b, const math::Pose& pose_b_in_a,
+            EstimatorKind estimator) noexcept
+      : a_(a), b_(b), estimator_(estimator) {
+    // From mesh frames to hierarchy frames: x_A = R x_B + t with x = local + origin on both sides.
+    b_in_a_.rotation = pose_b_in_a.rotation;
+    b_in_a_.translation = pose_b_in_a.rotation * b.origin() + (pose_b_in_a.translation - a.origin());
+    reach_ = a.reach() + b.reach();
+    relative_ = volume::RelativePose::make(b_in_a_, 2.0 * reach_);
+  }
+
+  /// True if the enclosing balls about both origins are apart; then nothing below may be asked (the margins assume
+  /// less).
+  [[nodiscard]] bool far_apart() const noexcept { return !(b_in_a_.translation.norm() <= reach_ * (1.0 + 1e-9)); }
+
+  [[nodiscard]] bool volumes_overlap(std::uint32_t i, std::uint32_t j) const noexcept {
+    return overlap(a_.nodes()[i].volume, b_.nodes()[j].volume, relative_);
+  }
+
+  [[nodiscard]] bool is_leaf_pair(std::uint32_t i, std::uint32_t j) const noexcept {
+    return a_.nodes()[i].is_leaf() && b_.nodes()[j].is_leaf();
+  }
+
+  /// The two pairs that replace (i, j): the larger node is split, or the one that is no leaf.
+  struct Children {
+    NodePair first;
+    NodePair second;
+  };
+  [[nodiscard]] Children children(std::uint32_t i, std::uint32_t j) const noexcept {
+    const auto& node_a = a_.nodes()[i];
+    const auto& node_b = b_.nodes()[j];
+    const bool split_a = node_b.is_leaf() || (!node_a.is_leaf() && node_a.volume.radius() >= node_b.volume.radius());
+    if (split_a) return {{node_a.first, j, 0.0F}, {node_a.first + 1, j, 0.0F}};
+    return {{i, node_b.first, 0.0F}, {i, node_b.first + 1, 0.0F}};
+  }
+
+  /// Estimated probability that surfaces below i and j meet, given that their volumes overlap.
+  [[nodiscard]] float probability(std::uint32_t i, std::uint32_t j) const noexcept {
+    const V& volume_a = a_.nodes()[i].volume;
+    const V& volume_b = b_.nodes()[j].volume;
+    const tree::NodeStatistics& sa = a_.statistics()[i];
+    const tree::NodeStatistics& sb = b_.statistics()[j];
+    const double common = overlap_volume(volume_a, volume_b, relative_);
+    const double p = probability::kinematic(sa, sb, relative_.rotation, volume_a.volume(), volume_b.volume(), common);
+    return static_cast<float>(std::isfinite(p) ? std::clamp(p, 0.0, 1.0) : 0.5);
+  }
+
+  /// Levels that still lie below the pair: 0 for two leaves.
+  [[nodiscard]] int levels_left(std::uint32_t i, std::uint32_t j) const noexcept {
+    return a_.statistics()[i].height + b_.statistics()[j].height;
+  }
+
+  /// Tests all triangles of two leaves, a row of B's triangles at a time, until `wanted` hits are in the list.
+  [[nodiscard]] Progressed test_leaves(std::uint32_t i, std::uint32_t j, std::uint32_t wanted, HitList& hits,
+                                       Spending& spending) const noexcept {
+    const auto& leaf_a = a_.nodes()[i];
+    const auto& leaf_b = b_.nodes()[j];
+    for (std::uint32_t tb = leaf_b.first; tb < leaf_b.first + leaf_b.count; ++tb) {
+      const tree::TriangleCorners moved = in_a(tb);
+      std::uint32_t tested = 0;
+      for (std::uint32_t ta = leaf_a.first; ta < leaf_a.first + leaf_a.count; ++ta) {
+        if (!spending.allows(tested + 1)) {
+          spending.spend_triangle_pairs(tested);
+          return Progressed::spent;
+        }
+        ++tested;
+        if (triangles_meet(a_.corners()[ta].data(), moved.data())) {
+          hits.add({ta, tb});
+          if (hits.full(wanted)) {
+            spending.spend_triangle_pairs(tested);
+            return Progressed::enough;
+          }
+        }
+      }
+      spending.spend_triangle_pairs(tested);
+      if (!spending.may_go_on() && tb + 1 < leaf_b.first + leaf_b.count) return Progressed::spent;
+    }
+    return Progressed::finished;
+  }
+
+  [[nodiscard]] tree::TriangleCorners in_a(std::uint32_t leaf_triangle_b) const noexcept {
+    const tree::TriangleCorners& corners = b_.corners()[leaf_triangle_b];
+    return {b_in_a_ * corners[0], b_in_a_ * corners[1], b_in_a_ * corners[2]};
+  }
+
+  /// Where, in which direction and how deep the surfaces of the pair most probably meet, in A's mesh frame.
+  [[nodiscard]] Contact cell_contact(std::uint32_t i, std::uint32_t j) const noexcept {
+    const tree::NodeStatistics& sa = a_.statistics()[i];
+    const tree::NodeStatistics& sb = b_.statistics()[j];
+    const float radius_a = a_.nodes()[i].volume.radius();
+    const float radius_b = b_.nodes()[j].volume.radius();
+    const Vec3 centroid_a = sa.centroid.cast<double>();
+    const Vec3 centroid_b = b_in_a_ * sb.centroid.cast<double>();
+    // The smaller node says more about where: weight by the inverse of the size.
+    const double weight_a = static_cast<double>(radius_b) / std::max(static_cast<double>(radius_a + radius_b), 1e-300);
+    Contact contact;
+    contact.position = weight_a * centroid_a + (1.0 - weight_a) * centroid_b + a_.origin();
+    Vec3 direction = b_in_a_.rotation * sb.mean_normal.cast<double>() - sa.mean_normal.cast<double>();
+    if (!(direction.norm() > 1e-3))
+      direction = b_in_a_.rotation * sb.slab_normal.cast<double>();  // closed on all sides
+    const double length = direction.norm();
+    contact.normal = length > 0.0 && std::isfinite(length) ? Vec3(direction / length) : Vec3::UnitZ();
+    // A's surface lies beyond B's by this much, at most the smaller node's diameter.
+    const double passed = contact.normal.dot(centroid_b - centroid_a);
+    contact.depth = std::clamp(passed, 0.0, 2.0 * static_cast<double>(std::min(radius_a, radius_b)));
+    return contact;
+  }
+
+  [[nodiscard]] const tree::Hierarchy<V>& a() const noexcept { return a_; }
+  [[nodiscard]] const tree::Hierarchy<V>& b() const noexcept { return b_; }
+
+ private:
+  const tree::Hierarchy<V>& a_;
+  const tree::Hierarchy<V>& b_;
+  math::Pose b_in_a_;
+  volume::RelativePose relative_;
+  double reach_ = 0.0;
+  EstimatorKind estimator_;
+};
+
+}  // namespace odds::query

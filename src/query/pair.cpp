@@ -1,0 +1,156 @@
+#include "odds/query/pair.hpp"
+
+#include <string>
+#include <type_traits>
+
+#include "odds/math/tolerances.hpp"
+#include "query/first_contact.hpp"
+#include "query/search.hpp"
+#include "query/shape_data.hpp"
+
+namespace odds::query {
+
+/// All scratch memory, and the last answer.
+struct Pair::Implementation {
+  Implementation(std::shared_ptr<const Shape> shape_a, std::shared_ptr<const Shape> shape_b, const PairOptions& options)
+      : a(std::move(shape_a)), b(std::move(shape_b)), queue(options.queue_capacity), hits(options.hit_capacity) {}
+
+  std::shared_ptr<const Shape> a;
+  std::shared_ptr<const Shape> b;
+  BucketQueue queue;
+  HitList hits;
+  Contact contact;
+  Answer answer;
+};
+
+namespace {
+
+/// Hits that are wanted: one proves; a patch needs as many as are kept.
+std::uint32_t wanted_hits(const Request& request) noexcept { return request.max_contacts <= 1 ? 1 : no_feature; }
+
+/// A pose or request that no query can be run with: answered as undecided, never as a NaN.
+Answer refused() noexcept {
+  Answer answer;
+  answer.basis = Basis::budget;
+  answer.probability = 0.5;
+  return answer;
+}
+
+template <volume::BoundingVolume V>
+SearchResult search(const Encounter<V>& encounter, const Request& request, Pair::Implementation& pair,
+                    Spending& spending) noexcept {
+  SearchResult result;
+  if (encounter.far_apart()) return result;
+  if (!spending.allows(1)) {
+    result.ended = Progressed::spent;
+    result.has_candidate = true;
+    result.candidate.probability = 0.5F;
+    return result;
+  }
+  spending.spend_node_pairs(1);
+  if (!encounter.volumes_overlap(0, 0)) return result;
+  const std::uint32_t wanted = wanted_hits(request);
+  if (request.method == Method::exact && !request.polygon_free) {
+    search_depth_first(encounter, {0, 0, 0.0F}, wanted, pair.hits, spending, result);
+    return result;
+  }
+  return TimeCriticalSearch<V>(encounter, request, wanted, pair.queue, pair.hits, spending).run({0, 0, 0.0F});
+}
+
+/// Verdict, basis and probability from what the search found.
+void judge(const SearchResult& result, const Request& request, bool any_hit, Answer& answer) noexcept {
+  if (any_hit) {
+    answer.verdict = Verdict::hit;
+    answer.basis = Basis::proved;
+    answer.probability = 1.0;
+  } else if (result.estimated_hit || (request.polygon_free && result.ended == Progressed::finished)) {
+    answer.basis = Basis::estimated;
+    answer.probability = static_cast<double>(result.estimate);
+  } else if (result.ended == Progressed::spent) {
+    answer.basis = Basis::budget;
+    answer.probability = static_cast<double>(result.candidate.probability);
+  } else {
+    answer.basis = Basis::proved;
+    answer.probability = 0.0;
+  }
+  if (answer.basis != Basis::proved) {
+    // Certainty belongs to proofs alone.
+    answer.probability =
+        std::clamp(answer.probability, tolerances::least_uncertainty, 1.0 - tolerances::least_uncertainty);
+    answer.verdict = answer.probability >= 0.5 ? Verdict::hit : Verdict::clear;
+  }
+}
+
+template <volume::BoundingVolume V>
+void run_on(const tree::Hierarchy<V>& a, const tree::Hierarchy<V>& b, const math::Pose& pose_b_in_a,
+            const Request& request, Pair::Implementation& pair) noexcept {
+  Spending spending(request.budget);
+  Answer& answer = pair.answer;
+  answer = {};
+  pair.hits.clear();
+  const Encounter<V> encounter(a, b, pose_b_in_a, request.estimator);
+  const SearchResult result = search(encounter, request, pair, spending);
+  judge(result, request, !pair.hits.empty(), answer);
+  if (result.has_candidate && answer.basis != Basis::proved) {
+    answer.has_cell_pair = true;
+    answer.cell_pair = encounter.cell_contact(result.candidate.a, result.candidate.b);
+    answer.cell_pair_probability = static_cast<double>(result.candidate.probability);
+  }
+  if (!pair.hits.empty() && request.max_contacts > 0) {
+    pair.contact = first_contact(encounter, pair.hits.pairs().front());
+    answer.contacts = {&pair.contact, 1};
+  }
+  answer.cost = spending.close();
+}
+
+bool usable(const math::Pose& pose, const Request& request) noexcept {
+  return pose.is_rigid(tolerances::pose_orthonormality) && request.budget.microseconds > 0.0 &&
+         request.budget.work_units > 0 && request.p_min > 0.0 && request.p_min <= 1.0 && request.k_min >= 1 &&
+         request.max_contacts >= 0;
+}
+
+}  // namespace
+
+Result<Pair> Pair::make(std::shared_ptr<const Shape> a, std::shared_ptr<const Shape> b, const PairOptions& options) {
+  if (!a || !b) return Error{"", "", "a pair needs two shapes", "build both shapes first"};
+  if (a->volume() != b->volume()) {
+    return Error{b->mesh().name(), "",
+                 "its bounding volume is " + std::string(volume::name(b->volume())) + ", but that of " +
+                     a->mesh().name() + " is " + std::string(volume::name(a->volume())),
+                 "build both shapes with the same volume"};
+  }
+  if (options.queue_capacity < 64 || options.queue_capacity > (1U << 20U)) {
+    return Error{"", "", "queue_capacity is " + std::to_string(options.queue_capacity), "choose 64 to 1048576"};
+  }
+  if (options.hit_capacity < 8 || options.hit_capacity > 65536) {
+    return Error{"", "", "hit_capacity is " + std::to_string(options.hit_capacity), "choose 8 to 65536"};
+  }
+  static_cast<void>(realtime::fastest_clock());  // calibrates now, so that no query has to
+  return Pair(std::make_unique<Implementation>(std::move(a), std::move(b), options));
+}
+
+Pair::Pair(std::unique_ptr<Implementation> implementation) : implementation_(std::move(implementation)) {}
+Pair::~Pair() = default;
+Pair::Pair(Pair&&) noexcept = default;
+Pair& Pair::operator=(Pair&&) noexcept = default;
+
+const Answer& Pair::run(const math::Pose& pose_b_in_a, const Request& request) noexcept {
+  Implementation& pair = *implementation_;
+  if (!usable(pose_b_in_a, request)) {
+    pair.answer = refused();
+    return pair.answer;
+  }
+  std::visit(
+      [&](const auto& a) {
+        using Hierarchy = std::remove_cvref_t<decltype(a)>;
+        run_on(a, *std::get_if<Hierarchy>(&pair.b->data().hierarchy), pose_b_in_a, request, pair);
+      },
+      pair.a->data().hierarchy);
+  return pair.answer;
+}
+
+const Shape& Pair::a() const noexcept { return *implementation_->a; }
+const Shape& Pair::b() const noexcept { return *implementation_->b; }
+void Pair::reset() noexcept { implementation_->answer = {}; }
+
+}  // namespace odds::query

@@ -1,0 +1,153 @@
+#include "odds/query/shape.hpp"
+
+#include <array>
+#include <chrono>
+#include <string>
+
+#include "query/search.hpp"
+#include "query/shape_data.hpp"
+
+namespace odds::query {
+namespace {
+
+template <std::size_t... I>
+AnyHierarchy build_hierarchy(volume::Kind kind, const mesh::TriangleMesh& mesh, const tree::BuildOptions& options,
+                             const Progress& progress, std::index_sequence<I...>) {
+  AnyHierarchy hierarchy;
+  static_cast<void>(
+      ((static_cast<std::size_t>(kind) == I
+            ? (hierarchy.emplace<I>(std::variant_alternative_t<I, AnyHierarchy>::build(mesh, options, progress)), true)
+            : false) ||
+       ...));
+  return hierarchy;
+}
+
+template <volume::BoundingVolume V>
+ShapeSummary summarise(const tree::Hierarchy<V>& hierarchy) {
+  ShapeSummary summary;
+  summary.triangles = hierarchy.order().size();
+  summary.nodes = hierarchy.nodes().size();
+  summary.depth = hierarchy.levels();
+  summary.bytes = hierarchy.bytes();
+  double cells = 0.0;
+  std::size_t inner = 0;
+  for (std::size_t i = 0; i < hierarchy.nodes().size(); ++i) {
+    if (hierarchy.nodes()[i].is_leaf()) {
+      ++summary.leaves;
+    } else {
+      ++inner;
+      cells += hierarchy.statistics()[i].well_filled_cells;
+    }
+  }
+  summary.mean_leaf_triangles = static_cast<double>(summary.triangles) / static_cast<double>(summary.leaves);
+  summary.mean_well_filled_cells = inner == 0 ? 0.0 : cells / static_cast<double>(inner);
+  return summary;
+}
+
+/// The query box in the hierarchy's frame.
+struct Box {
+  Vec3 center;
+  Mat3 axes;
+  Vec3 half_extents;
+
+  [[nodiscard]] std::array<Vec3, 8> corners() const {
+    std::array<Vec3, 8> corners;
+    for (unsigned i = 0; i < 8; ++i) {
+      const Vec3 signs((i & 1U) != 0 ? 1 : -1, (i & 2U) != 0 ? 1 : -1, (i & 4U) != 0 ? 1 : -1);
+      corners[i] = center + axes * half_extents.cwiseProduct(signs);
+    }
+    return corners;
+  }
+
+  /// The triangle's extents along the box's axes meet the box.
+  [[nodiscard]] bool meets(const tree::TriangleCorners& triangle) const noexcept {
+    const Vec3 p = axes.transpose() * (triangle[0] - center);
+    const Vec3 q = axes.transpose() * (triangle[1] - center);
+    const Vec3 r = axes.transpose() * (triangle[2] - center);
+    const Vec3 lower = p.cwiseMin(q).cwiseMin(r);
+    const Vec3 upper = p.cwiseMax(q).cwiseMax(r);
+    return (lower.array() <= half_extents.array()).all() && (upper.array() >= -half_extents.array()).all();
+  }
+};
+
+template <volume::BoundingVolume V>
+std::size_t collect(const tree::Hierarchy<V>& hierarchy, const Box& box, std::span<std::uint32_t> found,
+                    std::uint64_t budget_nodes, bool& complete) noexcept {
+  const std::array<Vec3, 8> corners = box.corners();
+  const V enclosing = V::fit(corners, box.axes);
+  const double reach = hierarchy.reach() + box.center.norm() + box.half_extents.norm();
+  const volume::RelativePose same_frame = volume::RelativePose::make({}, 2.0 * reach);
+  std::array<std::uint32_t, stack_capacity> stack;
+  std::size_t size = 0;
+  stack[size++] = 0;
+  std::size_t count = 0;
+  std::uint64_t visited = 0;
+  complete = false;
+  while (size != 0) {
+    if (visited++ >= budget_nodes) return count;
+    const auto& node = hierarchy.nodes()[stack[--size]];
+    if (!overlap(node.volume, enclosing, same_frame)) continue;
+    if (!node.is_leaf()) {
+      stack[size++] = node.first + 1;
+      stack[size++] = node.first;
+      continue;
+    }
+    for (std::uint32_t t = node.first; t < node.first + node.count; ++t) {
+      if (!box.meets(hierarchy.corners()[t])) continue;
+      if (count == found.size()) return count;
+      found[count++] = hierarchy.order()[t];
+    }
+  }
+  complete = true;
+  return count;
+}
+
+}  // namespace
+
+Result<std::shared_ptr<const Shape>> Shape::build(std::shared_ptr<const mesh::TriangleMesh> mesh,
+                                                  const ShapeOptions& options, const Progress& progress) {
+  if (!mesh) return Error{"", "", "no mesh was given", "pass a mesh that was made or read without an error"};
+  if (options.leaf_triangles < 1 || options.leaf_triangles > 16) {
+    return Error{mesh->name(), "", "leaf_triangles is " + std::to_string(options.leaf_triangles), "choose 1 to 16"};
+  }
+  if (!(options.tau > 0.0 && options.tau <= 1.0)) {
+    return Error{mesh->name(), "", "tau is " + std::to_string(options.tau), "choose a value in (0, 1]"};
+  }
+  const auto start = std::chrono::steady_clock::now();
+  auto data = std::make_unique<Data>();
+  const tree::BuildOptions build_options{options.leaf_triangles, options.tau};
+  data->hierarchy = build_hierarchy(options.volume, *mesh, build_options, progress,
+                                    std::make_index_sequence<std::variant_size_v<AnyHierarchy>>());
+  data->summary = std::visit([](const auto& hierarchy) { return summarise(hierarchy); }, data->hierarchy);
+  data->summary.build_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  data->options = options;
+  data->mesh = std::move(mesh);
+  return std::shared_ptr<const Shape>(new Shape(std::move(data)));
+}
+
+Shape::Shape(std::unique_ptr<Data> data) : data_(std::move(data)) {}
+Shape::~Shape() = default;
+
+const mesh::TriangleMesh& Shape::mesh() const noexcept { return *data_->mesh; }
+volume::Kind Shape::volume() const noexcept { return data_->options.volume; }
+const ShapeOptions& Shape::options() const noexcept { return data_->options; }
+const ShapeSummary& Shape::summary() const noexcept { return data_->summary; }
+bool Shape::is_solid() const noexcept { return data_->solid; }
+
+std::size_t triangles_in_box(const Shape& shape, const Vec3& center, const Mat3& axes, const Vec3& half_extents,
+                             std::span<std::uint32_t> found, std::uint64_t budget_nodes, bool* complete) noexcept {
+  bool all = false;
+  std::size_t count = 0;
+  if (center.allFinite() && axes.allFinite() && half_extents.allFinite() && !found.empty()) {
+    count = std::visit(
+        [&](const auto& hierarchy) {
+          return collect(hierarchy, Box{center - hierarchy.origin(), axes, half_extents.cwiseMax(0.0)}, found,
+                         budget_nodes, all);
+        },
+        shape.data().hierarchy);
+  }
+  if (complete != nullptr) *complete = all;
+  return count;
+}
+
+}  // namespace odds::query

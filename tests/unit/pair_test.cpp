@@ -1,0 +1,134 @@
+// Answers of query::Pair on shapes that can be judged by hand.
+#include "odds/query/pair.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "support/shapes.hpp"
+
+namespace odds::query {
+namespace {
+
+class PairOfSpheres : public ::testing::TestWithParam<std::tuple<volume::Kind, Method>> {
+ protected:
+  void SetUp() override {
+    auto shape = Shape::build(test::wavy_sphere(24), {.volume = std::get<0>(GetParam())});
+    ASSERT_TRUE(shape.ok());
+    auto pair = Pair::make(shape.value(), shape.value());
+    ASSERT_TRUE(pair.ok());
+    pair_ = std::make_unique<Pair>(std::move(pair).value());
+    request_.method = std::get<1>(GetParam());
+  }
+  const Answer& at(double x) { return pair_->run({Mat3::Identity(), {x, 0, 0}}, request_); }
+
+  std::unique_ptr<Pair> pair_;
+  Request request_;
+};
+
+TEST_P(PairOfSpheres, ProvesAHitWhereTheyOverlap) {
+  const Answer& answer = at(1.5);
+  EXPECT_EQ(answer.verdict, Verdict::hit);
+  EXPECT_EQ(answer.basis, Basis::proved);
+  EXPECT_EQ(answer.probability, 1.0);
+  ASSERT_EQ(answer.contacts.size(), 1u);
+  EXPECT_NEAR(answer.contacts[0].normal.norm(), 1.0, 1e-12);
+  EXPECT_GE(answer.contacts[0].depth, 0.0);
+}
+
+TEST_P(PairOfSpheres, ProvesThatTheyAreClear) {
+  for (const double x : {2.5, 4.0, 1e6, 1e12}) {
+    const Answer& answer = at(x);
+    EXPECT_EQ(answer.verdict, Verdict::clear) << x;
+    EXPECT_EQ(answer.basis, Basis::proved) << x;
+    EXPECT_EQ(answer.probability, 0.0) << x;
+    EXPECT_TRUE(answer.contacts.empty()) << x;
+  }
+}
+
+TEST_P(PairOfSpheres, NeverSpendsMoreThanItsWorkBudget) {
+  for (std::uint64_t units = 1; units < 200; units += 7) {
+    request_.budget = Budget::work(units);
+    const Answer& answer = at(1.9);
+    EXPECT_LE(answer.cost.node_pairs + answer.cost.triangle_pairs, units);
+    EXPECT_TRUE(answer.probability >= 0.0 && answer.probability <= 1.0);
+  }
+}
+
+TEST_P(PairOfSpheres, GivesTheSameBitsForTheSameWorkBudget) {
+  request_.budget = Budget::work(60);
+  const Answer first = at(1.93);
+  const Answer second = at(1.93);
+  EXPECT_EQ(first.probability, second.probability);
+  EXPECT_EQ(first.cell_pair.position, second.cell_pair.position);
+  EXPECT_EQ(first.cost.node_pairs, second.cost.node_pairs);
+}
+
+TEST_P(PairOfSpheres, OnlyProofsAreCertain) {
+  for (std::uint64_t units = 1; units < 400; units += 3) {
+    request_.budget = Budget::work(units);
+    const Answer& answer = at(1.97);
+    if (answer.basis == Basis::proved) continue;
+    EXPECT_GT(answer.probability, 0.0);
+    EXPECT_LT(answer.probability, 1.0);
+    EXPECT_EQ(answer.verdict == Verdict::hit, answer.probability >= 0.5);
+    ASSERT_TRUE(answer.has_cell_pair);
+    EXPECT_TRUE(answer.cell_pair.position.allFinite());
+    EXPECT_NEAR(answer.cell_pair.normal.norm(), 1.0, 1e-9);
+    EXPECT_GE(answer.cell_pair.depth, 0.0);
+  }
+}
+
+TEST_P(PairOfSpheres, RefusesAPoseThatIsNotRigid) {
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1.01}) {
+    math::Pose pose;
+    pose.rotation(0, 0) = bad;
+    const Answer& answer = pair_->run(pose, request_);
+    EXPECT_EQ(answer.basis, Basis::budget);
+    EXPECT_EQ(answer.probability, 0.5);
+    EXPECT_TRUE(answer.contacts.empty());
+  }
+}
+
+TEST_P(PairOfSpheres, StopsAtAnInjectedDeadline) {
+  // Every reading of this clock takes 1 us: a budget of 12 us must end after 12 readings at most, plus the closing one.
+  realtime::ManualClock clock(1000);
+  request_.budget = Budget::time(12.0);
+  request_.budget.clock = clock.clock();
+  const Answer& answer = at(1.99);
+  EXPECT_LE(clock.readings(), 14);
+  EXPECT_LE(answer.cost.overshoot_us, 1.0);
+  EXPECT_LE(answer.cost.longest_unpolled_units, 16u);
+}
+
+INSTANTIATE_TEST_SUITE_P(AllVolumesAndMethods, PairOfSpheres,
+                         ::testing::Combine(::testing::Values(volume::Kind::aabb, volume::Kind::obb,
+                                                              volume::Kind::sphere),
+                                            ::testing::Values(Method::exact, Method::time_critical)),
+                         [](const auto& tested) {
+                           return std::string(volume::name(std::get<0>(tested.param))) +
+                                  (std::get<1>(tested.param) == Method::exact ? "_exact" : "_time_critical");
+                         });
+
+TEST(Pair, RefusesUnlikeVolumes) {
+  const auto a = Shape::build(test::wavy_sphere(6), {.volume = volume::Kind::aabb});
+  const auto b = Shape::build(test::wavy_sphere(6), {.volume = volume::Kind::obb});
+  const auto pair = Pair::make(a.value(), b.value());
+  ASSERT_FALSE(pair.ok());
+  EXPECT_NE(pair.error().message().find("same volume"), std::string::npos);
+}
+
+TEST(Pair, SaysAQuickEstimatedHitOnlyIfAsked) {
+  const auto shape = Shape::build(test::wavy_sphere(24));
+  auto pair = std::move(Pair::make(shape.value(), shape.value())).value();
+  Request request;
+  request.p_min = 0.5;
+  request.k_min = 1;
+  const Answer& answer = pair.run({Mat3::Identity(), {1.0, 0, 0}}, request);
+  EXPECT_EQ(answer.basis, Basis::estimated);
+  EXPECT_EQ(answer.verdict, Verdict::hit);
+}
+
+}  // namespace
+}  // namespace odds::query
