@@ -16,8 +16,8 @@ namespace odds::math {
   return x ^ (x >> 31U);
 }
 
-/// Random numbers keyed by (seed, stream): number i is a function of seed, stream and i alone, so that objects, pairs and
-/// queries draw independently of each other's order. Not for cryptography. A plain value; not shared among threads.
+/// Random numbers keyed by (seed, stream): number i is a function of seed, stream and i alone, so that objects, pairs
+/// and queries draw independently of each other's order. Not for cryptography. A plain value; not shared among threads.
 /// The standard library's distributions are not used because they differ between implementations.
 class Random {
  public:
