@@ -47,6 +47,10 @@ struct Aabb {
   return box_overlap_volume(a.half_, b.half_, view_of(a, b, pose));
 }
 
+[[nodiscard]] inline bool met_by(const Aabb& box, const RaySegment& ray) noexcept {
+  return segment_meets_box(box.half_, ray.origin - box.center_, ray.direction, ray);
+}
+
 static_assert(BoundingVolume<Aabb>);
 
 }  // namespace odds::volume

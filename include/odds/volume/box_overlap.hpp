@@ -84,6 +84,28 @@ struct BoxPairView {
   return std::min({product_a * fill_b, product_b * fill_a, volume_a, volume_b});
 }
 
+/// Slab test of a segment given in the box's own axes, from its centre. A direction
+/// within the slab is judged by where the segment stands.
+[[nodiscard]] inline bool segment_meets_box(const Vec3f& half_extents, const Vec3f& origin, const Vec3f& direction,
+                                            const RaySegment& ray) noexcept {
+  float enter = 0.0F;
+  float leave = ray.length;
+  for (int i = 0; i < 3; ++i) {
+    const float half = half_extents[i] + ray.margin;
+    if (std::abs(direction[i]) < 1e-6F) {  // moves less than the margin over any length that the margin was made for
+      if (std::abs(origin[i]) > half + std::abs(direction[i]) * ray.length) return false;
+      continue;
+    }
+    const float inverse = 1.0F / direction[i];
+    const float t0 = (-half - origin[i]) * inverse;
+    const float t1 = (half - origin[i]) * inverse;
+    enter = std::max(enter, std::min(t0, t1));
+    leave = std::min(leave, std::max(t0, t1));
+  }
+  // Each t is wrong by a few roundings of its own size.
+  return enter <= leave + 4e-7F * (std::abs(enter) + std::abs(leave));
+}
+
 /// Half extents in float that enclose double points about a float centre: rounded outwards.
 [[nodiscard]] inline float rounded_up(double value) noexcept {
   const auto narrow = static_cast<float>(value);

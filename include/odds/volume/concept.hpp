@@ -17,16 +17,31 @@ struct OrientedBox {
   Vec3 half_extents = Vec3::Zero();
 };
 
+/// A piece of a line in a hierarchy's frame: origin + t * direction for t in [0, length].
+struct RaySegment {
+  Vec3f origin;
+  Vec3f direction;      ///< unit
+  float length = 0.0F;  ///< metres
+  float margin = 0.0F;  ///< metres; covers the rounding of the segment and of the tests
+
+  [[nodiscard]] static RaySegment make(const Vec3& origin, const Vec3& direction, double length,
+                                       double reach) noexcept {
+    const double scale = origin.norm() + length + reach;
+    return {origin.cast<float>(), direction.cast<float>(), static_cast<float>(length * (1.0 + 1e-6)),
+            static_cast<float>(scale * 16.0 * 0x1p-24)};
+  }
+};
+
 /// Surface moments that a fit may use: principal axes of the area-weighted covariance, thinnest first (columns).
 using PrincipalAxes = Mat3;
 
-/// `overlap` may say true wrongly, never false (points exactly shared count as overlap). `volume` and `overlap_volume`
-/// are estimates for probabilities: positive and finite for every volume, flat ones included (a flat extent counts as
-/// `thickness_floor` of the largest), overlap_volume <= both volumes. All lengths in metres, frames of hierarchy A for
-/// A and `pose` mapping B to A.
+/// `overlap` and `met_by` may say true wrongly, never false (points exactly shared count as overlap). `volume` and
+/// `overlap_volume` are estimates for probabilities: positive and finite for every volume, flat ones included (a flat
+/// extent counts as `thickness_floor` of the largest), overlap_volume <= both volumes. All lengths in metres, frames of
+/// hierarchy A for A and `pose` mapping B to A.
 template <class V>
 concept BoundingVolume = requires(const V& a, const V& b, const RelativePose& pose, std::span<const Vec3> points,
-                                  const PrincipalAxes& axes) {
+                                  const PrincipalAxes& axes, const RaySegment& ray) {
   { V::fit(points, axes) } -> std::same_as<V>;
   { overlap(a, b, pose) }
   noexcept->std::same_as<bool>;

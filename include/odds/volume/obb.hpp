@@ -55,6 +55,11 @@ struct Obb {
   return box_overlap_volume(a.half_, b.half_, view_of(a, b, pose));
 }
 
+[[nodiscard]] inline bool met_by(const Obb& box, const RaySegment& ray) noexcept {
+  return segment_meets_box(box.half_, box.axes_.transpose() * (ray.origin - box.center_),
+                           box.axes_.transpose() * ray.direction, ray);
+}
+
 static_assert(BoundingVolume<Obb>);
 
 }  // namespace odds::volume

@@ -70,6 +70,13 @@ struct Sphere {
   return std::clamp(lens, 0.0, std::min(a.volume(), b.volume()));
 }
 
+[[nodiscard]] inline bool met_by(const Sphere& sphere, const RaySegment& ray) noexcept {
+  const Vec3f to_center = sphere.center_ - ray.origin;
+  const float along = std::clamp(to_center.dot(ray.direction), 0.0F, ray.length);
+  const float reach = sphere.radius_ + 2.0F * ray.margin;
+  return (to_center - along * ray.direction).squaredNorm() <= reach * reach * (1.0F + 1e-6F);
+}
+
 static_assert(BoundingVolume<Sphere>);
 
 }  // namespace odds::volume

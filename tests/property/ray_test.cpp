@@ -1,0 +1,71 @@
+// Rays against every triangle in turn.
+#include "odds/query/ray.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "support/shapes.hpp"
+
+namespace odds::query {
+namespace {
+
+std::optional<double> brute_force(const mesh::TriangleMesh& mesh, const Vec3& origin, const Vec3& direction) {
+  std::optional<double> nearest;
+  for (const mesh::Triangle& t : mesh.triangles()) {
+    const Vec3 a = mesh.vertices()[t[0]];
+    const Vec3 n = (mesh.vertices()[t[1]] - a).cross(mesh.vertices()[t[2]] - a);
+    const double slope = n.dot(direction);
+    if (slope == 0.0) continue;
+    const double distance = n.dot(a - origin) / slope;
+    if (distance < 0.0) continue;
+    const Vec3 x = origin + distance * direction;
+    bool inside = true;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3 p = mesh.vertices()[t[i]];
+      const Vec3 q = mesh.vertices()[t[(i + 1) % 3]];
+      inside = inside && n.dot((q - p).cross(x - p)) >= -1e-12;
+    }
+    if (inside && (!nearest || distance < *nearest)) nearest = distance;
+  }
+  return nearest;
+}
+
+class Rays : public ::testing::TestWithParam<volume::Kind> {};
+
+TEST_P(Rays, MeetWhatBruteForceMeets) {
+  const auto mesh = test::wavy_sphere(16);
+  const auto shape = Shape::build(mesh, {.volume = GetParam()}).value();
+  std::mt19937 generator(7);
+  std::normal_distribution<double> normal;
+  int met = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 origin = 0.9 * Vec3(normal(generator), normal(generator), normal(generator));
+    const Vec3 direction = Vec3(normal(generator), normal(generator), normal(generator)).normalized();
+    const auto expected = brute_force(*mesh, origin, direction);
+    const auto found = cast_ray(*shape, origin, direction, INFINITY);
+    ASSERT_EQ(expected.has_value(), found.has_value()) << i;
+    if (!expected) continue;
+    ++met;
+    EXPECT_NEAR(*expected, found->distance, 1e-9) << i;
+    EXPECT_FALSE(cast_ray(*shape, origin, direction, *expected - 1e-6)) << "a shorter ray must not meet it";
+  }
+  EXPECT_GT(met, 500);
+  EXPECT_LT(met, 1800);
+}
+
+TEST_P(Rays, RefuseWhatIsNoRay) {
+  const auto shape = Shape::build(test::wavy_sphere(6), {.volume = GetParam()}).value();
+  EXPECT_FALSE(cast_ray(*shape, {NAN, 0, 0}, Vec3::UnitX(), 10));
+  EXPECT_FALSE(cast_ray(*shape, {0, 0, 0}, {2, 0, 0}, 10));
+  EXPECT_FALSE(cast_ray(*shape, {0, 0, 0}, Vec3::UnitX(), NAN));
+  EXPECT_FALSE(cast_ray(*shape, {0, 0, 0}, Vec3::UnitX(), -1));
+  EXPECT_FALSE(cast_ray(*shape, {0, 0, 0}, Vec3::UnitX(), 10, 0));
+}
+
+INSTANTIATE_TEST_SUITE_P(AllVolumes, Rays,
+                         ::testing::Values(volume::Kind::aabb, volume::Kind::obb, volume::Kind::sphere),
+                         [](const auto& tested) { return std::string(volume::name(tested.param)); });
+
+}  // namespace
+}  // namespace odds::query
