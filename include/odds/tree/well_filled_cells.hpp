@@ -22,7 +22,7 @@ inline constexpr double kThinnestExtent = 1e-4;
 
 /// Sums the area of triangles, clipped exactly, in each of the 8^3 cells of an oriented box and counts the "possible
 /// collision cells" of Klein and Zachmann 2003: those whose area reaches tau * MaxArea. For builds, not for queries: a
-/// triangle inside one cell costs some 20 ns, each further cell that a triangle touches some 40 ns. No allocation. An
+/// triangle inside one cell costs some 30 ns, each further cell that a triangle touches some 30 ns. No allocation. An
 /// object is reused for any number of nodes, by one thread at a time.
 class CellCounter {
  public:
