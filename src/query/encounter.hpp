@@ -6,6 +6,7 @@
 
 #include "odds/probability/kinematic.hpp"
 #include "odds/query/answer.hpp"
+#include "odds/query/contact_patch.hpp"
 #include "odds/query/request.hpp"
 #include "odds/tree/hierarchy.hpp"
 #include "query/bucket_queue.hpp"
@@ -13,12 +14,6 @@
 #include "query/spending.hpp"
 
 namespace odds::query {
-
-/// Two triangles, as positions in leaf order or as indices into the meshes.
-struct TrianglePair {
-  std::uint32_t a = 0;
-  std::uint32_t b = 0;
-};
 
 /// Intersecting triangle pairs found so far, as positions in leaf order. Fixed capacity.
 class HitList {
@@ -126,6 +121,12 @@ class Encounter {
       if (!spending.may_go_on() && tb + 1 < leaf_b.first + leaf_b.count) return Progressed::spent;
     }
     return Progressed::finished;
+  }
+
+  /// The exact test of one pair of triangles, given in leaf order.
+  [[nodiscard]] bool triangles_meet_now(TrianglePair pair) const noexcept {
+    const tree::TriangleCorners moved = in_a(pair.b);
+    return triangles_meet(a_.corners()[pair.a].data(), moved.data());
   }
 
   [[nodiscard]] tree::TriangleCorners in_a(std::uint32_t leaf_triangle_b) const noexcept {

@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "odds/math/tolerances.hpp"
+#include "query/bottom_slice.hpp"
 #include "query/first_contact.hpp"
 #include "query/search.hpp"
 #include "query/shape_data.hpp"
@@ -13,12 +14,19 @@ namespace odds::query {
 /// All scratch memory, and the last answer.
 struct Pair::Implementation {
   Implementation(std::shared_ptr<const Shape> shape_a, std::shared_ptr<const Shape> shape_b, const PairOptions& options)
-      : a(std::move(shape_a)), b(std::move(shape_b)), queue(options.queue_capacity), hits(options.hit_capacity) {}
+      : a(std::move(shape_a)),
+        b(std::move(shape_b)),
+        queue(options.queue_capacity),
+        hits(options.hit_capacity),
+        slice(options.slice_capacity) {}
 
   std::shared_ptr<const Shape> a;
   std::shared_ptr<const Shape> b;
   BucketQueue queue;
   HitList hits;
+  BottomSlice slice;
+  bool has_witness = false;
+  TrianglePair witness;  ///< the pair of triangles, in leaf order, that proved the last incremental hit
   Contact contact;
   Answer answer;
 };
@@ -36,22 +44,37 @@ Answer refused() noexcept {
   return answer;
 }
 
+/// The witness of the last hit first, then the bottom slice.
+template <volume::BoundingVolume V>
+void search_incrementally(const Encounter<V>& encounter, std::uint32_t wanted, Pair::Implementation& pair,
+                          Spending& spending, SearchResult& result) noexcept {
+  if (wanted == 1 && pair.has_witness && spending.allows(1)) {
+    spending.spend_triangle_pairs(1);
+    if (encounter.triangles_meet_now(pair.witness)) {
+      pair.hits.add(pair.witness);
+      result.ended = Progressed::enough;
+      return;
+    }
+  }
+  pair.slice.search(encounter, wanted, pair.hits, spending, result);
+  pair.has_witness = !pair.hits.empty();
+  if (pair.has_witness) pair.witness = pair.hits.pairs().front();
+}
+
 template <volume::BoundingVolume V>
 SearchResult search(const Encounter<V>& encounter, const Request& request, Pair::Implementation& pair,
                     Spending& spending) noexcept {
   SearchResult result;
   if (encounter.far_apart()) return result;
-  if (!spending.allows(1)) {
-    result.ended = Progressed::spent;
-    result.has_candidate = true;
-    result.candidate.probability = 0.5F;
-    return result;
-  }
   spending.spend_node_pairs(1);
   if (!encounter.volumes_overlap(0, 0)) return result;
   const std::uint32_t wanted = wanted_hits(request);
   if (request.method == Method::exact && !request.polygon_free) {
     search_depth_first(encounter, {0, 0, 0.0F}, wanted, pair.hits, spending, result);
+    return result;
+  }
+  if (request.method == Method::incremental && !request.polygon_free) {
+    search_incrementally(encounter, wanted, pair, spending, result);
     return result;
   }
   return TimeCriticalSearch<V>(encounter, request, wanted, pair.queue, pair.hits, spending).run({0, 0, 0.0F});
@@ -125,6 +148,9 @@ Result<Pair> Pair::make(std::shared_ptr<const Shape> a, std::shared_ptr<const Sh
   if (options.hit_capacity < 8 || options.hit_capacity > 65536) {
     return Error{"", "", "hit_capacity is " + std::to_string(options.hit_capacity), "choose 8 to 65536"};
   }
+  if (options.slice_capacity < 64 || options.slice_capacity > (1U << 24U)) {
+    return Error{"", "", "slice_capacity is " + std::to_string(options.slice_capacity), "choose 64 to 16777216"};
+  }
   static_cast<void>(realtime::fastest_clock());  // calibrates now, so that no query has to
   return Pair(std::make_unique<Implementation>(std::move(a), std::move(b), options));
 }
@@ -149,8 +175,13 @@ const Answer& Pair::run(const math::Pose& pose_b_in_a, const Request& request) n
   return pair.answer;
 }
 
+std::uint32_t Pair::slice_size() const noexcept { return implementation_->slice.size(); }
 const Shape& Pair::a() const noexcept { return *implementation_->a; }
 const Shape& Pair::b() const noexcept { return *implementation_->b; }
-void Pair::reset() noexcept { implementation_->answer = {}; }
+void Pair::reset() noexcept {
+  implementation_->answer = {};
+  implementation_->slice.reset();
+  implementation_->has_witness = false;
+}
 
 }  // namespace odds::query

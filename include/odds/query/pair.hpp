@@ -13,8 +13,9 @@
 namespace odds::query {
 
 struct PairOptions {
-  std::uint32_t queue_capacity = 4096;  ///< pairs of nodes in the priority queue, 64 .. 2^20
-  std::uint32_t hit_capacity = 256;     ///< intersecting triangle pairs kept for contacts, 8 .. 65536
+  std::uint32_t queue_capacity = 4096;   ///< pairs of nodes in the priority queue, 64 .. 2^20
+  std::uint32_t slice_capacity = 16384;  ///< nodes of the test tree kept by the incremental method, 64 .. 2^24
+  std::uint32_t hit_capacity = 256;      ///< intersecting triangle pairs kept for contacts, 8 .. 65536
 };
 
 /// A workspace for queries between two shapes. All memory is taken in `make`; `run` never allocates, locks, throws or
@@ -36,6 +37,8 @@ class Pair {
 
   [[nodiscard]] const Shape& a() const noexcept;
   [[nodiscard]] const Shape& b() const noexcept;
+  /// Pairs of nodes in the bottom slice that the incremental method keeps; 1 (the roots) before its first run.
+  [[nodiscard]] std::uint32_t slice_size() const noexcept;
   /// Forgets coherence (last hit, bottom slice, last normal), as if the pair were new.
   void reset() noexcept;
 

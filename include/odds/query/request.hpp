@@ -22,11 +22,11 @@ enum class EstimatorKind : std::uint8_t {
 struct Request {
   Method method = Method::time_critical;
   EstimatorKind estimator = EstimatorKind::kinematic;
-  Budget budget;
-  double p_min = 1.0;        ///< in (0, 1]; 1: never stop on probability. A pair of nodes with p >= p_min counts ...
-  std::uint32_t k_min = 10;  ///< ... and k_min such pairs end the query with an estimated hit (>= 1)
-  int max_contacts = 1;      ///< 0 .. 8; 0: verdict only
-  bool polygon_free = false; ///< leaves are judged by probability >= 0.5 instead of by their triangles (footnote 6)
+  Budget budget = {};
+  double p_min = 1.0;         ///< in (0, 1]; 1: never stop on probability. A pair of nodes with p >= p_min counts ...
+  std::uint32_t k_min = 10;   ///< ... and k_min such pairs end the query with an estimated hit (>= 1)
+  int max_contacts = 1;       ///< 0 .. 8; 0: verdict only
+  bool polygon_free = false;  ///< leaves are judged by probability >= 0.5 instead of by their triangles (footnote 6)
 };
 
 }  // namespace odds::query

@@ -1,0 +1,75 @@
+// The incremental search against a fresh one, along coherent motions.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "odds/query/pair.hpp"
+#include "support/shapes.hpp"
+
+namespace odds::query {
+namespace {
+
+class Incremental : public ::testing::TestWithParam<std::tuple<volume::Kind, std::uint32_t>> {};
+
+TEST_P(Incremental, GivesTheVerdictsOfAFreshSearch) {
+  const auto [kind, capacity] = GetParam();
+  const auto shape = Shape::build(test::wavy_sphere(20), {.volume = kind}).value();
+  auto kept = std::move(Pair::make(shape, shape, {.slice_capacity = capacity})).value();
+  auto fresh = std::move(Pair::make(shape, shape)).value();
+  std::mt19937 generator(11);
+  std::normal_distribution<double> normal;
+  Quat rotation = Quat(1, 0.2, 0.3, 0.4).normalized();
+  Vec3 offset(2.05, 0, 0);
+  int hits = 0;
+  std::uint64_t kept_work = 0;
+  std::uint64_t fresh_work = 0;
+  constexpr int steps = 2000;
+  for (int step = 0; step < steps; ++step) {
+    const Vec3 turn = 1e-3 * Vec3(normal(generator), normal(generator), normal(generator));
+    rotation = (rotation * Quat(1, turn[0], turn[1], turn[2])).normalized();
+    offset += 1e-3 * Vec3(normal(generator), normal(generator), normal(generator));
+    offset *= (1.96 + 0.12 * std::sin(step / 150.0)) / offset.norm();  // in and out of contact
+    const auto pose = math::Pose::from_quaternion(offset, rotation);
+    const Answer a = kept.run(pose, {.method = Method::incremental});
+    const Answer b = fresh.run(pose, {.method = Method::exact});
+    ASSERT_EQ(a.verdict, b.verdict) << "step " << step;
+    ASSERT_EQ(a.basis, Basis::proved);
+    hits += a.verdict == Verdict::hit ? 1 : 0;
+    kept_work += a.cost.node_pairs + a.cost.triangle_pairs;
+    fresh_work += b.cost.node_pairs + b.cost.triangle_pairs;
+  }
+  EXPECT_GT(hits, steps / 10) << "the motion must touch and part";
+  EXPECT_LT(hits, steps * 9 / 10);
+  if (capacity > 1000) {
+    EXPECT_LT(kept_work, fresh_work) << "coherence must pay";
+  }
+}
+
+TEST_P(Incremental, SurvivesABudgetThatEndsItAnywhere) {
+  const auto [kind, capacity] = GetParam();
+  const auto shape = Shape::build(test::wavy_sphere(16), {.volume = kind}).value();
+  auto kept = std::move(Pair::make(shape, shape, {.slice_capacity = capacity})).value();
+  auto fresh = std::move(Pair::make(shape, shape)).value();
+  for (std::uint64_t units = 1; units < 600; ++units) {
+    const math::Pose pose{Mat3::Identity(), Vec3(2.1 - 5e-4 * static_cast<double>(units), 0.1, 0)};
+    const Answer a = kept.run(pose, {.method = Method::incremental, .budget = Budget::work(units)});
+    EXPECT_LE(a.cost.node_pairs + a.cost.triangle_pairs, units);
+    if (a.basis == Basis::proved) {
+      EXPECT_EQ(a.verdict, fresh.run(pose, {.method = Method::exact}).verdict);
+    }
+    const Answer whole = kept.run(pose, {.method = Method::incremental});
+    ASSERT_EQ(whole.verdict, fresh.run(pose, {.method = Method::exact}).verdict) << units;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(AllVolumes, Incremental,
+                         ::testing::Combine(::testing::Values(volume::Kind::aabb, volume::Kind::obb,
+                                                              volume::Kind::sphere),
+                                            ::testing::Values(64U, 16384U)),
+                         [](const auto& tested) {
+                           return std::string(volume::name(std::get<0>(tested.param))) + "_" +
+                                  std::to_string(std::get<1>(tested.param));
+                         });
+
+}  // namespace
+}  // namespace odds::query
