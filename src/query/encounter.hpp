@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "odds/primitive/triangle_triangle.hpp"
 #include "odds/probability/kinematic.hpp"
 #include "odds/query/answer.hpp"
 #include "odds/query/contact_patch.hpp"
 #include "odds/query/request.hpp"
 #include "odds/tree/hierarchy.hpp"
 #include "query/bucket_queue.hpp"
-#include "query/leaf_test.hpp"
 #include "query/spending.hpp"
 
 namespace odds::query {
@@ -109,7 +109,7 @@ class Encounter {
           return Progressed::spent;
         }
         ++tested;
-        if (triangles_meet(a_.corners()[ta].data(), moved.data())) {
+        if (primitive::triangles_intersect(a_.corners()[ta].data(), moved.data())) {
           hits.add({ta, tb});
           if (hits.full(wanted)) {
             spending.spend_triangle_pairs(tested);
@@ -126,7 +126,7 @@ class Encounter {
   /// The exact test of one pair of triangles, given in leaf order.
   [[nodiscard]] bool triangles_meet_now(TrianglePair pair) const noexcept {
     const tree::TriangleCorners moved = in_a(pair.b);
-    return triangles_meet(a_.corners()[pair.a].data(), moved.data());
+    return primitive::triangles_intersect(a_.corners()[pair.a].data(), moved.data());
   }
 
   [[nodiscard]] tree::TriangleCorners in_a(std::uint32_t leaf_triangle_b) const noexcept {
