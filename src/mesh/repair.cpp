@@ -1,0 +1,220 @@
+#include "odds/mesh/repair.hpp"
+
+#include <limits>
+#include <utility>
+
+#include "mesh/adjacency.hpp"
+
+namespace odds::mesh {
+namespace {
+
+class Bench {
+ public:
+  explicit Bench(const TriangleMesh& mesh)
+      : vertices_(mesh.vertices().begin(), mesh.vertices().end()),
+        triangles_(mesh.triangles().begin(), mesh.triangles().end()) {}
+
+  void weld() {
+    const std::vector<std::uint32_t> first = first_at_position(vertices_);
+    std::vector<bool> counted(vertices_.size(), false);
+    for (Triangle& t : triangles_) {
+      for (std::uint32_t& vertex : t) {
+        if (first[vertex] != vertex && !counted[vertex]) {
+          counted[vertex] = true;
+          ++log_.welded_vertices;
+        }
+        vertex = first[vertex];
+      }
+    }
+  }
+
+  void drop_degenerate() {
+    log_.dropped_degenerate = std::erase_if(triangles_, [&](const Triangle& t) {
+      return has_zero_area(vertices_[t[0]], vertices_[t[1]], vertices_[t[2]]);
+    });
+  }
+
+  void drop_duplicates() {
+    const std::vector<std::uint32_t> later = later_duplicates(triangles_);
+    std::size_t kept = 0;
+    std::size_t next = 0;
+    for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
+      if (next < later.size() && later[next] == i) {
+        ++next;
+      } else {
+        triangles_[kept++] = triangles_[i];
+      }
+    }
+    triangles_.resize(kept);
+    log_.dropped_duplicates = later.size();
+  }
+
+  void orient() {
+    find_components();
+    std::vector<bool> turn(triangles_.size(), false);
+    for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
+      const Component& own = components_[component_of_[i]];
+      if (!own.orientable) continue;
+      const bool majority_odd = 2 * own.odd > own.triangles;
+      turn[i] = odd_[i] != majority_odd;
+    }
+    judge_volumes(turn);
+    for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
+      if (turn[i] == components_[component_of_[i]].inside_out) continue;
+      std::swap(triangles_[i][1], triangles_[i][2]);
+      ++log_.turned_triangles;
+    }
+  }
+
+  void drop_unused() {
+    constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
+    std::vector<std::uint32_t> place(vertices_.size(), unused);
+    for (const Triangle& t : triangles_) {
+      for (const std::uint32_t vertex : t) place[vertex] = 0;
+    }
+    std::uint32_t kept = 0;
+    for (std::size_t i = 0; i < vertices_.size(); ++i) {
+      if (place[i] == unused) continue;
+      vertices_[kept] = vertices_[i];
+      place[i] = kept++;
+    }
+    log_.dropped_vertices = vertices_.size() - kept;
+    vertices_.resize(kept);
+    for (Triangle& t : triangles_) {
+      for (std::uint32_t& vertex : t) vertex = place[vertex];
+    }
+  }
+
+  Result<Repaired> finish(const std::string& name) {
+    if (triangles_.empty()) {
+      return Error{name, "", "no triangle is left: all have zero area", "check the file's coordinates and units"};
+    }
+    Result<TriangleMesh> mesh = TriangleMesh::make(std::move(vertices_), std::move(triangles_), name);
+    if (!mesh.ok()) return mesh.error();
+    return Repaired{std::move(mesh).value(), log_};
+  }
+
+ private:
+  struct Component {
+    std::size_t triangles = 0;
+    std::size_t odd = 0;
+    bool orientable = true;
+    bool closed = true;
+    bool inside_out = false;
+    double six_volumes = 0.0;
+    Vec3 lower = Vec3::Constant(std::numeric_limits<double>::infinity());
+    Vec3 upper = Vec3::Constant(-std::numeric_limits<double>::infinity());
+  };
+
+  /// Positions, not indices, decide who is whose neighbour, whether or not the mesh was welded.
+  void find_components() {
+    const std::vector<std::uint32_t> first = first_at_position(vertices_);
+    std::vector<Triangle> by_position;
+    by_position.reserve(triangles_.size());
+    for (const Triangle& t : triangles_) by_position.push_back({first[t[0]], first[t[1]], first[t[2]]});
+    const std::vector<EdgeUse> uses = sorted_edge_uses(by_position);
+    ParitySets sets(triangles_.size());
+    std::vector<std::uint32_t> open;
+    std::vector<std::uint32_t> twisted;
+    for_each_edge(uses, [&](std::span<const EdgeUse> edge) {
+      if (edge.size() != 2) {
+        for (const EdgeUse& use : edge) open.push_back(use.triangle);
+      } else if (!sets.join(edge[0].triangle, edge[1].triangle, edge[0].forward == edge[1].forward)) {
+        twisted.push_back(edge[0].triangle);
+      }
+    });
+    std::vector<std::uint32_t> number(triangles_.size(), 0);
+    component_of_.resize(triangles_.size());
+    odd_.resize(triangles_.size());
+    for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
+      const ParitySets::Place place = sets.find(i);
+      if (place.root == i) {  // a root is the least index of its set
+        number[i] = static_cast<std::uint32_t>(components_.size());
+        components_.emplace_back();
+      }
+      component_of_[i] = number[place.root];
+      odd_[i] = place.odd;
+      ++components_[component_of_[i]].triangles;
+      components_[component_of_[i]].odd += place.odd ? 1 : 0;
+    }
+    for (const std::uint32_t i : open) components_[component_of_[i]].closed = false;
+    for (const std::uint32_t i : twisted) components_[component_of_[i]].orientable = false;
+    for (const Component& component : components_) log_.unorientable_components += component.orientable ? 0 : 1;
+  }
+
+  /// Marks closed components that face inwards, except cavities.
+  void judge_volumes(const std::vector<bool>& turn) {
+    for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
+      Component& own = components_[component_of_[i]];
+      for (const std::uint32_t vertex : triangles_[i]) {
+        own.lower = own.lower.cwiseMin(vertices_[vertex]);
+        own.upper = own.upper.cwiseMax(vertices_[vertex]);
+      }
+    }
+    for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
+      Component& own = components_[component_of_[i]];
+      const Vec3 middle = 0.5 * (own.lower + own.upper);
+      const Triangle& t = triangles_[i];
+      const Vec3 a = vertices_[t[0]] - middle;
+      const double sixfold = a.dot((vertices_[t[1]] - middle).cross(vertices_[t[2]] - middle));
+      own.six_volumes += turn[i] ? -sixfold : sixfold;
+    }
+    for (Component& component : components_) {
+      if (!component.closed || !component.orientable || component.six_volumes >= 0.0) continue;
+      if (lies_in_another(component)) {
+        ++log_.cavities_kept;
+      } else {
+        component.inside_out = true;
+        ++log_.turned_components;
+      }
+    }
+  }
+
+  /// By boxes: a closed component that encloses this one's box may be the wall of its cavity.
+  [[nodiscard]] bool lies_in_another(const Component& inner) const {
+    for (const Component& outer : components_) {
+      if (!outer.closed || &outer == &inner) continue;
+      if ((outer.lower.array() < inner.lower.array()).all() && (outer.upper.array() > inner.upper.array()).all())
+        return true;
+    }
+    return false;
+  }
+
+  std::vector<Vec3> vertices_;
+  std::vector<Triangle> triangles_;
+  std::vector<Component> components_;
+  std::vector<std::uint32_t> component_of_;
+  std::vector<bool> odd_;
+  RepairLog log_;
+};
+
+}  // namespace
+
+std::vector<std::string> RepairLog::lines() const {
+  std::vector<std::string> text;
+  const auto add = [&](std::size_t count, const char* what) {
+    if (count > 0) text.push_back(std::to_string(count) + " " + what);
+  };
+  add(welded_vertices, "vertices welded to an earlier one at exactly the same position");
+  add(dropped_degenerate, "degenerate triangles dropped");
+  add(dropped_duplicates, "duplicate triangles dropped");
+  add(turned_triangles, "triangles turned over to agree with their neighbours or to face outwards");
+  add(turned_components, "closed components were inside out and now face outwards");
+  add(cavities_kept, "closed components face inwards inside another one and were left so, as cavities");
+  add(unorientable_components, "components cannot be oriented and were left as they are");
+  add(dropped_vertices, "unused vertices dropped");
+  if (text.empty()) text.emplace_back("nothing to repair");
+  return text;
+}
+
+Result<Repaired> repair(const TriangleMesh& mesh, const RepairOptions& options) {
+  Bench bench(mesh);
+  if (options.weld) bench.weld();
+  if (options.drop_degenerate) bench.drop_degenerate();
+  if (options.drop_duplicates) bench.drop_duplicates();
+  if (options.orient) bench.orient();
+  if (options.drop_unused) bench.drop_unused();
+  return bench.finish(mesh.name());
+}
+
+}  // namespace odds::mesh

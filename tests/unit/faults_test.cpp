@@ -1,0 +1,209 @@
+#include "odds/mesh/faults.hpp"
+
+#include <gtest/gtest.h>
+
+#include "odds/mesh/made/box.hpp"
+#include "odds/mesh/made/by_name.hpp"
+#include "odds/mesh/repair.hpp"
+
+namespace odds::mesh {
+namespace {
+
+TriangleMesh mesh_of(std::vector<Vec3> vertices, std::vector<Triangle> triangles) {
+  return TriangleMesh::make(std::move(vertices), std::move(triangles)).value();
+}
+
+const std::vector<Vec3> tetrahedron = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+const std::vector<Triangle> tetrahedron_faces = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
+
+/// Every triangle with its own three vertices, as in STL files.
+TriangleMesh soup_of(const TriangleMesh& mesh) {
+  std::vector<Vec3> vertices;
+  std::vector<Triangle> triangles;
+  for (const Triangle& t : mesh.triangles()) {
+    const auto first = static_cast<std::uint32_t>(vertices.size());
+    for (const std::uint32_t i : t) vertices.push_back(mesh.vertices()[i]);
+    triangles.push_back({first, first + 1, first + 2});
+  }
+  return mesh_of(vertices, triangles);
+}
+
+TEST(ZeroArea, IsExactWhereRoundingWouldDecideWrongly) {
+  EXPECT_TRUE(has_zero_area({0, 0, 0}, {1, 1, 1}, {3, 3, 3}));
+  EXPECT_TRUE(has_zero_area({0.1, 0.2, 0.3}, {0.1, 0.2, 0.3}, {1, 2, 3}));
+  EXPECT_FALSE(has_zero_area({0, 0, 0}, {1, 0, 0}, {0, 1e-300, 0}));
+  // Near 1e15 the cross product in doubles is dominated by its error; the points are one unit in the last place off a
+  // line.
+  const double big = 1e15;
+  EXPECT_TRUE(has_zero_area({big, big, 0}, {big - 1, big - 1, 0}, {big - 3, big - 3, 0}));
+  EXPECT_FALSE(has_zero_area({big, big, 0}, {big - 1, big - 1, 0}, {big - 3, big - 3.125, 0}));
+  // (0.1, 0.1), (0.2, 0.2), (0.3, 0.3) lie on the diagonal exactly; moving one coordinate by its last bit leaves it.
+  EXPECT_TRUE(has_zero_area({0.1, 0.1, 7}, {0.2, 0.2, 7}, {0.3, 0.3, 7}));
+  EXPECT_FALSE(has_zero_area({0.1, 0.1, 7}, {0.2, 0.2, 7}, {0.3, std::nextafter(0.3, 1.0), 7}));
+  // 3 * 0.1, 3 * 0.2 and 3 * 0.3 round differently: the points are off the line by the rounding and nothing else.
+  EXPECT_FALSE(has_zero_area({0.1, 3 * 0.1, 0}, {0.2, 3 * 0.2, 0}, {0.3, 3 * 0.3, 0}));
+  EXPECT_FALSE(has_zero_area({0, 0, 0}, {3e-200, 0, 0}, {0, 2e-200, 1e-200}));
+  EXPECT_TRUE(has_zero_area({0, 0, 0}, {3e-200, 6e-200, 0}, {6e-200, 1.2e-199, 0}));
+  EXPECT_FALSE(has_zero_area({0, 0, 0}, {0, 1e-200, 0}, {1e-200, 1, 0}));
+}
+
+TEST(Faults, ACleanBoxHasNoneWhetherIndicesAreSharedOrNot) {
+  const TriangleMesh box = made::make(made::Box{.x = 1, .y = 2, .z = 3, .cells = 3}).value();
+  for (const TriangleMesh& mesh : {box, soup_of(box)}) {
+    const Faults faults = find_faults(mesh);
+    EXPECT_TRUE(faults.closed);
+    EXPECT_TRUE(faults.manifold);
+    EXPECT_TRUE(faults.orientable);
+    EXPECT_TRUE(faults.clean());
+    EXPECT_EQ(faults.components, 1u);
+    EXPECT_NEAR(faults.area, 22.0, 1e-12);
+    ASSERT_TRUE(faults.volume.has_value());
+    EXPECT_NEAR(*faults.volume, 6.0, 1e-12);
+  }
+  EXPECT_EQ(find_faults(box).duplicate_vertex.count, 0u);
+  EXPECT_EQ(find_faults(soup_of(box)).duplicate_vertex.count, 3 * box.triangles().size() - box.vertices().size());
+}
+
+TEST(Faults, NamesWhatIsWrong) {
+  auto vertices = tetrahedron;
+  vertices.push_back({-0.0, 0, 0});  // equals vertex 0, for 0 == -0
+  vertices.push_back({9, 9, 9});     // unused
+  vertices.push_back({0.5, 0, 0});
+  auto faces = tetrahedron_faces;
+  faces.push_back({1, 4, 2});  // the first face again, turned and by another index
+  faces.push_back({0, 6, 1});  // on a line
+  faces.push_back({0, 4, 3});  // two corners at one place
+  const Faults faults = find_faults(mesh_of(vertices, faces));
+  EXPECT_EQ(faults.duplicate.examples, std::vector<std::uint32_t>({4}));
+  EXPECT_EQ(faults.degenerate.examples, std::vector<std::uint32_t>({5, 6}));
+  EXPECT_EQ(faults.unused_vertex.examples, std::vector<std::uint32_t>({5}));
+  EXPECT_EQ(faults.duplicate_vertex.examples, std::vector<std::uint32_t>({4}));
+  EXPECT_FALSE(faults.manifold);
+  EXPECT_FALSE(faults.clean());
+}
+
+TEST(Faults, AHoleIsABoundary) {
+  const Faults faults = find_faults(mesh_of(tetrahedron, {tetrahedron_faces.begin(), tetrahedron_faces.end() - 1}));
+  EXPECT_FALSE(faults.closed);
+  EXPECT_TRUE(faults.manifold);
+  EXPECT_EQ(faults.boundary.count, 3u);
+  EXPECT_EQ(faults.boundary.examples.front(), (Edge{0, 2}));
+  EXPECT_FALSE(faults.volume.has_value());
+}
+
+TEST(Faults, ATurnedTriangleIsInconsistentButOrientable) {
+  auto faces = tetrahedron_faces;
+  std::swap(faces[2][0], faces[2][1]);
+  const Faults faults = find_faults(mesh_of(tetrahedron, faces));
+  EXPECT_TRUE(faults.orientable);
+  EXPECT_EQ(faults.inconsistent.count, 3u);
+  EXPECT_FALSE(faults.volume.has_value());
+}
+
+TEST(Faults, AMoebiusStripIsNotOrientable) {
+  std::vector<Vec3> vertices;
+  std::vector<Triangle> faces;
+  constexpr std::uint32_t count = 12;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const double angle = 2.0 * 3.14159265358979 * i / count;
+    for (const double side : {-0.3, 0.3}) {
+      const double r = 1.0 + side * std::cos(0.5 * angle);
+      vertices.push_back({r * std::cos(angle), r * std::sin(angle), side * std::sin(0.5 * angle)});
+    }
+  }
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t a = 2 * i;
+    const bool last = i + 1 == count;  // after one turn the sides have changed places
+    const std::uint32_t c = last ? 1 : a + 2;
+    const std::uint32_t d = last ? 0 : a + 3;
+    faces.push_back({a, a + 1, d});
+    faces.push_back({a, d, c});
+  }
+  const TriangleMesh strip = mesh_of(vertices, faces);
+  const Faults faults = find_faults(strip);
+  EXPECT_FALSE(faults.orientable);
+  EXPECT_TRUE(faults.manifold);
+  EXPECT_EQ(faults.components, 1u);
+  const auto repaired = repair(strip).value();
+  EXPECT_EQ(repaired.log.unorientable_components, 1u);
+  EXPECT_EQ(repaired.log.turned_triangles, 0u);
+}
+
+TEST(Faults, TwoSolidsThatShareACornerOrAnEdgeAreNotManifold) {
+  auto corner = tetrahedron;
+  auto corner_faces = tetrahedron_faces;
+  for (const Vec3& v : tetrahedron) corner.push_back(-v);
+  for (const Triangle& t : tetrahedron_faces) corner_faces.push_back({t[0] + 4, t[2] + 4, t[1] + 4});
+  const Faults at_corner = find_faults(mesh_of(corner, corner_faces));
+  EXPECT_EQ(at_corner.non_manifold_vertex.examples, std::vector<std::uint32_t>({0}));
+  EXPECT_EQ(at_corner.non_manifold.count, 0u);
+  EXPECT_EQ(at_corner.components, 2u);
+  EXPECT_FALSE(at_corner.manifold);
+
+  auto edge = tetrahedron;
+  auto edge_faces = tetrahedron_faces;
+  for (const Vec3& v : tetrahedron) edge.push_back({-v.x(), -v.y(), v.z()});
+  for (const Triangle& t : tetrahedron_faces) edge_faces.push_back({t[0] + 4, t[1] + 4, t[2] + 4});
+  const Faults at_edge = find_faults(mesh_of(edge, edge_faces));
+  EXPECT_EQ(at_edge.non_manifold.examples, std::vector<Edge>({{0, 3}}));
+  EXPECT_TRUE(at_edge.closed);
+  EXPECT_EQ(at_edge.components, 1u);
+}
+
+TEST(Faults, SliversAreCountedByHeightOverLength) {
+  const Faults faults =
+      find_faults(mesh_of({{0, 0, 0}, {1, 0, 0}, {0.5, 1e-4, 0}, {0.5, 1, 0}}, {{0, 1, 2}, {0, 1, 3}}));
+  EXPECT_EQ(faults.sliver.examples, std::vector<std::uint32_t>({0}));
+  EXPECT_EQ(faults.degenerate.count, 0u);
+}
+
+TEST(Faults, UnitsHintSpeaksOnlyWhereSizesAreOdd) {
+  EXPECT_TRUE(units_hint(made::make_shape("box").value()).empty());
+  EXPECT_NE(units_hint(made::make_shape("box:x=100").value()).find("millimetres"), std::string::npos);
+  EXPECT_FALSE(units_hint(made::make_shape("box:x=1e-5,y=1e-5,z=1e-5").value()).empty());
+  EXPECT_NE(units_hint(mesh_of({{1e6, 0, 0}, {1e6 + 1, 0, 0}, {1e6, 1, 0}}, {{0, 1, 2}})).find("origin"),
+            std::string::npos);
+}
+
+TEST(Repair, MakesASoupWithTurnedTrianglesWholeAgain) {
+  const TriangleMesh torus = made::make_shape("torus:around=24,across=12").value();
+  std::vector<Triangle> faces(torus.triangles().begin(), torus.triangles().end());
+  for (std::size_t i = 0; i < faces.size(); i += 3) std::swap(faces[i][0], faces[i][1]);
+  faces.push_back(faces[7]);
+  const TriangleMesh broken = soup_of(mesh_of({torus.vertices().begin(), torus.vertices().end()}, faces));
+  const auto repaired = repair(broken).value();
+  const Faults faults = find_faults(repaired.mesh);
+  EXPECT_TRUE(faults.clean());
+  EXPECT_TRUE(faults.closed);
+  EXPECT_NEAR(faults.volume.value(), find_faults(torus).volume.value(), 1e-12);
+  EXPECT_EQ(repaired.mesh.vertices().size(), torus.vertices().size());
+  EXPECT_EQ(repaired.log.dropped_duplicates, 1u);
+  EXPECT_EQ(repaired.log.turned_triangles, (torus.triangles().size() + 2) / 3);
+  EXPECT_EQ(repaired.log.lines().size(), 4u);
+}
+
+TEST(Repair, TurnsASolidThatIsInsideOutButKeepsCavities) {
+  auto inside_out = tetrahedron_faces;
+  for (Triangle& t : inside_out) std::swap(t[0], t[1]);
+  const auto turned = repair(mesh_of(tetrahedron, inside_out)).value();
+  EXPECT_EQ(turned.log.turned_components, 1u);
+  EXPECT_NEAR(find_faults(turned.mesh).volume.value(), 1.0 / 6.0, 1e-15);
+
+  const TriangleMesh hollow = made::make_shape("nested_shells:frequency=4").value();
+  const auto kept = repair(hollow).value();
+  EXPECT_EQ(kept.log.cavities_kept, 1u);
+  EXPECT_FALSE(kept.log.changed());
+}
+
+TEST(Repair, SaysSoWhenThereIsNothingToDo) {
+  const auto repaired = repair(made::make_shape("gear").value()).value();
+  EXPECT_FALSE(repaired.log.changed());
+  EXPECT_EQ(repaired.log.lines(), std::vector<std::string>({"nothing to repair"}));
+}
+
+TEST(Repair, RefusesToReturnNothing) {
+  EXPECT_FALSE(repair(mesh_of({{0, 0, 0}, {1, 1, 1}, {2, 2, 2}}, {{0, 1, 2}})).ok());
+}
+
+}  // namespace
+}  // namespace odds::mesh
