@@ -1,16 +1,10 @@
+// Checks that make a TriangleMesh valid by existing.
 #include "odds/mesh/triangle_mesh.hpp"
 
 #include <cmath>
 #include <limits>
 
 namespace odds::mesh {
-namespace {
-
-// Beyond this, squares of products of coordinates (degree 6 in the exact predicates) leave the range of doubles.
-constexpr double largest_coordinate = 1e15;
-constexpr std::size_t largest_count = std::size_t{1} << 30;
-
-}  // namespace
 
 Result<TriangleMesh> TriangleMesh::make(std::vector<Vec3> vertices, std::vector<Triangle> triangles, std::string name) {
   if (triangles.empty()) return Error{name, "", "the mesh has no triangle", "give a file with at least one face"};
@@ -23,7 +17,8 @@ Result<TriangleMesh> TriangleMesh::make(std::vector<Vec3> vertices, std::vector<
       return Error{name, "vertex " + std::to_string(i), "a coordinate is not finite", "remove or correct that vertex"};
     }
     if (v.cwiseAbs().maxCoeff() > largest_coordinate) {
-      return Error{name, "vertex " + std::to_string(i), "a coordinate exceeds 1e15 m", "check the file's unit of length"};
+      return Error{name, "vertex " + std::to_string(i), "a coordinate exceeds 1e15 m",
+                   "check the file's unit of length"};
     }
   }
   constexpr double infinity = std::numeric_limits<double>::infinity();

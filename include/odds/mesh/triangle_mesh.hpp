@@ -19,13 +19,21 @@ using Triangle = std::array<std::uint32_t, 3>;  ///< three vertex indices, count
 /// them); `mesh::find_faults` tells. Coordinates in metres, in the mesh's own frame. Thread-safe to share.
 class TriangleMesh {
  public:
+  /// Greatest magnitude of a coordinate, metres: beyond it the exact predicates (degree 6) leave the range of doubles.
+  static constexpr double largest_coordinate = 1e15;
+  /// Greatest number of vertices, and of triangles.
+  static constexpr std::size_t largest_count = std::size_t{1} << 30;
+
   /// Checks and takes the arrays. `name` stands in error messages (usually the file).
-  static Result<TriangleMesh> make(std::vector<Vec3> vertices, std::vector<Triangle> triangles, std::string name = "mesh");
+  static Result<TriangleMesh> make(std::vector<Vec3> vertices, std::vector<Triangle> triangles,
+                                   std::string name = "mesh");
 
   [[nodiscard]] std::span<const Vec3> vertices() const noexcept { return vertices_; }
   [[nodiscard]] std::span<const Triangle> triangles() const noexcept { return triangles_; }
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
-  [[nodiscard]] const Vec3& lower() const noexcept { return lower_; }  ///< least corner of the bounding box of used vertices
+  [[nodiscard]] const Vec3& lower() const noexcept {
+    return lower_;
+  }  ///< least corner of the bounding box of used vertices
   [[nodiscard]] const Vec3& upper() const noexcept { return upper_; }  ///< greatest corner
   /// Length of the bounding box's diagonal, the "size" that relative distances in reports refer to.
   [[nodiscard]] double size() const noexcept { return (upper_ - lower_).norm(); }
