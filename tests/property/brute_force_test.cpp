@@ -1,0 +1,144 @@
+// Searches against every triangle with every triangle: other places, scales, orders of arguments and of triangles.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "odds/primitive/triangle_triangle.hpp"
+#include "odds/query/pair.hpp"
+#include "support/near_poses.hpp"
+#include "support/shapes.hpp"
+
+namespace odds::query {
+namespace {
+
+constexpr Method methods[] = {Method::exact, Method::time_critical, Method::incremental};
+
+using Mesh = std::shared_ptr<const mesh::TriangleMesh>;
+
+Mesh changed(const mesh::TriangleMesh& mesh, double scale, const Vec3& offset, std::uint32_t rotate_triangles) {
+  std::vector<Vec3> vertices(mesh.vertices().begin(), mesh.vertices().end());
+  for (Vec3& vertex : vertices) vertex = scale * vertex + offset;
+  std::vector<mesh::Triangle> triangles(mesh.triangles().begin(), mesh.triangles().end());
+  std::rotate(triangles.begin(), triangles.begin() + rotate_triangles, triangles.end());
+  return std::make_shared<const mesh::TriangleMesh>(
+      std::move(mesh::TriangleMesh::make(std::move(vertices), std::move(triangles))).value());
+}
+
+bool brute_force(const mesh::TriangleMesh& a, const mesh::TriangleMesh& b, const math::Pose& pose) {
+  std::vector<Vec3> moved;
+  for (const Vec3& vertex : b.vertices()) moved.push_back(pose * vertex);
+  for (const mesh::Triangle& tb : b.triangles()) {
+    const Vec3 corners_b[3] = {moved[tb[0]], moved[tb[1]], moved[tb[2]]};
+    for (const mesh::Triangle& ta : a.triangles()) {
+      const Vec3 corners_a[3] = {a.vertices()[ta[0]], a.vertices()[ta[1]], a.vertices()[ta[2]]};
+      if (primitive::triangles_intersect(corners_a, corners_b)) return true;
+    }
+  }
+  return false;
+}
+
+Pair pair_of(const Mesh& a, const Mesh& b, volume::Kind kind) {
+  return std::move(Pair::make(Shape::build(a, {.volume = kind}).value(), Shape::build(b, {.volume = kind}).value()))
+      .value();
+}
+
+class AgainstBruteForce : public ::testing::TestWithParam<volume::Kind> {
+ protected:
+  Mesh a_ = test::wavy_sphere(8, 0.3);
+  Mesh b_ = test::wavy_sphere(6, 0.2);
+  std::mt19937_64 generator_{42};
+
+  test::TouchingPose touching() {
+    return test::touching_pose(generator_, Vec3::Zero(), Vec3::Zero(), 3.0,
+                               [&](const math::Pose& pose) { return brute_force(*a_, *b_, pose); });
+  }
+};
+
+TEST_P(AgainstBruteForce, AgreesInEveryBandAndBothOrders) {
+  Pair ab = pair_of(a_, b_, GetParam());
+  Pair ba = pair_of(b_, a_, GetParam());
+  int hits = 0;
+  int queries = 0;
+  for (int i = 0; i < 16; ++i) {
+    const auto start = touching();
+    for (const double band : {0.1, 1e-3, 1e-6, 1e-9, -1e-9, -1e-6, -1e-3, -0.1}) {
+      math::Pose pose = start.pose;
+      pose.translation += band * start.direction;
+      const bool expected = brute_force(*a_, *b_, pose);
+      ++queries;
+      hits += expected ? 1 : 0;
+      for (const Method method : methods) {
+        ASSERT_EQ(ab.run(pose, {.method = method}).verdict == Verdict::hit, expected) << i << " " << band;
+        ASSERT_EQ(ba.run(pose.inverse(), {.method = method}).verdict == Verdict::hit, expected) << i << " " << band;
+      }
+    }
+  }
+  EXPECT_GT(hits, queries / 4);
+  EXPECT_LT(hits, queries * 3 / 4);
+}
+
+TEST_P(AgainstBruteForce, NothingChangesWithScaleOrOrderOfTriangles) {
+  for (const double scale : {0x1p-40, 1.0, 0x1p40}) {
+    const Mesh big_a = changed(*a_, scale, Vec3::Zero(), 17);
+    const Mesh big_b = changed(*b_, scale, Vec3::Zero(), 5);
+    Pair pair = pair_of(big_a, big_b, GetParam());
+    for (int i = 0; i < 10; ++i) {
+      const auto start = touching();
+      for (const double band : {1e-7, -1e-7}) {
+        math::Pose pose = start.pose;
+        pose.translation += band * start.direction;
+        const bool expected = brute_force(*a_, *b_, pose);
+        pose.translation *= scale;
+        for (const Method method : methods) {
+          ASSERT_EQ(pair.run(pose, {.method = method}).verdict == Verdict::hit, expected) << scale << " " << band;
+        }
+      }
+    }
+  }
+}
+
+TEST_P(AgainstBruteForce, NoContactIsMissedFarFromTheOrigin) {
+  // Coordinates of a map: 4.7e6 m away, where single precision resolves half a metre.
+  const Vec3 offset_a(659531.25, 4751300.5, 809.0);
+  const Vec3 offset_b(-312345.75, 100.5, 7e6);
+  const Mesh far_a = changed(*a_, 1.0, offset_a, 0);
+  const Mesh far_b = changed(*b_, 1.0, offset_b, 0);
+  Pair pair = pair_of(far_a, far_b, GetParam());
+  for (int i = 0; i < 10; ++i) {
+    const auto start = touching();
+    for (const double band : {1e-5, -1e-5}) {  // rounding of such coordinates is about 1e-9 m, of the rotation 1e-9 m
+      math::Pose pose = start.pose;
+      pose.translation += band * start.direction;
+      const bool expected = brute_force(*a_, *b_, pose);
+      pose.translation += offset_a - pose.rotation * offset_b;
+      for (const Method method : methods) {
+        ASSERT_EQ(pair.run(pose, {.method = method}).verdict == Verdict::hit, expected) << i << " " << band;
+      }
+    }
+  }
+}
+
+TEST_P(AgainstBruteForce, MoreBudgetNeverUndoesAProof) {
+  Pair pair = pair_of(a_, b_, GetParam());
+  for (int i = 0; i < 10; ++i) {
+    auto start = touching();
+    start.pose.translation -= 1e-4 * start.direction;
+    bool proved = false;
+    for (std::uint64_t units = 1; units <= 4096; units *= 2) {
+      const Answer& answer = pair.run(start.pose, {.method = Method::time_critical, .budget = Budget::work(units)});
+      EXPECT_FALSE(proved && answer.basis != Basis::proved);
+      if (answer.basis == Basis::proved) {
+        EXPECT_EQ(answer.verdict, Verdict::hit);
+        proved = true;
+      }
+    }
+    EXPECT_TRUE(proved);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(AllVolumes, AgainstBruteForce,
+                         ::testing::Values(volume::Kind::aabb, volume::Kind::obb, volume::Kind::sphere),
+                         [](const auto& tested) { return std::string(volume::name(tested.param)); });
+
+}  // namespace
+}  // namespace odds::query
