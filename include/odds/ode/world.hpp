@@ -1,0 +1,179 @@
+// A physics world of meshes, built on ODE and the budgeted geom, without ODE's header: what the haptic loop steps.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "odds/math/error.hpp"
+#include "odds/math/pose.hpp"
+#include "odds/query/answer.hpp"
+#include "odds/query/request.hpp"
+#include "odds/query/shape.hpp"
+#include "odds/realtime/clock.hpp"
+
+namespace odds::ode {
+
+/// What two bodies in contact do to each other.
+struct ContactModel {
+  bool enabled = true;  ///< false: nothing is collided at all
+  double stiffness_n_per_m =
+      20000.0;                     ///< of a whole pair: its contacts share it, so that their number is not felt; > 0
+  double damping_ns_per_m = 20.0;  ///< likewise; >= 0
+  double friction = 0.0;           ///< Coulomb's mu; 0: no friction rows at all
+  double max_correcting_velocity_m_per_s =
+      1.0;  ///< how fast overlap may be pushed apart; bounds the force of deep contacts
+};
+
+/// How fast bodies lose speed, as rates of exponential decay. 0: not at all.
+struct Damping {
+  double linear_per_s = 0.0;
+  double angular_per_s = 0.0;
+};
+
+enum class Solver : std::uint8_t {
+  exact,      ///< dWorldStep: repeatable; cost grows with the cube of the number of contacts
+  iterative,  ///< dWorldQuickStep: cost grows linearly; draws on ODE's process-wide random numbers
+};
+
+struct WorldOptions {
+  [[nodiscard]] static query::Request with_contacts(int count) {
+    query::Request request;
+    request.max_contacts = count;
+    return request;
+  }
+
+  double step_s = 0.001;  ///< > 0
+  Vec3 gravity_m_per_s2 = Vec3::Zero();
+  ContactModel contact;
+  Damping damping;
+  Solver solver = Solver::exact;
+  int iterations = 20;  ///< of the iterative solver
+  /// Method, estimator, budget (of each pair), p_min, k_min and max_contacts (of each pair, 0 .. 8).
+  query::Request query = with_contacts(8);
+  std::uint32_t max_contacts_per_step = 64;  ///< of the whole world, 1 .. 1024; further ones are left out and counted
+  double max_speed_m_per_s = 20.0;           ///< bodies are held to it: a tool never flies away
+  double max_spin_rad_per_s = 200.0;
+  realtime::Clock clock = {};  ///< null: realtime::fastest_clock()
+};
+
+/// Index of a body in its world, in order of addition.
+struct BodyId {
+  std::uint32_t index = 0;
+};
+
+/// How a dynamic body gets its mass. The inertia follows from the mesh if that is closed, else from its bounding box.
+struct MassSpec {
+  double mass_kg = 0.0;               ///< > 0, or 0: from the density
+  double density_kg_per_m3 = 1000.0;  ///< used if mass_kg is 0; needs a closed mesh
+};
+
+/// What add_dynamic made of a MassSpec.
+struct MassProperties {
+  double mass_kg = 0.0;
+  Vec3 center_m = Vec3::Zero();           ///< of mass, in the mesh's frame
+  Mat3 inertia_kg_m2 = Mat3::Identity();  ///< about the centre, axes of the mesh's frame
+  bool from_closed_mesh = false;          ///< false: that of the bounding box
+};
+
+/// Pose of a body's mesh frame in the world, and motion of its centre of mass.
+struct BodyState {
+  math::Pose pose;
+  Vec3 velocity_m_per_s = Vec3::Zero();
+  Vec3 angular_velocity_rad_per_s = Vec3::Zero();
+};
+
+/// Force at the centre of mass, and torque; world frame.
+struct Wrench {
+  Vec3 force_n = Vec3::Zero();
+  Vec3 torque_nm = Vec3::Zero();
+};
+
+/// A spring and damper in six degrees of freedom between a body and a moving target. Solved together with the contacts
+/// and implicitly in time, so that it is stable for every stiffness, damping and mass.
+struct Coupling {
+  math::Pose target;                            ///< where the mesh's frame should be
+  Vec3 target_velocity_m_per_s = Vec3::Zero();  ///< of the target's origin
+  Vec3 target_angular_velocity_rad_per_s = Vec3::Zero();
+  double stiffness_n_per_m = 0.0;
+  double damping_ns_per_m = 0.0;
+  double angular_stiffness_nm_per_rad = 0.0;
+  double angular_damping_nms_per_rad = 0.0;
+  double max_spring_force_n = std::numeric_limits<double>::infinity();  ///< the spring stretches no further than this
+  double max_spring_torque_nm = std::numeric_limits<double>::infinity();
+};
+
+/// What one step did. Times in microseconds by the world's clock.
+struct StepSummary {
+  std::uint32_t queries = 0;                       ///< pairs of meshes that reached the budgeted query
+  query::Verdict verdict = query::Verdict::clear;  ///< hit if any query said so
+  query::Basis basis = query::Basis::proved;       ///< the weakest among the queries
+  double probability = 0.0;                        ///< of a hit; the largest among the queries
+  std::uint64_t node_pairs = 0;
+  std::uint64_t triangle_pairs = 0;
+  double query_gross_us = 0.0;
+  double query_stall_us = 0.0;
+  double query_overshoot_us = 0.0;      ///< largest of the queries
+  double query_net_overshoot_us = 0.0;  ///< likewise
+  std::uint32_t contacts = 0;           ///< used
+  std::uint32_t contacts_left_out = 0;  ///< beyond max_contacts_per_step, or not finite
+  double max_depth_m = 0.0;
+  double collision_us = 0.0;        ///< broad phase, queries and contact joints
+  double step_us = 0.0;             ///< of the solver; 0 where nothing can move
+  std::uint32_t bodies_slowed = 0;  ///< held to the greatest speed
+  std::uint32_t bodies_recovered =
+      0;  ///< their state was not finite any more; put back to where they were last, at rest
+};
+
+/// Bodies, contacts and time. Set-up functions allocate and may fail; after prepare() nothing does. One thread at a
+/// time.
+class World {
+ public:
+  static Result<World> make(const WorldOptions& options);
+  ~World();
+  World(World&&) noexcept;
+  World& operator=(World&&) noexcept;
+
+  /// A body that never moves. `name` stands in error messages.
+  Result<BodyId> add_fixed(std::shared_ptr<const query::Shape> shape, const math::Pose& pose, const std::string& name);
+  /// A body that moves.
+  Result<BodyId> add_dynamic(std::shared_ptr<const query::Shape> shape, const math::Pose& pose, const MassSpec& mass,
+                             const std::string& name);
+  /// Gives a dynamic body a coupling, which pulls from the next set_coupling on.
+  void add_coupling(BodyId body);
+
+  /// Takes all memory that steps need: workspaces of all pairs that can meet, and the solver's for the most contacts.
+  /// Call it when all bodies are there. Later additions need another call.
+  [[nodiscard]] std::optional<Error> prepare();
+
+  /// Collides, solves and moves all bodies by step_s. Does not call the solver if no body is dynamic.
+  StepSummary step() noexcept;
+
+  void set_coupling(BodyId body, const Coupling& coupling) noexcept;
+  /// What the coupling exerted on the body in the last step.
+  [[nodiscard]] Wrench coupling_wrench(BodyId body) const noexcept;
+  /// Adds a force at the centre of mass and a torque for the next step. World frame. What is not finite is ignored.
+  void apply(BodyId body, const Wrench& wrench) noexcept;
+
+  [[nodiscard]] BodyState state(BodyId body) const noexcept;
+  /// Puts a body somewhere, e.g. to begin a run anew. Ignored unless finite and rigid.
+  void set_state(BodyId body, const BodyState& state) noexcept;
+  [[nodiscard]] const MassProperties& mass(BodyId body) const noexcept;
+  [[nodiscard]] bool is_dynamic(BodyId body) const noexcept;
+  [[nodiscard]] std::uint32_t body_count() const noexcept;
+
+  /// May be changed between steps.
+  void set_contact(const ContactModel& contact) noexcept;
+  void set_gravity(const Vec3& gravity_m_per_s2) noexcept;
+  void set_damping(const Damping& damping) noexcept;
+  [[nodiscard]] const WorldOptions& options() const noexcept;
+
+ private:
+  struct Implementation;
+  explicit World(std::unique_ptr<Implementation> implementation);
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace odds::ode

@@ -1,0 +1,15 @@
+// Mass, centre and inertia of a mesh as a rigid body.
+#pragma once
+
+#include "odds/math/error.hpp"
+#include "odds/mesh/triangle_mesh.hpp"
+#include "odds/ode/world.hpp"
+
+namespace odds::ode {
+
+/// Homogeneous mass of the enclosed volume if the mesh is closed (`closed`) and encloses one, else that of its bounding
+/// box. A density without an enclosed volume is refused. `name` stands in the error.
+Result<MassProperties> mass_properties(const mesh::TriangleMesh& mesh, bool closed, const MassSpec& spec,
+                                       const std::string& name);
+
+}  // namespace odds::ode

@@ -1,0 +1,478 @@
+// The world: ODE's bodies, one contact callback, and the care that keeps a tick free of allocations and surprises.
+#include "odds/ode/world.hpp"
+
+#include <ode/ode.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <vector>
+
+#include "odds/ode/geom.hpp"
+#include "ode/coupling_joint.hpp"
+#include "ode/mass_properties.hpp"
+
+namespace odds::ode {
+namespace {
+
+constexpr unsigned long fixed_bit = 1;
+constexpr unsigned long dynamic_bit = 2;
+constexpr int most_contacts_per_pair = 8;  // the geom's own limit
+// Slip slower than this is sticking: its direction is noise and says nothing about the direction of friction.
+constexpr double least_slip_m_per_s = 1e-3;
+constexpr double rigid_within = 1e-6;  // of a pose given from outside: R^T R - I
+
+std::atomic<std::uint64_t> solver_messages{0};
+
+// ODE writes to stderr where the solver meets redundant contacts; within a tick that would be a system call.
+void count_message(int, const char*, va_list) { solver_messages.fetch_add(1, std::memory_order_relaxed); }
+
+Vec3 vector_of(const dReal* v) { return {v[0], v[1], v[2]}; }
+
+Mat3 matrix_of(const dReal* r) {
+  Mat3 m;
+  m << r[0], r[1], r[2], r[4], r[5], r[6], r[8], r[9], r[10];
+  return m;
+}
+
+void to_ode(const Mat3& m, dMatrix3 r) {
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) r[4 * i + j] = m(i, j);
+    r[4 * i + 3] = 0.0;
+  }
+}
+
+struct Body {
+  std::string name;
+  Geom geom;
+  dBodyID body = nullptr;  // null: fixed
+  MassProperties mass;
+  std::unique_ptr<CouplingJoint> coupling;
+  BodyState last_good;
+};
+
+std::optional<Error> check(const WorldOptions& o) {
+  const auto bad = [](const char* what, const char* remedy) { return Error{"world", "", what, remedy}; };
+  if (!(o.step_s > 0.0) || !std::isfinite(o.step_s))
+    return bad("the step is not a positive time", "give seconds above zero");
+  if (!o.gravity_m_per_s2.allFinite()) return bad("gravity is not finite", "give three finite numbers");
+  if (!(o.contact.stiffness_n_per_m > 0.0) || !(o.contact.damping_ns_per_m >= 0.0)) {
+    return bad("the contact's stiffness or damping is out of range",
+               "give a stiffness above zero, a damping of at least zero");
+  }
+  if (!(o.contact.friction >= 0.0)) return bad("the friction coefficient is negative", "give at least zero");
+  if (o.query.max_contacts < 0 || o.query.max_contacts > most_contacts_per_pair) {
+    return bad("the contacts of a pair are out of range", "give 0 to 8");
+  }
+  if (o.max_contacts_per_step < 1 || o.max_contacts_per_step > 1024) {
+    return bad("the contacts of a step are out of range", "give 1 to 1024");
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+struct World::Implementation {
+  explicit Implementation(Library ode_library, const WorldOptions& world_options)
+      : library(std::move(ode_library)), options(world_options) {}
+
+  Implementation(const Implementation&) = delete;
+  Implementation& operator=(const Implementation&) = delete;
+  ~Implementation() {
+    bodies.clear();  // geoms before their space, and before the library
+    if (contacts != nullptr) dJointGroupDestroy(contacts);
+    if (world != nullptr) dWorldDestroy(world);
+    if (space != nullptr) dSpaceDestroy(space);
+  }
+
+  Library library;
+  WorldOptions options;
+  dWorldID world = nullptr;
+  dSpaceID space = nullptr;
+  dJointGroupID contacts = nullptr;
+  std::vector<std::unique_ptr<Body>> bodies;
+  std::uint32_t dynamic_bodies = 0;
+  StepSummary summary;  // of the step under way
+
+  Result<Body*> add(std::shared_ptr<const query::Shape> shape, const math::Pose& pose, const std::string& name);
+  bool configure(dGeomID geom) const;
+  std::optional<Error> prepare_pairs();
+  void warm_up_solver();
+  void note_answer(dGeomID a, dGeomID b);
+  void add_contacts(const dContactGeom* found, int count, dBodyID a, dBodyID b);
+  void apply_damping();
+  void hold_to_limits(Body& body);
+  void place(Body& body, const BodyState& state);
+  [[nodiscard]] BodyState state_of(const Body& body) const;
+  static void near(void* self, dGeomID a, dGeomID b) noexcept;
+};
+
+Result<Body*> World::Implementation::add(std::shared_ptr<const query::Shape> shape, const math::Pose& pose,
+                                         const std::string& name) {
+  if (!pose.is_rigid(rigid_within))
+    return Error{name, "", "its pose is not a finite rigid pose", "correct position and orientation"};
+  Result<Geom> geom = Geom::make(space, std::move(shape));
+  if (!geom) return geom.error();
+  bodies.push_back(std::make_unique<Body>(Body{name, std::move(geom).value(), nullptr, {}, nullptr, {pose, {}, {}}}));
+  Body& body = *bodies.back();
+  body.last_good.velocity_m_per_s.setZero();
+  body.last_good.angular_velocity_rad_per_s.setZero();
+  if (!configure(body.geom.id())) {
+    Error error{name, "", oddsGetLastError(), "correct the query's settings"};
+    bodies.pop_back();
+    return error;
+  }
+  return &body;
+}
+
+bool World::Implementation::configure(dGeomID geom) const {
+  const query::Request& q = options.query;
+  constexpr std::uint64_t no_limit = std::numeric_limits<std::uint64_t>::max();
+  const bool timed = std::isfinite(q.budget.microseconds);
+  const auto units = static_cast<unsigned long>(q.budget.work_units == no_limit ? 0 : q.budget.work_units);
+  const int method = q.method == query::Method::exact         ? ODDS_METHOD_EXACT
+                     : q.method == query::Method::incremental ? ODDS_METHOD_INCREMENTAL
+                                                              : ODDS_METHOD_TIME_CRITICAL;
+  const int estimator = q.estimator == query::EstimatorKind::cells ? ODDS_ESTIMATOR_CELLS : ODDS_ESTIMATOR_KINEMATIC;
+  return dGeomOddsMeshSetBudget(geom, timed ? q.budget.microseconds : dInfinity) != 0 &&
+         dGeomOddsMeshSetWorkBudget(geom, units) != 0 && dGeomOddsMeshSetPMin(geom, q.p_min) != 0 &&
+         dGeomOddsMeshSetKMin(geom, static_cast<int>(q.k_min)) != 0 &&
+         dGeomOddsMeshSetMaxContacts(geom, q.max_contacts) != 0 && dGeomOddsMeshSetMethod(geom, method) != 0 &&
+         dGeomOddsMeshSetEstimator(geom, estimator) != 0;
+}
+
+BodyState World::Implementation::state_of(const Body& body) const {
+  if (body.body == nullptr) return body.last_good;
+  BodyState state;
+  state.pose.rotation = matrix_of(dBodyGetRotation(body.body));
+  state.pose.translation = vector_of(dBodyGetPosition(body.body)) - state.pose.rotation * body.mass.center_m;
+  state.velocity_m_per_s = vector_of(dBodyGetLinearVel(body.body));
+  state.angular_velocity_rad_per_s = vector_of(dBodyGetAngularVel(body.body));
+  return state;
+}
+
+void World::Implementation::place(Body& body, const BodyState& state) {
+  dMatrix3 rotation;
+  to_ode(state.pose.rotation, rotation);
+  const Vec3& p = state.pose.translation;
+  body.last_good = state;
+  if (body.body == nullptr) {
+    dGeomSetRotation(body.geom.id(), rotation);
+    dGeomSetPosition(body.geom.id(), p.x(), p.y(), p.z());
+    return;
+  }
+  const Vec3 center = state.pose * body.mass.center_m;
+  const Vec3& v = state.velocity_m_per_s;
+  const Vec3& w = state.angular_velocity_rad_per_s;
+  dBodySetRotation(body.body, rotation);
+  dBodySetPosition(body.body, center.x(), center.y(), center.z());
+  dBodySetLinearVel(body.body, v.x(), v.y(), v.z());
+  dBodySetAngularVel(body.body, w.x(), w.y(), w.z());
+  dBodySetForce(body.body, 0.0, 0.0, 0.0);
+  dBodySetTorque(body.body, 0.0, 0.0, 0.0);
+}
+
+void World::Implementation::apply_damping() {
+  for (const auto& body : bodies) {
+    if (body->body == nullptr) continue;
+    dBodySetLinearDampingThreshold(body->body, 0.0);
+    dBodySetAngularDampingThreshold(body->body, 0.0);
+    dBodySetLinearDamping(body->body, -std::expm1(-options.damping.linear_per_s * options.step_s));
+    dBodySetAngularDamping(body->body, -std::expm1(-options.damping.angular_per_s * options.step_s));
+  }
+}
+
+std::optional<Error> World::Implementation::prepare_pairs() {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    for (std::size_t j = i + 1; j < bodies.size(); ++j) {
+      if (bodies[i]->body == nullptr && bodies[j]->body == nullptr) continue;
+      if (oddsPreparePair(bodies[i]->geom.id(), bodies[j]->geom.id()) == 0) {
+        return Error{
+            "", "", "'" + bodies[i]->name + "' and '" + bodies[j]->name + "' cannot be collided: " + oddsGetLastError(),
+            "use one bounding volume for all bodies"};
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+// Fills the joint group and the solver's memory once with the most contacts a step may have, then undoes the motion.
+void World::Implementation::warm_up_solver() {
+  constexpr std::uint32_t most_solved = 64;  // the exact solver's time grows with the cube
+  const std::uint32_t rows = 3 * options.max_contacts_per_step + 6 * dynamic_bodies;
+  dWorldStepReserveInfo reserve{};
+  reserve.struct_size = sizeof(reserve);
+  reserve.reserve_factor = 1.2F;
+  reserve.reserve_minimum =
+      static_cast<unsigned>(std::max<std::size_t>(std::size_t{4} << 20U, std::size_t{24} * rows * rows));
+  dWorldSetStepMemoryReservationPolicy(world, &reserve);
+
+  std::vector<BodyState> before;
+  std::vector<Body*> moving;
+  for (const auto& body : bodies) {
+    before.push_back(state_of(*body));
+    if (body->body != nullptr) moving.push_back(body.get());
+  }
+  const auto contact_at = [&](std::uint32_t i) {
+    dContactGeom geom{};
+    const double angle = 2.4 * i;  // golden angle: no two normals alike
+    const Vec3 direction(std::cos(angle), std::sin(angle), 1.0);
+    Eigen::Map<Vec3>(geom.normal) = direction.normalized();
+    const Body& body = *moving[i % moving.size()];
+    Eigen::Map<Vec3>(geom.pos) = vector_of(dBodyGetPosition(body.body)) - 1e-3 * direction;
+    add_contacts(&geom, 1, body.body, nullptr);
+  };
+  const ContactModel asked = options.contact;
+  options.contact.friction = 1.0;
+  for (const std::uint32_t count :
+       {std::min(most_solved, options.max_contacts_per_step), options.max_contacts_per_step}) {
+    summary = {};
+    for (std::uint32_t i = 0; i < count; ++i) contact_at(i);
+    if (count <= most_solved) {
+      options.solver == Solver::exact ? dWorldStep(world, options.step_s) : dWorldQuickStep(world, options.step_s);
+    }
+    dJointGroupEmpty(contacts);
+  }
+  options.contact = asked;
+  for (std::size_t i = 0; i < bodies.size(); ++i) place(*bodies[i], before[i]);
+}
+
+void World::Implementation::near(void* self, dGeomID a, dGeomID b) noexcept {
+  auto& world = *static_cast<Implementation*>(self);
+  std::array<dContactGeom, most_contacts_per_pair> found;
+  const int most = std::max(1, world.options.query.max_contacts);  // ODE refuses to be asked for none
+  const int count = dCollide(a, b, most, found.data(), sizeof(dContactGeom));
+  world.note_answer(a, b);
+  if (count > 0) world.add_contacts(found.data(), count, dGeomGetBody(a), dGeomGetBody(b));
+}
+
+void World::Implementation::note_answer(dGeomID a, dGeomID b) {
+  oddsAnswer answer;
+  if (oddsGetLastAnswer(a, b, &answer) == 0) return;
+  const auto basis = answer.basis == ODDS_PROVED      ? query::Basis::proved
+                     : answer.basis == ODDS_ESTIMATED ? query::Basis::estimated
+                                                      : query::Basis::budget;
+  ++summary.queries;
+  if (answer.verdict == ODDS_HIT) summary.verdict = query::Verdict::hit;
+  summary.basis = std::max(summary.basis, basis);
+  summary.probability = std::max(summary.probability, answer.probability);
+  summary.node_pairs += answer.node_pairs;
+  summary.triangle_pairs += answer.triangle_pairs;
+  summary.query_gross_us += answer.gross_us;
+  summary.query_stall_us += answer.stall_us;
+  summary.query_overshoot_us = std::max(summary.query_overshoot_us, answer.overshoot_us);
+  summary.query_net_overshoot_us = std::max(summary.query_net_overshoot_us, answer.net_overshoot_us);
+}
+
+void World::Implementation::add_contacts(const dContactGeom* found, int count, dBodyID a, dBodyID b) {
+  const ContactModel& model = options.contact;
+  // The contacts of a pair are springs side by side: each takes its share, so that the pair is as stiff as asked.
+  const double weight = (options.step_s * model.stiffness_n_per_m + model.damping_ns_per_m) / count;
+  for (int i = 0; i < count; ++i) {
+    const Vec3 position = vector_of(found[i].pos);
+    const Vec3 normal = vector_of(found[i].normal);
+    const bool finite = position.allFinite() && normal.allFinite() && std::isfinite(found[i].depth);
+    if (!finite || summary.contacts >= options.max_contacts_per_step) {
+      ++summary.contacts_left_out;
+      continue;
+    }
+    dContact contact{};
+    contact.geom = found[i];
+    contact.surface.mode = dContactSoftERP | dContactSoftCFM;
+    contact.surface.soft_erp = options.step_s * model.stiffness_n_per_m / (weight * count);
+    contact.surface.soft_cfm = 1.0 / weight;
+    if (model.friction > 0.0) {
+      contact.surface.mode |= dContactApprox1;
+      contact.surface.mu = model.friction;
+      Vec3 slip = Vec3::Zero();
+      dVector3 velocity;
+      if (a != nullptr) {
+        dBodyGetPointVel(a, position.x(), position.y(), position.z(), velocity);
+        slip += vector_of(velocity);
+      }
+      if (b != nullptr) {
+        dBodyGetPointVel(b, position.x(), position.y(), position.z(), velocity);
+        slip -= vector_of(velocity);
+      }
+      slip -= slip.dot(normal) * normal;
+      const double speed = slip.norm();
+      if (speed >
+          least_slip_m_per_s) {  // one axis of the friction pyramid along the slip makes it a cone where it counts
+        contact.surface.mode |= dContactFDir1;
+        Eigen::Map<Vec3>(contact.fdir1) = slip / speed;
+      }
+    }
+    dJointAttach(dJointCreateContact(world, contacts, &contact), a, b);
+    ++summary.contacts;
+    summary.max_depth_m = std::max(summary.max_depth_m, static_cast<double>(found[i].depth));
+  }
+}
+
+void World::Implementation::hold_to_limits(Body& body) {
+  const BodyState state = state_of(body);
+  const Vec3& v = state.velocity_m_per_s;
+  if (!state.pose.rotation.allFinite() || !state.pose.translation.allFinite() || !v.allFinite() ||
+      !state.angular_velocity_rad_per_s.allFinite()) {
+    place(body, {body.last_good.pose, Vec3::Zero(), Vec3::Zero()});
+    ++summary.bodies_recovered;
+    return;
+  }
+  body.last_good = state;
+  const double speed = v.norm();
+  if (speed > options.max_speed_m_per_s) {
+    const Vec3 slower = v * (options.max_speed_m_per_s / speed);
+    dBodySetLinearVel(body.body, slower.x(), slower.y(), slower.z());
+    ++summary.bodies_slowed;
+  }
+}
+
+World::World(std::unique_ptr<Implementation> implementation) : implementation_(std::move(implementation)) {}
+World::~World() = default;
+World::World(World&&) noexcept = default;
+World& World::operator=(World&&) noexcept = default;
+
+Result<World> World::make(const WorldOptions& options) {
+  if (auto error = check(options)) return *error;
+  Result<Library> library = Library::open();
+  if (!library) return library.error();
+  auto made = std::make_unique<Implementation>(std::move(library).value(), options);
+  if (made->options.clock.now_ns == nullptr) made->options.clock = realtime::fastest_clock();
+  dSetMessageHandler(&count_message);
+  made->world = dWorldCreate();
+  made->space = dSweepAndPruneSpaceCreate(nullptr, dSAP_AXES_XYZ);  // the hash space allocates at every call
+  dSpaceSetCleanup(made->space, 0);
+  made->contacts = dJointGroupCreate(0);
+  World world(std::move(made));
+  world.set_contact(options.contact);
+  world.set_gravity(options.gravity_m_per_s2);
+  dWorldSetQuickStepNumIterations(world.implementation_->world, std::max(1, options.iterations));
+  return world;
+}
+
+Result<BodyId> World::add_fixed(std::shared_ptr<const query::Shape> shape, const math::Pose& pose,
+                                const std::string& name) {
+  Implementation& self = *implementation_;
+  Result<Body*> body = self.add(std::move(shape), pose, name);
+  if (!body) return body.error();
+  dGeomSetCategoryBits(body.value()->geom.id(), fixed_bit);
+  dGeomSetCollideBits(body.value()->geom.id(), dynamic_bit);
+  self.place(*body.value(), body.value()->last_good);
+  return BodyId{static_cast<std::uint32_t>(self.bodies.size() - 1)};
+}
+
+Result<BodyId> World::add_dynamic(std::shared_ptr<const query::Shape> shape, const math::Pose& pose,
+                                  const MassSpec& mass, const std::string& name) {
+  Implementation& self = *implementation_;
+  const oddsMeshDataID data = oddsMeshDataFromShape(shape);
+  const bool closed = data != nullptr && oddsMeshDataIsClosed(data) != 0;
+  oddsMeshDataDestroy(data);
+  Result<MassProperties> properties = mass_properties(shape->mesh(), closed, mass, name);
+  if (!properties) return properties.error();
+  Result<Body*> added = self.add(std::move(shape), pose, name);
+  if (!added) return added.error();
+  Body& body = *added.value();
+  body.mass = properties.value();
+  body.body = dBodyCreate(self.world);
+  const Mat3& inertia = body.mass.inertia_kg_m2;
+  dMass ode_mass;
+  dMassSetParameters(&ode_mass, body.mass.mass_kg, 0.0, 0.0, 0.0, inertia(0, 0), inertia(1, 1), inertia(2, 2),
+                     inertia(0, 1), inertia(0, 2), inertia(1, 2));
+  dBodySetMass(body.body, &ode_mass);
+  dBodySetGyroscopicMode(body.body, 0);      // its explicit term feeds energy to fast spins
+  dBodySetFiniteRotationMode(body.body, 1);  // fast turns stay rotations
+  dBodySetMaxAngularSpeed(body.body, self.options.max_spin_rad_per_s);
+  dGeomSetBody(body.geom.id(), body.body);
+  const Vec3 offset = -body.mass.center_m;  // ODE's bodies have their origin at the centre of mass
+  dGeomSetOffsetPosition(body.geom.id(), offset.x(), offset.y(), offset.z());
+  dGeomSetCategoryBits(body.geom.id(), dynamic_bit);
+  dGeomSetCollideBits(body.geom.id(), fixed_bit | dynamic_bit);
+  ++self.dynamic_bodies;
+  self.place(body, body.last_good);
+  self.apply_damping();
+  return BodyId{static_cast<std::uint32_t>(self.bodies.size() - 1)};
+}
+
+void World::add_coupling(BodyId id) {
+  Body& body = *implementation_->bodies.at(id.index);
+  if (body.body != nullptr && !body.coupling) {
+    body.coupling = std::make_unique<CouplingJoint>(implementation_->world, body.body);
+  }
+}
+
+std::optional<Error> World::prepare() {
+  if (auto error = implementation_->prepare_pairs()) return error;
+  if (implementation_->dynamic_bodies > 0) implementation_->warm_up_solver();
+  dSpaceClean(implementation_->space);
+  return std::nullopt;
+}
+
+StepSummary World::step() noexcept {
+  Implementation& self = *implementation_;
+  self.summary = {};
+  const std::int64_t start_ns = self.options.clock();
+  if (self.options.contact.enabled) dSpaceCollide(self.space, &self, &Implementation::near);
+  const std::int64_t collided_ns = self.options.clock();
+  self.summary.collision_us = 1e-3 * static_cast<double>(collided_ns - start_ns);
+  if (self.dynamic_bodies == 0) return self.summary;
+  const double h = self.options.step_s;
+  self.options.solver == Solver::exact ? dWorldStep(self.world, h) : dWorldQuickStep(self.world, h);
+  dJointGroupEmpty(self.contacts);
+  for (const auto& body : self.bodies) {
+    if (body->body != nullptr) self.hold_to_limits(*body);
+  }
+  self.summary.step_us = 1e-3 * static_cast<double>(self.options.clock() - collided_ns);
+  return self.summary;
+}
+
+void World::set_coupling(BodyId id, const Coupling& coupling) noexcept {
+  Body& body = *implementation_->bodies[id.index];
+  if (body.coupling) body.coupling->set(coupling, body.mass.center_m, implementation_->options.step_s);
+}
+
+Wrench World::coupling_wrench(BodyId id) const noexcept {
+  const Body& body = *implementation_->bodies[id.index];
+  return body.coupling ? body.coupling->wrench() : Wrench{};
+}
+
+void World::apply(BodyId id, const Wrench& wrench) noexcept {
+  const Body& body = *implementation_->bodies[id.index];
+  if (body.body == nullptr || !wrench.force_n.allFinite() || !wrench.torque_nm.allFinite()) return;
+  dBodyAddForce(body.body, wrench.force_n.x(), wrench.force_n.y(), wrench.force_n.z());
+  dBodyAddTorque(body.body, wrench.torque_nm.x(), wrench.torque_nm.y(), wrench.torque_nm.z());
+}
+
+BodyState World::state(BodyId id) const noexcept {
+  return implementation_->state_of(*implementation_->bodies[id.index]);
+}
+
+void World::set_state(BodyId id, const BodyState& state) noexcept {
+  if (!state.pose.is_rigid(rigid_within) || !state.velocity_m_per_s.allFinite() ||
+      !state.angular_velocity_rad_per_s.allFinite()) {
+    return;
+  }
+  implementation_->place(*implementation_->bodies[id.index], state);
+}
+
+const MassProperties& World::mass(BodyId id) const noexcept { return implementation_->bodies[id.index]->mass; }
+bool World::is_dynamic(BodyId id) const noexcept { return implementation_->bodies[id.index]->body != nullptr; }
+std::uint32_t World::body_count() const noexcept { return static_cast<std::uint32_t>(implementation_->bodies.size()); }
+
+void World::set_contact(const ContactModel& contact) noexcept {
+  implementation_->options.contact = contact;
+  dWorldSetContactMaxCorrectingVel(implementation_->world, contact.max_correcting_velocity_m_per_s);
+}
+
+void World::set_gravity(const Vec3& g) noexcept {
+  implementation_->options.gravity_m_per_s2 = g;
+  dWorldSetGravity(implementation_->world, g.x(), g.y(), g.z());
+}
+
+void World::set_damping(const Damping& damping) noexcept {
+  implementation_->options.damping = damping;
+  implementation_->apply_damping();
+}
+
+const WorldOptions& World::options() const noexcept { return implementation_->options; }
+
+}  // namespace odds::ode
