@@ -1,0 +1,125 @@
+// The safety stages: what leaves them is finite and within the limits, whatever went in.
+#include "odds/haptics/safety.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace odds::haptics {
+namespace {
+
+constexpr double dt = 0.001;
+
+DeviceCommand command(const Vec3& force, const Vec3& torque = Vec3::Zero()) { return {0, force, torque, 0}; }
+
+TEST(Safety, LeavesAHarmlessForceAlone) {
+  Safety safety({.max_force_n = 5.0, .max_torque_nm = 1.0});
+  DeviceCommand c = command({1, 2, 3}, {0.1, 0, 0});
+  safety.apply(c, dt, 0.0);
+  EXPECT_EQ(c.force_n, Vec3(1, 2, 3));
+  EXPECT_EQ(c.torque_nm, Vec3(0.1, 0, 0));
+  EXPECT_EQ(c.flags, 0U);
+}
+
+TEST(Safety, ClampsTheMagnitudeAndKeepsTheDirection) {
+  Safety safety({.max_force_n = 5.0, .max_torque_nm = 0.5});
+  DeviceCommand c = command({30, 0, -40}, {0, 2, 0});
+  safety.apply(c, dt, 0.0);
+  EXPECT_LT((c.force_n - Vec3(3, 0, -4)).norm(), 1e-12);
+  EXPECT_LT((c.torque_nm - Vec3(0, 0.5, 0)).norm(), 1e-12);
+  EXPECT_EQ(c.flags, unsigned{safety_force_clamped | safety_torque_clamped});
+}
+
+TEST(Safety, LimitsTheChangePerSecond) {
+  Safety safety({.max_force_slew_n_per_s = 500.0});
+  for (int i = 1; i <= 10; ++i) {
+    DeviceCommand c = command({0, 0, 3});
+    safety.apply(c, dt, 0.0);
+    EXPECT_NEAR(c.force_n.z(), std::min(3.0, 0.5 * i), 1e-12);
+    EXPECT_EQ((c.flags & safety_force_slewed) != 0, i < 6) << i;
+  }
+  EXPECT_EQ(safety.counts().force_slewed, 5U);
+}
+
+TEST(Safety, RisesGentlyAfterTheStart) {
+  Safety safety({.rise_s = 0.01});
+  for (int i = 1; i <= 12; ++i) {
+    DeviceCommand c = command({4, 0, 0});
+    safety.apply(c, dt, 0.0);
+    EXPECT_NEAR(c.force_n.x(), 4.0 * std::min(1.0, 0.1 * i), 1e-9) << i;
+  }
+  EXPECT_EQ(safety.counts().force_rise, 9U);
+}
+
+TEST(Safety, ReplacesWhatIsNotFiniteAndLatchesAFaultIfItStays) {
+  Safety safety({.faulty_ticks = 3});
+  for (int i = 1; i <= 4; ++i) {
+    DeviceCommand c = command({std::nan(""), 0, 0}, {0, std::numeric_limits<double>::infinity(), 0});
+    safety.apply(c, dt, 0.0);
+    EXPECT_EQ(c.force_n.norm() + c.torque_nm.norm(), 0.0);
+    EXPECT_NE(c.flags & safety_not_finite, 0U);
+    EXPECT_EQ(safety.faulted(), i >= 3) << i;
+  }
+  DeviceCommand good = command({1, 0, 0});
+  safety.apply(good, dt, 0.0);
+  EXPECT_EQ(good.force_n.norm(), 0.0) << "a latched fault must hold";
+  EXPECT_NE(good.flags & safety_faulted, 0U);
+  safety.reset();
+  good = command({1, 0, 0});
+  safety.apply(good, dt, 0.0);
+  EXPECT_EQ(good.force_n.x(), 1.0);
+  EXPECT_EQ(safety.counts().not_finite, 4U);
+  EXPECT_EQ(safety.counts().faulted, 3U);
+}
+
+TEST(Safety, ForgivesASingleNanTick) {
+  Safety safety({.faulty_ticks = 3});
+  for (int i = 0; i < 9; ++i) {
+    DeviceCommand c = command({i % 3 == 0 ? 1.0 : std::nan(""), 0, 0});
+    safety.apply(c, dt, 0.0);
+  }
+  EXPECT_FALSE(safety.faulted());
+}
+
+TEST(Safety, FadesAStaleForceAndComesBackWithoutAKick) {
+  Safety safety({.max_force_slew_n_per_s = 1000.0, .stale_after_s = 0.005, .decay_s = 0.010});
+  Vec3 last = Vec3::Zero();
+  for (int i = 0; i < 60; ++i) {
+    const bool lost = i >= 20 && i < 40;
+    DeviceCommand c = command({2, 0, 0});
+    safety.apply(c, dt, lost ? 0.010 : 0.0);
+    EXPECT_EQ((c.flags & safety_stale) != 0, lost);
+    EXPECT_LE((c.force_n - last).norm(), 1.0 + 1e-12) << i;
+    if (i == 24) {
+      EXPECT_NEAR(c.force_n.x(), 1.0, 1e-9);
+    }
+    if (i >= 30 && i < 40) {
+      EXPECT_EQ(c.force_n.norm(), 0.0);
+    }
+    if (i >= 45) {
+      EXPECT_NEAR(c.force_n.x(), 2.0, 1e-12);
+    }
+    last = c.force_n;
+  }
+}
+
+RC_GTEST_PROP(Safety, OutputIsAlwaysFiniteAndWithinItsLimits, ()) {
+  Safety safety({.max_force_n = 5.0, .max_torque_nm = 0.3, .max_force_slew_n_per_s = 800.0});
+  const auto inputs =
+      *rc::gen::container<std::vector<std::array<double, 4>>>(rc::gen::arbitrary<std::array<double, 4>>());
+  Vec3 last = Vec3::Zero();
+  for (const auto& in : inputs) {
+    DeviceCommand c = command({in[0], in[1], in[2]}, {in[3], in[0], 0});
+    safety.apply(c, dt, 0.0);
+    RC_ASSERT(c.force_n.allFinite() && c.torque_nm.allFinite());
+    RC_ASSERT(c.force_n.norm() <= 5.0 * (1 + 1e-12));
+    RC_ASSERT(c.torque_nm.norm() <= 0.3 * (1 + 1e-12));
+    RC_ASSERT(safety.faulted() || (c.force_n - last).norm() <= 0.8 * (1 + 1e-9));
+    last = c.force_n;
+  }
+}
+
+}  // namespace
+}  // namespace odds::haptics
