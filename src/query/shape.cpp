@@ -4,6 +4,7 @@
 #include <chrono>
 #include <string>
 
+#include "odds/mesh/faults.hpp"
 #include "query/search.hpp"
 #include "query/shape_data.hpp"
 
@@ -42,6 +43,11 @@ ShapeSummary summarise(const tree::Hierarchy<V>& hierarchy) {
   summary.mean_leaf_triangles = static_cast<double>(summary.triangles) / static_cast<double>(summary.leaves);
   summary.mean_well_filled_cells = inner == 0 ? 0.0 : cells / static_cast<double>(inner);
   return summary;
+}
+
+bool closed_and_outward(const mesh::TriangleMesh& mesh) {
+  const mesh::Faults faults = mesh::find_faults(mesh, {.examples = 0});
+  return faults.volume.value_or(0.0) > 0.0;
 }
 
 /// The query box in the hierarchy's frame.
@@ -115,6 +121,7 @@ Result<std::shared_ptr<const Shape>> Shape::build(std::shared_ptr<const mesh::Tr
   }
   const auto start = std::chrono::steady_clock::now();
   auto data = std::make_unique<Data>();
+  data->solid = closed_and_outward(*mesh);
   const tree::BuildOptions build_options{options.leaf_triangles, options.tau};
   data->hierarchy = build_hierarchy(options.volume, *mesh, build_options, progress,
                                     std::make_index_sequence<std::variant_size_v<AnyHierarchy>>());

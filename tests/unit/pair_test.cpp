@@ -119,6 +119,22 @@ TEST(Pair, RefusesUnlikeVolumes) {
   EXPECT_NE(pair.error().message().find("same volume"), std::string::npos);
 }
 
+TEST(Shape, KnowsAClosedMeshFromASheet) {
+  const auto closed = test::wavy_sphere(6);
+  EXPECT_TRUE(Shape::build(closed).value()->is_solid());
+  const std::vector<Vec3> vertices(closed->vertices().begin(), closed->vertices().end());
+  std::vector<mesh::Triangle> triangles(closed->triangles().begin(), closed->triangles().end());
+  const auto build = [&](const std::vector<mesh::Triangle>& changed) {
+    return Shape::build(std::make_shared<const mesh::TriangleMesh>(
+                            std::move(mesh::TriangleMesh::make(vertices, changed)).value()))
+        .value();
+  };
+  const std::vector<mesh::Triangle> open(triangles.begin() + 1, triangles.end());
+  EXPECT_FALSE(build(open)->is_solid());
+  for (mesh::Triangle& triangle : triangles) std::swap(triangle[0], triangle[1]);
+  EXPECT_FALSE(build(triangles)->is_solid()) << "it faces inwards";
+}
+
 TEST(Pair, SaysAQuickEstimatedHitOnlyIfAsked) {
   const auto shape = Shape::build(test::wavy_sphere(24));
   auto pair = std::move(Pair::make(shape.value(), shape.value())).value();

@@ -10,8 +10,8 @@
 
 namespace odds::ode {
 
-/// Mesh data that shares an existing shape (no rebuild). Null, with oddsGetLastError(), if `shape` is null or memory ran
-/// out. The caller owns the id: oddsMeshDataDestroy.
+/// Mesh data that shares an existing shape (no rebuild). Null, with oddsGetLastError(), if `shape` is null or memory
+/// ran out. The caller owns the id: oddsMeshDataDestroy.
 [[nodiscard]] oddsMeshDataID oddsMeshDataFromShape(std::shared_ptr<const query::Shape> shape) noexcept;
 
 /// Holds ODE and the geom class for its life time (oddsInitODE / oddsCloseODE). Must outlive every Geom.

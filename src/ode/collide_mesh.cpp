@@ -1,0 +1,148 @@
+// Our class against itself: one query of the pair inside its budget, its answer as ODE contacts.
+#include <algorithm>
+#include <atomic>
+#include <limits>
+
+#include "ode/colliders.hpp"
+#include "ode/contact_writer.hpp"
+#include "ode/last_error.hpp"
+#include "ode/pair_table.hpp"
+#include "ode/statistics.hpp"
+
+namespace odds::ode {
+namespace {
+
+query::Request request_for(const Settings& settings, int limit) noexcept {
+  query::Request request;
+  request.method = settings.method;
+  request.estimator = settings.estimator;
+  request.budget.microseconds = settings.budget_us;
+  if (settings.work_units > 0) request.budget.work_units = settings.work_units;
+  request.p_min = settings.p_min;
+  request.k_min = settings.k_min;
+  request.max_contacts = limit;
+  return request;
+}
+
+// Whether the most probable pair of cells stands in for contacts. A hit that is proved or passed the caller's own
+// threshold needs a contact to be felt; an undecided query follows the policy.
+bool use_cell_pair(const query::Answer& answer, const Settings& settings) noexcept {
+  if (!answer.contacts.empty() || !answer.has_cell_pair) return false;
+  if (answer.basis != query::Basis::budget) return answer.verdict == query::Verdict::hit;
+  return settings.undecided_policy == ODDS_UNDECIDED_HIT && answer.probability > settings.undecided_probability;
+}
+
+// Contacts of an answer are in A's mesh frame with normals into A.
+void write_contact(ContactWriter& writer, const query::Contact& contact, const math::Pose& pose_a,
+                   bool o1_is_a) noexcept {
+  const Vec3 into_a = pose_a.rotation * contact.normal;
+  if (o1_is_a) {
+    writer.add(pose_a * contact.position, into_a, contact.depth, contact.triangle_a, contact.triangle_b);
+  } else {
+    writer.add(pose_a * contact.position, -into_a, contact.depth, contact.triangle_b, contact.triangle_a);
+  }
+}
+
+oddsAnswer record_of(const query::Answer& answer, const math::Pose& pose_a) noexcept {
+  oddsAnswer record = {};
+  record.verdict = static_cast<int>(answer.verdict);
+  record.basis = static_cast<int>(answer.basis);
+  record.probability = answer.probability;
+  record.node_pairs = answer.cost.node_pairs;
+  record.triangle_pairs = answer.cost.triangle_pairs;
+  record.gross_us = answer.cost.gross_us;
+  record.stall_us = answer.cost.stall_us;
+  record.overshoot_us = answer.cost.overshoot_us;
+  record.net_overshoot_us = answer.cost.net_overshoot_us;
+  if (!answer.has_cell_pair) return record;
+  record.has_cell_pair = 1;
+  record.cell_probability = answer.cell_pair_probability;
+  const Vec3 position = pose_a * answer.cell_pair.position;
+  const Vec3 normal = pose_a.rotation * answer.cell_pair.normal;
+  std::copy_n(position.data(), 3, record.cell_position);
+  std::copy_n(normal.data(), 3, record.cell_normal);
+  record.cell_depth = answer.cell_pair.depth;
+  return record;
+}
+
+oddsAnswer record_of_bad_pose() noexcept {
+  oddsAnswer record = {};
+  record.verdict = ODDS_CLEAR;
+  record.basis = ODDS_BUDGET;
+  record.probability = 0.5;
+  record.bad_pose = 1;
+  return record;
+}
+
+void count_basis(query::Basis basis) noexcept {
+  switch (basis) {
+    case query::Basis::proved:
+      count(statistics().queries_proved);
+      return;
+    case query::Basis::estimated:
+      count(statistics().queries_estimated);
+      return;
+    case query::Basis::budget:
+      count(statistics().queries_budget);
+      return;
+  }
+}
+
+// Precondition: this thread holds `entry.busy`, and `entry.pair` is set.
+int answer_pair(PairEntry& entry, dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int skip) noexcept {
+  const bool o1_is_a = entry.a == &own_data(o1);
+  const std::optional<math::Pose> pose_a = world_pose(o1_is_a ? o1 : o2);
+  const std::optional<math::Pose> pose_b = world_pose(o1_is_a ? o2 : o1);
+  entry.answered = true;
+  if (!pose_a || !pose_b) {
+    count(statistics().bad_poses);
+    entry.last = record_of_bad_pose();
+    return 0;
+  }
+  const Settings settings = combine(entry.a->settings, entry.b->settings);
+  const int limit = room_for(flags, settings.max_contacts);
+  const query::Answer& answer = entry.pair->run(pose_a->inverse() * *pose_b, request_for(settings, limit));
+  count_basis(answer.basis);
+  entry.last = record_of(answer, *pose_a);
+  ContactWriter writer(o1, o2, limit, contacts, skip);
+  for (const query::Contact& contact : answer.contacts) write_contact(writer, contact, *pose_a, o1_is_a);
+  if (use_cell_pair(answer, settings)) {
+    write_contact(writer, answer.cell_pair, *pose_a, o1_is_a);
+    entry.last.from_cell_pair = writer.count();
+    count(statistics().cell_pair_contacts, static_cast<unsigned long long>(writer.count()));
+  }
+  entry.last.contacts = writer.count();
+  count(statistics().contacts, static_cast<unsigned long long>(writer.count()));
+  return writer.count();
+}
+
+// A pair that nobody prepared: made now, inside the loop, and counted; a pair that cannot be made is said once.
+PairEntry* prepare_late(dGeomID o1, dGeomID o2) noexcept {
+  const PairTable::Made made = pair_table().prepare(own_data(o1), own_data(o2));
+  if (made.inserted) {
+    count(statistics().lazy_pairs);
+    if (!made.entry->pair) dMessage(0, "odds: a pair of meshes cannot collide: %s", oddsGetLastError());
+  }
+  return made.entry;
+}
+
+}  // namespace
+
+int collide_mesh(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int skip) noexcept {
+  count(statistics().queries);
+  PairEntry* entry = pair_table().find(own_data(o1), own_data(o2));
+  if (entry == nullptr) entry = prepare_late(o1, o2);
+  if (entry == nullptr || !entry->pair) {
+    count(statistics().failed_pairs);
+    return 0;
+  }
+  if (entry->busy.exchange(true, std::memory_order_acquire)) {
+    count(statistics().busy_pairs);
+    return 0;
+  }
+  const int written = answer_pair(*entry, o1, o2, flags, contacts, skip);
+  entry->busy.store(false, std::memory_order_release);
+  return written;
+}
+
+}  // namespace odds::ode

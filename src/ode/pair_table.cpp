@@ -1,0 +1,165 @@
+// Making, finding and freeing the workspaces of pairs.
+#include "ode/pair_table.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <memory>
+#include <utility>
+
+#include "ode/last_error.hpp"
+#include "ode/statistics.hpp"
+
+namespace odds::ode {
+namespace {
+
+// Touches the workspace's memory: a short query in full overlap fills queue and hit lists as far as they go.
+void warm(query::Pair& pair) noexcept {
+  query::Request request;
+  request.budget = query::Budget::work(2000);
+  request.max_contacts = 8;
+  static_cast<void>(pair.run(math::Pose(), request));
+  pair.reset();
+}
+
+std::unique_ptr<PairEntry> make_entry(GeomData& a, GeomData& b) {
+  auto entry = std::make_unique<PairEntry>();
+  entry->a = &a;
+  entry->b = &b;
+  auto pair = query::Pair::make(a.mesh->shape, b.mesh->shape);
+  if (pair.ok()) {
+    entry->pair.emplace(std::move(pair).value());
+    warm(*entry->pair);
+  } else {
+    set_last_error(pair.error());
+  }
+  return entry;
+}
+
+// Collisions of a dGeomTransform arrive as collisions of the geom inside it.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored \
+    "-Wdeprecated-declarations"  // ODE advises offsets instead, but its users still have transforms
+dGeomID inside_transforms(dGeomID geom) noexcept {
+  while (geom != nullptr && dGeomGetClass(geom) == dGeomTransformClass) geom = dGeomTransformGetGeom(geom);
+  return geom;
+}
+#pragma GCC diagnostic pop
+
+}  // namespace
+
+PairTable& pair_table() noexcept {
+  static PairTable only;
+  return only;
+}
+
+std::size_t PairTable::bucket_of(const GeomData& a, const GeomData& b) noexcept {
+  // Mixing after splitmix64: neighbouring numbers spread over all buckets.
+  std::uint64_t key = a.number * 0x9e3779b97f4a7c15u ^ b.number * 0xc2b2ae3d27d4eb4fu;
+  key ^= key >> 31;
+  key *= 0xbf58476d1ce4e5b9u;
+  key ^= key >> 29;
+  return static_cast<std::size_t>(key % bucket_count);
+}
+
+PairEntry* PairTable::find(const GeomData& x, const GeomData& y) const noexcept {
+  const GeomData& a = x.number < y.number ? x : y;
+  const GeomData& b = x.number < y.number ? y : x;
+  PairEntry* entry = buckets_[bucket_of(a, b)].load(std::memory_order_acquire);
+  while (entry != nullptr && (entry->a != &a || entry->b != &b)) entry = entry->next.load(std::memory_order_acquire);
+  return entry;
+}
+
+PairTable::Made PairTable::prepare(GeomData& x, GeomData& y) noexcept {
+  try {
+    const std::lock_guard lock(writers_);
+    if (PairEntry* found = find(x, y)) {
+      if (!found->pair)
+        set_last_error("the pair could not be prepared before; destroy one of its geoms and make it anew");
+      return {found, false};
+    }
+    GeomData& a = x.number < y.number ? x : y;
+    GeomData& b = x.number < y.number ? y : x;
+    std::unique_ptr<PairEntry> entry = make_entry(a, b);
+    a.pairs.reserve(a.pairs.size() + 1);
+    b.pairs.reserve(b.pairs.size() + 1);
+    a.pairs.push_back(entry.get());
+    b.pairs.push_back(entry.get());
+    Bucket& bucket = buckets_[bucket_of(a, b)];
+    entry->next.store(bucket.load(std::memory_order_relaxed), std::memory_order_relaxed);
+    bucket.store(entry.get(), std::memory_order_release);
+    count(statistics().live_pairs);
+    return {entry.release(), true};
+  } catch (const std::exception& error) {
+    set_last_error(std::string_view(error.what()));
+  } catch (...) {
+    set_last_error("preparing a pair failed");
+  }
+  return {};
+}
+
+void PairTable::remove_from_bucket(PairEntry& entry) noexcept {
+  Bucket* link = &buckets_[bucket_of(*entry.a, *entry.b)];
+  while (PairEntry* here = link->load(std::memory_order_relaxed)) {
+    if (here == &entry) {
+      link->store(here->next.load(std::memory_order_relaxed), std::memory_order_release);
+      return;
+    }
+    link = &here->next;
+  }
+}
+
+void PairTable::forget(GeomData& geom) noexcept {
+  try {
+    const std::lock_guard lock(writers_);
+    for (PairEntry* entry : geom.pairs) {
+      remove_from_bucket(*entry);
+      GeomData& other = entry->a == &geom ? *entry->b : *entry->a;
+      if (&other != &geom) std::erase(other.pairs, entry);
+      delete entry;
+      statistics().live_pairs.fetch_sub(1, std::memory_order_relaxed);
+    }
+    geom.pairs.clear();
+  } catch (...) {
+    count(statistics().caught);
+  }
+}
+
+}  // namespace odds::ode
+
+int oddsPreparePair(dGeomID g1, dGeomID g2) noexcept {
+  using namespace odds::ode;
+  g1 = inside_transforms(g1);
+  g2 = inside_transforms(g2);
+  const int our_class = oddsGetClass();
+  const auto ours = [our_class](dGeomID geom) { return our_class >= 0 && dGeomGetClass(geom) == our_class; };
+  if (g1 == nullptr || g2 == nullptr || g1 == g2 || dGeomIsSpace(g1) != 0 || dGeomIsSpace(g2) != 0) {
+    set_last_error(
+        "oddsPreparePair: needs two different geoms, not null and not spaces; prepare the members of a space one by "
+        "one");
+    return 0;
+  }
+  if (!ours(g1) && !ours(g2)) {
+    set_last_error("oddsPreparePair: neither geom was made by dCreateOddsMesh (or the library is not initialised)");
+    return 0;
+  }
+  if (!ours(g1) || !ours(g2)) return 1;
+  const PairTable::Made made = pair_table().prepare(own_data(g1), own_data(g2));
+  return made.entry != nullptr && made.entry->pair ? 1 : 0;
+}
+
+int oddsGetLastAnswer(dGeomID g1, dGeomID g2, oddsAnswer* answer) noexcept {
+  using namespace odds::ode;
+  const GeomData* x = find_data(g1, "oddsGetLastAnswer");
+  const GeomData* y = x != nullptr ? find_data(g2, "oddsGetLastAnswer") : nullptr;
+  if (x == nullptr || y == nullptr || answer == nullptr) return 0;
+  const PairEntry* entry = pair_table().find(*x, *y);
+  if (entry == nullptr || !entry->answered) {
+    set_last_error("oddsGetLastAnswer: these two geoms never collided");
+    return 0;
+  }
+  *answer = entry->last;
+  if (entry->a != x) {
+    for (double& component : answer->cell_normal) component = -component;
+  }
+  return 1;
+}
