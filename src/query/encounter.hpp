@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "odds/primitive/triangle_triangle.hpp"
+#include "odds/probability/balls_into_bins.hpp"
 #include "odds/probability/kinematic.hpp"
 #include "odds/query/answer.hpp"
 #include "odds/query/contact_patch.hpp"
@@ -86,7 +87,10 @@ class Encounter {
     const tree::NodeStatistics& sa = a_.statistics()[i];
     const tree::NodeStatistics& sb = b_.statistics()[j];
     const double common = overlap_volume(volume_a, volume_b, relative_);
-    const double p = probability::kinematic(sa, sb, relative_.rotation, volume_a.volume(), volume_b.volume(), common);
+    const double p =
+        estimator_ == EstimatorKind::cells
+            ? cells_probability(sa, sb, volume_a.volume(), volume_b.volume(), common)
+            : probability::kinematic(sa, sb, relative_.rotation, volume_a.volume(), volume_b.volume(), common);
     return static_cast<float>(std::isfinite(p) ? std::clamp(p, 0.0, 1.0) : 0.5);
   }
 
@@ -161,6 +165,16 @@ class Encounter {
   [[nodiscard]] const tree::Hierarchy<V>& b() const noexcept { return b_; }
 
  private:
+  /// The book's estimate: (4.15), (4.16) and the collision inside a shared cell of Zachmann 2007.
+  [[nodiscard]] double cells_probability(const tree::NodeStatistics& sa, const tree::NodeStatistics& sb,
+                                         double volume_a, double volume_b, double common) const noexcept {
+    const probability::CellCounts counts =
+        probability::cells_in_overlap(sa.well_filled_cells, sb.well_filled_cells, common, volume_a, volume_b);
+    return probability::collision_probability(
+        counts, probability::collision_in_shared_cell(sa.depth, sb.depth, static_cast<int>(a_.levels()) - 1,
+                                                      static_cast<int>(b_.levels()) - 1));
+  }
+
   const tree::Hierarchy<V>& a_;
   const tree::Hierarchy<V>& b_;
   math::Pose b_in_a_;

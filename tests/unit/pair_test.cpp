@@ -135,6 +135,25 @@ TEST(Shape, KnowsAClosedMeshFromASheet) {
   EXPECT_FALSE(build(triangles)->is_solid()) << "it faces inwards";
 }
 
+TEST(Pair, BothEstimatorsLeadToTheSameProofsByDifferentWays) {
+  const auto shape = Shape::build(test::wavy_sphere(24)).value();
+  auto pair = std::move(Pair::make(shape, shape)).value();
+  bool differ = false;
+  for (double x = 1.7; x < 2.2; x += 0.05) {
+    const math::Pose pose{Mat3::Identity(), {x, 0.1, 0.2}};
+    const Answer cells = pair.run(pose, {.estimator = EstimatorKind::cells});
+    const Answer kinematic = pair.run(pose, {.estimator = EstimatorKind::kinematic});
+    EXPECT_EQ(cells.verdict, kinematic.verdict) << x;
+    EXPECT_EQ(cells.basis, Basis::proved);
+    differ = differ || cells.cost.node_pairs != kinematic.cost.node_pairs;
+    for (const auto estimator : {EstimatorKind::cells, EstimatorKind::kinematic}) {
+      const Answer short_of_time = pair.run(pose, {.estimator = estimator, .budget = Budget::work(30)});
+      EXPECT_TRUE(short_of_time.probability >= 0.0 && short_of_time.probability <= 1.0);
+    }
+  }
+  EXPECT_TRUE(differ) << "the order of the search must depend on the estimator";
+}
+
 TEST(Pair, SaysAQuickEstimatedHitOnlyIfAsked) {
   const auto shape = Shape::build(test::wavy_sphere(24));
   auto pair = std::move(Pair::make(shape.value(), shape.value())).value();
