@@ -1,0 +1,327 @@
+// Puts the steps together: rim, patches, normal, depth, choice. Every loop looks at the deadline.
+#include "odds/query/contact_patch.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "odds/math/tolerances.hpp"
+#include "query/patch_components.hpp"
+#include "query/patch_normal.hpp"
+#include "query/patch_overlap.hpp"
+#include "query/patch_rim.hpp"
+#include "query/patch_select.hpp"
+
+namespace odds::query {
+namespace {
+
+constexpr std::size_t pairs_between_polls = 8;
+constexpr std::size_t pairs_after_deadline = 8;
+constexpr std::size_t patches_after_deadline = 2;
+constexpr std::size_t witnesses_per_pair = 4;
+
+/// A finished patch.
+struct Patch {
+  Vec3 normal = Vec3::UnitZ();
+  Vec3 lower = Vec3::Zero();  ///< box of the rim
+  Vec3 upper = Vec3::Zero();
+  double low = 0.0;  ///< of the rim, and depth below it, along `normal`
+  double high = 0.0;
+  double depth = 0.0;
+  patch::Chosen chosen;
+  bool dropped = false;
+};
+
+/// A step through 0 .. count-1 that visits all, spread out from the start, so that what a short budget leaves is a sample.
+std::size_t spread_step(std::size_t count) noexcept {
+  auto step = static_cast<std::size_t>(0.618 * static_cast<double>(count));
+  while (step > 1 && std::gcd(step, count) != 1) --step;
+  return std::max<std::size_t>(step, 1);
+}
+
+}  // namespace
+
+struct PatchBuilder::Scratch {
+  explicit Scratch(std::size_t hit_capacity)
+      : pairs(hit_capacity),
+        pieces(patch::most_pieces_of_a_pair * hit_capacity),
+        by_patch(pieces.size()),
+        witnesses(witnesses_per_pair * hit_capacity + 64),
+        components(pieces.size(), hit_capacity) {}
+
+  void collect(const PatchInput& input, const Deadline& deadline) noexcept;
+  void add_pieces(const PatchInput& input, bool silent_too) noexcept;
+  void sort_by_patch(std::size_t patches) noexcept;
+  Patch make_patch(const PatchInput& input, const patch::RimSums& sums, std::span<const std::uint32_t> indices,
+                   const Deadline& deadline) noexcept;
+  void find_witnesses(std::span<const std::uint32_t> indices, const patch::Frame& frame, const Deadline& deadline) noexcept;
+  std::size_t probe(const PatchInput& input, const Vec3& centre, double reach, const patch::Frame& frame,
+                    patch::Chosen spread, std::array<patch::Witness, most_contacts + 1>& measured,
+                    const Deadline& deadline) noexcept;
+  void drop_opposed(const Vec3* previous) noexcept;
+  void write(const PatchInput& input) noexcept;
+  bool late(const Deadline& deadline) noexcept { return expired = expired || deadline(); }
+
+  std::vector<patch::PlacedPair> pairs;
+  std::vector<patch::RimPiece> pieces;
+  std::vector<std::uint32_t> by_patch;
+  std::array<std::uint32_t, patch::Components::most + 1> first_of_patch{};
+  std::vector<patch::Witness> witnesses;
+  patch::Components components;
+  patch::Fan fan;
+  std::array<Patch, patch::Components::most> patches;
+  std::array<Contact, most_contacts> contacts;
+  patch::Rim rim;
+  std::size_t pair_count = 0;
+  std::size_t piece_count = 0;
+  std::size_t witness_count = 0;
+  std::size_t patch_count = 0;
+  std::size_t contact_count = 0;
+  bool expired = false;
+};
+
+/// Places the triangles and cuts the rim into pieces.
+void PatchBuilder::Scratch::collect(const PatchInput& input, const Deadline& deadline) noexcept {
+  const std::size_t count = std::min(input.hits.size(), pairs.size());
+  const std::size_t step = count > 0 ? spread_step(count) : 1;
+  std::size_t next = 0;
+  pair_count = 0;
+  for (std::size_t i = 0; i < count; ++i, next = (next + step) % count) {
+    if (patch::place(input, input.hits[next], pairs[pair_count])) ++pair_count;
+    if (i % pairs_between_polls == pairs_between_polls - 1 && late(deadline)) break;
+  }
+  if (expired) pair_count = std::min(pair_count, pairs_after_deadline);
+  add_pieces(input, false);
+  if (piece_count == 0) add_pieces(input, true);
+  Vec3 lower = Vec3::Constant(std::numeric_limits<double>::infinity());
+  Vec3 upper = -lower;
+  for (std::size_t i = 0; i < piece_count; ++i) {
+    lower = lower.cwiseMin(pieces[i].from).cwiseMin(pieces[i].to);
+    upper = upper.cwiseMax(pieces[i].from).cwiseMax(pieces[i].to);
+  }
+  rim.pieces = {pieces.data(), piece_count};
+  rim.pairs = {pairs.data(), pair_count};
+  rim.origin = piece_count > 0 ? Vec3(0.5 * lower + 0.5 * upper) : Vec3::Zero();
+}
+
+/// Coplanar triangles that face the same way are silent between solids: they speak only where nothing else does.
+void PatchBuilder::Scratch::add_pieces(const PatchInput& input, bool silent_too) noexcept {
+  piece_count = 0;
+  std::array<patch::RimPiece, patch::most_pieces_of_a_pair> found;
+  for (std::size_t i = 0; i < pair_count; ++i) {
+    const std::size_t count = patch::rim_pieces(pairs[i], input.solid_a && input.solid_b && !silent_too,
+                                                static_cast<std::uint32_t>(i), found);
+    for (std::size_t k = 0; k < count; ++k) {
+      if (found[k].from.allFinite() && found[k].to.allFinite()) pieces[piece_count++] = found[k];
+    }
+  }
+}
+
+void PatchBuilder::Scratch::sort_by_patch(std::size_t count) noexcept {
+  first_of_patch.fill(0);
+  for (std::size_t i = 0; i < piece_count; ++i) {
+    if (pieces[i].component < count) ++first_of_patch[pieces[i].component + 1];
+  }
+  for (std::size_t p = 1; p < first_of_patch.size(); ++p) first_of_patch[p] += first_of_patch[p - 1];
+  std::array<std::uint32_t, patch::Components::most + 1> next = first_of_patch;
+  for (std::uint32_t i = 0; i < piece_count; ++i) {
+    if (pieces[i].component < count) by_patch[next[pieces[i].component]++] = i;
+  }
+}
+
+/// Fills `witnesses` with the overlap's corners of all pairs of the patch, shallow ones left out.
+void PatchBuilder::Scratch::find_witnesses(std::span<const std::uint32_t> indices, const patch::Frame& frame,
+                                           const Deadline& deadline) noexcept {
+  witness_count = 0;
+  double deepest = 0.0;
+  std::uint32_t last_pair = no_feature;
+  const std::size_t limit = expired ? pairs_after_deadline : indices.size();
+  for (std::size_t i = 0; i < std::min(limit, indices.size()); ++i) {
+    const std::uint32_t pair = pieces[indices[i]].pair;
+    if (pair == last_pair) continue;  // the pieces of one pair follow each other
+    last_pair = pair;
+    const patch::PlacedPair& placed = pairs[pair];
+    patch::overlap_corners(placed, frame, Vec3::Zero(), [&](const Vec3& on_a, const Vec3& on_b, double depth) noexcept {
+      if (!(depth >= 0.0) || depth < tolerances::shallow_share * deepest || !std::isfinite(depth)) return;
+      deepest = std::max(deepest, depth);
+      if (witness_count == witnesses.size()) return;
+      witnesses[witness_count++] = {on_a, on_b, depth, placed.index.a, placed.index.b};
+    });
+    if (i % pairs_between_polls == pairs_between_polls - 1 && late(deadline)) break;
+  }
+  const double least = tolerances::shallow_share * deepest;
+  const auto end = std::remove_if(witnesses.begin(), witnesses.begin() + static_cast<std::ptrdiff_t>(witness_count),
+                                  [least](const patch::Witness& w) { return w.depth < least; });
+  witness_count = static_cast<std::size_t>(end - witnesses.begin());
+  if (witness_count == 0) {  // rounding has parted triangles that only touch
+    const patch::RimPiece& piece = pieces[indices[0]];
+    const patch::PlacedPair& placed = pairs[piece.pair];
+    witnesses[witness_count++] = {piece.middle(), piece.middle(), 0.0, placed.index.a, placed.index.b};
+  }
+}
+
+/// Centroid of the surface that the rim spans, which unlike the mean of the rim does not care how finely it is cut.
+static Vec3 span_centre(const patch::Rim& rim, std::span<const std::uint32_t> indices, const Vec3& middle,
+                        const Vec3& normal) noexcept {
+  Vec3 sum = Vec3::Zero();
+  double weight = 0.0;
+  double magnitude = 0.0;
+  for (const std::uint32_t index : indices) {
+    const patch::RimPiece& piece = rim.pieces[index];
+    if (!piece.counts) continue;
+    const Vec3 from = piece.from - middle;
+    const Vec3 to = piece.to - middle;
+    const double w = normal.dot(from.cross(to));
+    sum += w * (from + to) / 3.0;
+    weight += w;
+    magnitude += std::abs(w);
+  }
+  if (!(std::abs(weight) > 0.1 * magnitude)) return middle;
+  return middle + sum / weight;
+}
+
+/// Measures the overlap inside the rim: at the centre and a little inside of the points that span the patch. A deep overlap's
+/// rim triangles reach only as far as they are large.
+std::size_t PatchBuilder::Scratch::probe(const PatchInput& input, const Vec3& centre, double reach,
+                                         const patch::Frame& frame, patch::Chosen spread,
+                                         std::array<patch::Witness, most_contacts + 1>& measured,
+                                         const Deadline& deadline) noexcept {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < spread.count; ++i) {
+    patch::Witness& w = spread.witnesses[i];
+    patch::Witness inside;
+    const Vec3 place = w.middle();
+    if (!late(deadline) &&
+        patch::probe_overlap(input, place + 0.02 * (centre - place), frame.normal, reach, inside) && inside.depth > w.depth) {
+      inside.on_a = place + frame.normal * frame.normal.dot(inside.on_a - place);
+      inside.on_b = place + frame.normal * frame.normal.dot(inside.on_b - place);
+      w = inside;
+    }
+    measured[count++] = w;
+  }
+  patch::Witness inside;
+  if (!late(deadline) && patch::probe_overlap(input, centre, frame.normal, reach, inside)) measured[count++] = inside;
+  return count;
+}
+
+Patch PatchBuilder::Scratch::make_patch(const PatchInput& input, const patch::RimSums& sums,
+                                        std::span<const std::uint32_t> indices, const Deadline& deadline) noexcept {
+  Patch made;
+  made.lower = sums.lower;
+  made.upper = sums.upper;
+  made.normal = patch::patch_normal({input, rim, sums, indices, expired ? std::size_t{2} : std::size_t{24}});
+  const patch::Frame frame(made.normal);
+  find_witnesses(indices, frame, deadline);
+  patch::Extremes extremes(frame, fan);
+  for (std::size_t i = 0; i < witness_count; ++i) extremes.add(witnesses[i]);
+  double deepest = 0.0;
+  const std::span<const patch::Witness> extreme = extremes.all();
+  for (const patch::Witness& w : extreme) deepest = std::max(deepest, w.depth);
+
+  const Vec3 centre = span_centre(rim, indices, sums.centre(rim.origin), made.normal);
+  const double lever = (input.reference_a - centre).norm();
+  const auto spacing = [lever](double depth) noexcept {
+    return std::max(tolerances::spacing_by_depth * depth, tolerances::spacing_by_lever * lever);
+  };
+  made.chosen = patch::choose(extreme, frame, most_contacts, spacing(deepest));
+  if (input.probe_a && input.probe_b && sums.length > 0.0 && !late(deadline)) {
+    std::array<patch::Witness, most_contacts + 1> measured;
+    const double reach = 2.0 * (sums.diagonal() + deepest);
+    const std::size_t count = probe(input, centre, reach, frame, made.chosen, measured, deadline);
+    for (std::size_t i = 0; i < count; ++i) deepest = std::max(deepest, measured[i].depth);
+    made.chosen = patch::choose({measured.data(), count}, frame, most_contacts, spacing(deepest));
+  }
+  made.depth = deepest;
+  made.low = std::numeric_limits<double>::infinity();
+  made.high = -made.low;
+  for (const std::uint32_t index : indices) {
+    const double height = made.normal.dot(pieces[index].middle() - rim.origin);
+    made.low = std::min(made.low, height);
+    made.high = std::max(made.high, height);
+  }
+  made.low = std::min(made.low, made.high - made.depth);
+  return made;
+}
+
+/// Two patches that push against each other through the same stuff (a rod that has run through a plate) cannot both be
+/// obeyed: the shorter way out stays.
+void PatchBuilder::Scratch::drop_opposed(const Vec3* previous) noexcept {
+  const auto cost = [previous](const Patch& p) noexcept {
+    return p.depth * (previous != nullptr && previous->dot(p.normal) > tolerances::same_as_before ? tolerances::hysteresis : 1.0);
+  };
+  for (std::size_t i = 0; i < patch_count; ++i) {
+    for (std::size_t j = i + 1; j < patch_count; ++j) {
+      Patch& p = patches[i];
+      Patch& q = patches[j];
+      if (p.dropped || q.dropped || p.normal.dot(q.normal) > tolerances::opposed) continue;
+      if ((p.lower.array() - p.depth > q.upper.array() + q.depth).any()) continue;
+      if ((q.lower.array() - q.depth > p.upper.array() + p.depth).any()) continue;
+      // Along p's normal p's overlap reaches down from its rim, q's up from its own.
+      const double q_low = -q.high;
+      const double q_high = -q.low;
+      if (p.low > q_high || q_low > p.high) continue;
+      (cost(q) < cost(p) ? p : q).dropped = true;
+    }
+  }
+}
+
+/// Deals the contacts out: every patch its first, the deepest patch first, then every patch its second, and so on.
+void PatchBuilder::Scratch::write(const PatchInput& input) noexcept {
+  std::array<Patch*, patch::Components::most> order{};
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < patch_count; ++i) {
+    if (!patches[i].dropped && patches[i].chosen.count > 0) order[count++] = &patches[i];
+  }
+  const auto rank = [&input](const Patch* p) noexcept {
+    const bool before = input.previous_normal != nullptr && input.previous_normal->dot(p->normal) > tolerances::same_as_before;
+    return before ? p->depth * tolerances::keep_first : p->depth;
+  };
+  std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count),
+                   [&rank](const Patch* p, const Patch* q) { return rank(p) != rank(q) ? rank(p) > rank(q) : p < q; });
+  const auto wanted = static_cast<std::size_t>(std::clamp(input.max_contacts, 1, most_contacts));
+  if (count >= wanted) {
+    count = wanted;  // one contact a patch: at its middle, so that it bears without tipping
+    for (std::size_t i = 0; i < count; ++i) {
+      if (order[i]->chosen.count > 1) order[i]->chosen.witnesses[0] = patch::merged(order[i]->chosen, order[i]->normal);
+      order[i]->chosen.count = 1;
+    }
+  }
+  contact_count = 0;
+  for (std::size_t round = 0; round < most_contacts; ++round) {
+    for (std::size_t i = 0; i < count && contact_count < wanted; ++i) {
+      if (round >= order[i]->chosen.count) continue;
+      const patch::Witness& w = order[i]->chosen.witnesses[round];
+      contacts[contact_count++] = {w.middle(), order[i]->normal, w.depth, w.triangle_a, w.triangle_b};
+    }
+  }
+}
+
+PatchBuilder::PatchBuilder(std::size_t hit_capacity)
+    : scratch_(std::make_unique<Scratch>(std::clamp<std::size_t>(hit_capacity, 8, 65536))) {}
+PatchBuilder::~PatchBuilder() = default;
+PatchBuilder::PatchBuilder(PatchBuilder&&) noexcept = default;
+PatchBuilder& PatchBuilder::operator=(PatchBuilder&&) noexcept = default;
+
+std::span<const Contact> PatchBuilder::build(const PatchInput& input, const Deadline& deadline) noexcept {
+  Scratch& s = *scratch_;
+  s.expired = false;
+  s.collect(input, deadline);
+  if (s.piece_count == 0) return {};
+  const std::span<const patch::RimSums> sums = s.components.group(s.rim, input.solid_a, input.solid_b);
+  s.sort_by_patch(sums.size());
+  s.patch_count = 0;
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    const std::span<const std::uint32_t> indices{s.by_patch.data() + s.first_of_patch[i],
+                                                 s.first_of_patch[i + 1] - s.first_of_patch[i]};
+    if (indices.empty()) continue;
+    if (s.patch_count > 0 && s.late(deadline) && s.patch_count >= patches_after_deadline) break;
+    s.patches[s.patch_count++] = s.make_patch(input, sums[i], indices, deadline);
+  }
+  s.drop_opposed(input.previous_normal);
+  s.write(input);
+  return {s.contacts.data(), s.contact_count};
+}
+
+}  // namespace odds::query

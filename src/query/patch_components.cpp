@@ -1,0 +1,301 @@
+// Union-find over the ends of rim pieces, then a few merges among at most 32 curves.
+#include "query/patch_components.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "odds/math/random.hpp"
+#include "odds/math/tolerances.hpp"
+
+namespace odds::query::patch {
+namespace {
+
+std::size_t table_size(std::size_t entries) noexcept {
+  std::size_t size = 64;
+  while (size < 2 * entries) size *= 2;
+  return size;
+}
+
+bool boxes_meet(const RimSums& i, const RimSums& j, double margin) noexcept {
+  return ((i.lower.array() - margin) <= j.upper.array()).all() && ((j.lower.array() - margin) <= i.upper.array()).all();
+}
+
+Vec3 direction_of(const Vec3& v) noexcept {
+  const double length = v.norm();
+  return length > 0.0 ? Vec3(v / length) : Vec3::Zero();
+}
+
+}  // namespace
+
+void RimSums::add(const RimPiece& piece, const PlacedPair& placed, const Vec3& origin) noexcept {
+  lower = lower.cwiseMin(piece.from).cwiseMin(piece.to);
+  upper = upper.cwiseMax(piece.from).cwiseMax(piece.to);
+  const Vec3 from = piece.from - origin;
+  const Vec3 to = piece.to - origin;
+  const double piece_length = (to - from).norm();
+  area += 0.5 * from.cross(to);
+  gap += to - from;
+  moment += piece_length * 0.5 * (from + to);
+  normals_a += piece_length * placed.normal_a;
+  normals_b += piece_length * placed.normal_b;
+  length += piece_length;
+}
+
+void RimSums::add(const RimSums& other) noexcept {
+  lower = lower.cwiseMin(other.lower);
+  upper = upper.cwiseMax(other.upper);
+  area += other.area;
+  gap += other.gap;
+  moment += other.moment;
+  normals_a += other.normals_a;
+  normals_b += other.normals_b;
+  length += other.length;
+  loose_ends += other.loose_ends;
+}
+
+Vec3 RimSums::centre(const Vec3& origin) const noexcept {
+  if (length > 0.0) return origin + moment / length;
+  return 0.5 * (lower + upper);
+}
+
+Vec3 RimSums::vector_area(const Vec3& origin) const noexcept {
+  return area - 0.5 * (centre(origin) - origin).cross(gap);
+}
+
+Components::Components(std::size_t most_pieces, std::size_t most_pairs)
+    : joints_(2 * most_pieces),
+      joint_table_(table_size(2 * most_pieces)),
+      copy_table_(table_size(most_pieces)),
+      triangle_table_(table_size(2 * most_pairs)),
+      ends_(most_pieces),
+      piece_parents_(most_pieces),
+      curve_of_root_(most_pieces),
+      curves_(most_pieces),
+      order_(most_pieces),
+      curve_parents_(most_pieces),
+      patch_of_curve_(most_pieces),
+      patches_(most) {}
+
+std::span<const RimSums> Components::group(const Rim& rim, bool solid_a, bool solid_b) noexcept {
+  if (rim.pieces.empty()) return {};
+  connect(rim);
+  sum_up(rim);
+  keep_the_longest();
+  join_open_curves(rim);
+  join_holes(rim, solid_a, solid_b);
+  join_neighbours(rim);
+  settle(rim);
+  return {patches_.data(), kept_};
+}
+
+std::uint32_t Components::root(std::vector<std::uint32_t>& parents, std::uint32_t i) const noexcept {
+  while (parents[i] != i) {
+    parents[i] = parents[parents[i]];
+    i = parents[i];
+  }
+  return i;
+}
+
+/// The joint at a point; a new one if none is near. A point near the border of its cell is looked for beyond it as well.
+std::uint32_t Components::joint_at(const Vec3& point, std::uint32_t piece) noexcept {
+  const std::size_t mask = joint_mask_;
+  const auto slot_of = [&](const Vec3& p) {
+    std::uint64_t key = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto cell = static_cast<std::int64_t>(std::floor(p[axis] / cell_));
+      key = math::scramble(key ^ static_cast<std::uint64_t>(cell));
+    }
+    return static_cast<std::size_t>(key) & mask;
+  };
+  const std::size_t home = slot_of(point);
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 offset((corner & 1) != 0 ? same_point_ : -same_point_, (corner & 2) != 0 ? same_point_ : -same_point_,
+                      (corner & 4) != 0 ? same_point_ : -same_point_);
+    const std::size_t start = slot_of(point + offset);
+    if (corner > 0 && start == home) continue;
+    for (std::size_t slot = start; joint_table_[slot] != 0; slot = (slot + 1) & mask) {
+      const std::uint32_t joint = joint_table_[slot] - 1;
+      if ((joints_[joint].position - point).cwiseAbs().maxCoeff() <= same_point_) return joint;
+    }
+  }
+  std::size_t slot = home;
+  while (joint_table_[slot] != 0) slot = (slot + 1) & mask;
+  const auto joint = static_cast<std::uint32_t>(joint_count_++);
+  joints_[joint] = {point, 0, piece};
+  joint_table_[slot] = joint + 1;
+  return joint;
+}
+
+/// Remembers a directed piece; true if the same was there before.
+bool Components::is_copy(std::uint32_t from, std::uint32_t to) noexcept {
+  const std::uint64_t key = (static_cast<std::uint64_t>(from + 1) << 32U) | (to + 1);
+  const std::size_t mask = copy_mask_;
+  std::size_t slot = static_cast<std::size_t>(math::scramble(key)) & mask;
+  for (; copy_table_[slot] != 0; slot = (slot + 1) & mask) {
+    if (copy_table_[slot] == key) return true;
+  }
+  copy_table_[slot] = key;
+  return false;
+}
+
+void Components::connect(const Rim& rim) noexcept {
+  double extent = 0.0;
+  double reach = 0.0;
+  for (const RimPiece& piece : rim.pieces) {
+    extent = std::max(extent, (piece.from - rim.origin).cwiseAbs().maxCoeff());
+    extent = std::max(extent, (piece.to - rim.origin).cwiseAbs().maxCoeff());
+    reach = std::max(reach, piece.from.cwiseAbs().maxCoeff());
+  }
+  same_point_ = std::max(tolerances::same_joint * extent, tolerances::on_plane * reach);
+  cell_ = std::max(256.0 * same_point_, std::numeric_limits<double>::min());
+  joint_mask_ = table_size(2 * rim.pieces.size()) - 1;  // only as much of the tables as is needed, for clearing costs
+  copy_mask_ = table_size(rim.pieces.size()) - 1;
+  std::fill_n(joint_table_.begin(), joint_mask_ + 1, 0U);
+  std::fill_n(copy_table_.begin(), copy_mask_ + 1, std::uint64_t{0});
+  joint_count_ = 0;
+  for (std::uint32_t i = 0; i < rim.pieces.size(); ++i) {
+    piece_parents_[i] = i;
+    RimPiece& piece = rim.pieces[i];
+    const std::uint32_t from = joint_at(piece.from - rim.origin, i);
+    const std::uint32_t to = joint_at(piece.to - rim.origin, i);
+    ends_[i] = {from, to};
+    for (const std::uint32_t joint : {from, to}) {
+      const std::uint32_t here = root(piece_parents_, i);
+      const std::uint32_t there = root(piece_parents_, joints_[joint].first_piece);
+      piece_parents_[std::max(here, there)] = std::min(here, there);
+    }
+    piece.counts = from != to && !is_copy(from, to);
+    if (!piece.counts) continue;
+    ++joints_[from].balance;
+    --joints_[to].balance;
+  }
+}
+
+void Components::sum_up(const Rim& rim) noexcept {
+  curve_count_ = 0;
+  for (std::uint32_t i = 0; i < rim.pieces.size(); ++i) {
+    const std::uint32_t top = root(piece_parents_, i);
+    if (top == i) {
+      curve_of_root_[i] = static_cast<std::uint32_t>(curve_count_);
+      curves_[curve_count_++] = RimSums{};
+    }
+    RimPiece& piece = rim.pieces[i];
+    piece.component = curve_of_root_[top];
+    RimSums& curve = curves_[piece.component];
+    if (piece.counts) {
+      curve.add(piece, rim.pairs[piece.pair], rim.origin);
+    } else {
+      curve.lower = curve.lower.cwiseMin(piece.from);
+      curve.upper = curve.upper.cwiseMax(piece.from);
+    }
+  }
+  for (std::size_t j = 0; j < joint_count_; ++j) {
+    if (joints_[j].balance != 0) ++curves_[rim.pieces[joints_[j].first_piece].component].loose_ends;
+  }
+}
+
+/// Reorders nothing: marks which curves stay, the longest first.
+void Components::keep_the_longest() noexcept {
+  for (std::uint32_t i = 0; i < curve_count_; ++i) {
+    order_[i] = i;
+    curve_parents_[i] = i;
+  }
+  kept_ = std::min(curve_count_, most);
+  const auto longer = [this](std::uint32_t i, std::uint32_t j) {
+    if (curves_[i].length != curves_[j].length) return curves_[i].length > curves_[j].length;
+    return i < j;
+  };
+  std::partial_sort(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(kept_),
+                    order_.begin() + static_cast<std::ptrdiff_t>(curve_count_), longer);
+}
+
+void Components::join(std::uint32_t i, std::uint32_t j) noexcept {
+  i = root(curve_parents_, i);
+  j = root(curve_parents_, j);
+  if (i == j) return;
+  if (curves_[j].length > curves_[i].length || (curves_[j].length == curves_[i].length && j < i)) std::swap(i, j);
+  curve_parents_[j] = i;
+  curves_[i].add(curves_[j]);
+}
+
+/// Pieces of a rim of which parts are missing belong together if one triangle carries both.
+void Components::join_open_curves(const Rim& rim) noexcept {
+  bool any = false;
+  for (std::size_t i = 0; i < kept_; ++i) any = any || !curves_[order_[i]].closed();
+  if (!any) return;
+  const std::size_t mask = table_size(2 * rim.pairs.size()) - 1;
+  std::fill_n(triangle_table_.begin(), mask + 1, std::uint64_t{0});
+  for (const RimPiece& piece : rim.pieces) {
+    const std::uint32_t top = root(curve_parents_, piece.component);
+    if (curves_[top].closed()) continue;
+    const TrianglePair& index = rim.pairs[piece.pair].index;
+    for (const std::uint64_t triangle : {std::uint64_t{index.a} * 2 + 1, std::uint64_t{index.b} * 2 + 2}) {
+      std::size_t slot = static_cast<std::size_t>(math::scramble(triangle)) & mask;
+      while (triangle_table_[slot] != 0 && (triangle_table_[slot] >> 24U) != triangle) slot = (slot + 1) & mask;
+      if (triangle_table_[slot] == 0) {
+        triangle_table_[slot] = (triangle << 24U) | piece.component;
+      } else {
+        join(piece.component, static_cast<std::uint32_t>(triangle_table_[slot] & 0xffffffU));
+      }
+    }
+  }
+}
+
+/// The inner rim of a ring (a pipe's end on a plane) runs the other way round: its vector area points against the normals
+/// along it. It belongs to the smallest curve around it.
+void Components::join_holes(const Rim& rim, bool solid_a, bool solid_b) noexcept {
+  if (!solid_a && !solid_b) return;
+  for (std::size_t k = 0; k < kept_; ++k) {
+    const std::uint32_t hole = order_[k];
+    if (root(curve_parents_, hole) != hole || !curves_[hole].closed() || curves_[hole].length == 0.0) continue;
+    // Turning a sheet around turns its normals and the rim: only the comparison with its own normals stays.
+    Vec3 outwards = Vec3::Zero();
+    if (solid_a) outwards += curves_[hole].normals_b;
+    if (solid_b) outwards -= curves_[hole].normals_a;
+    const double against = direction_of(curves_[hole].vector_area(rim.origin)).dot(outwards);
+    if (against > -tolerances::hole_rim * curves_[hole].length) continue;
+    std::uint32_t around = hole;
+    for (std::size_t m = 0; m < kept_; ++m) {
+      const std::uint32_t other = order_[m];
+      if (other == hole || root(curve_parents_, other) != other) continue;
+      if (curves_[other].length <= curves_[hole].length) continue;
+      if (!boxes_meet(curves_[other], curves_[hole], 0.1 * curves_[hole].diagonal())) continue;
+      if (around == hole || curves_[other].length < curves_[around].length) around = other;
+    }
+    if (around != hole) join(around, hole);
+  }
+}
+
+/// Two curves of nearly the same normal that overlap are one contact (faces that are flush, rims that are doubled).
+void Components::join_neighbours(const Rim& rim) noexcept {
+  for (std::size_t k = 0; k < kept_; ++k) {
+    for (std::size_t m = k + 1; m < kept_; ++m) {
+      const std::uint32_t i = root(curve_parents_, order_[k]);
+      const std::uint32_t j = root(curve_parents_, order_[m]);
+      if (i == j) continue;
+      const RimSums& first = curves_[i];
+      const RimSums& second = curves_[j];
+      const double margin = tolerances::neighbour_share * (first.diagonal() + second.diagonal());
+      if (!boxes_meet(first, second, margin)) continue;
+      const bool no_direction = second.length == 0.0 || !second.closed();
+      const double agreement =
+          direction_of(first.vector_area(rim.origin)).dot(direction_of(second.vector_area(rim.origin)));
+      if (no_direction || agreement > tolerances::same_normal) join(i, j);
+    }
+  }
+}
+
+void Components::settle(const Rim& rim) noexcept {
+  std::fill(patch_of_curve_.begin(), patch_of_curve_.begin() + static_cast<std::ptrdiff_t>(curve_count_), left_out);
+  std::size_t patches = 0;
+  for (std::size_t k = 0; k < kept_; ++k) {
+    const std::uint32_t curve = order_[k];
+    if (root(curve_parents_, curve) != curve) continue;
+    patches_[patches] = curves_[curve];
+    patch_of_curve_[curve] = static_cast<std::uint32_t>(patches++);
+  }
+  for (RimPiece& piece : rim.pieces) piece.component = patch_of_curve_[root(curve_parents_, piece.component)];
+  kept_ = patches;
+}
+
+}  // namespace odds::query::patch

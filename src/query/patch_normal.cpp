@@ -1,0 +1,225 @@
+// Vector area of the rim; the face normal where the overlap is flat; the direction of least overlap where there is no area.
+#include "query/patch_normal.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "query/patch_overlap.hpp"
+
+namespace odds::query::patch {
+namespace {
+
+Vec3 unit_or_zero(const Vec3& v) noexcept {
+  const double length = v.norm();
+  return length > 0.0 && std::isfinite(length) ? Vec3(v / length) : Vec3::Zero();
+}
+
+double smooth_step(double from, double to, double x) noexcept {
+  const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
+  return t * t * (3.0 - 2.0 * t);
+}
+
+/// Where the bodies are, as seen from a patch with a sheet: a direction towards A's body and away from B's; zero if both are
+/// solid, for then the orientation of the surfaces says it exactly.
+Vec3 side_of_bodies(const PatchView& view) noexcept {
+  const PatchInput& input = view.input;
+  if (input.solid_a && input.solid_b) return Vec3::Zero();
+  const Vec3 centre = view.sums.centre(view.rim.origin);
+  Vec3 side = input.reference_a - input.reference_b;
+  if (input.solid_a) side = input.reference_a - centre;
+  if (input.solid_b) side = centre - input.reference_b;
+  side = unit_or_zero(side);
+  if (input.previous_normal != nullptr) side += tolerances::previous_side * *input.previous_normal;
+  return side;
+}
+
+/// A few directions with weights; directions within two degrees are one.
+struct Directions {
+  struct One {
+    Vec3 sum = Vec3::Zero();
+    Vec3 first = Vec3::Zero();
+    double weight = 0.0;
+  };
+  std::array<One, 8> ones;
+  std::size_t count = 0;
+
+  void add(const Vec3& direction, double weight) noexcept {
+    if (direction == Vec3::Zero()) return;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (direction.dot(ones[i].first) > tolerances::same_face) {
+        ones[i].sum += weight * direction;
+        ones[i].weight += weight;
+        return;
+      }
+    }
+    if (count < ones.size()) ones[count++] = {weight * direction, direction, weight};
+  }
+};
+
+/// How much a face normal counts as the flat face `flat`: 1 up to half a degree, 0 from three degrees on.
+double flatness(const Vec3& normal, const Vec3& flat) noexcept {
+  return 1.0 - smooth_step(tolerances::flat_from, tolerances::flat_to, normal.cross(flat).norm());
+}
+
+/// On a flat patch (a face of one body carries nearly all of the rim) the face's normal is the better one: where a face hangs
+/// over a ledge, the vector area leans by depth / width, and where parts of the rim are missing, by more.
+Vec3 snap_to_face(const PatchView& view, const Vec3& normal) noexcept {
+  Directions faces;
+  const auto towards = [&normal](const Vec3& face) noexcept {
+    const double facing = face.dot(normal);
+    return std::abs(facing) > 0.8 ? Vec3(std::copysign(1.0, facing) * face) : Vec3::Zero();
+  };
+  const auto accept = [&](const Vec3& face, bool solid, double sign) noexcept {
+    return solid && sign * face.dot(normal) < 0.0 ? Vec3::Zero() : towards(face);
+  };
+  for (const std::uint32_t index : view.pieces) {
+    const RimPiece& piece = view.rim.pieces[index];
+    if (!piece.counts) continue;
+    const PlacedPair& placed = view.rim.pairs[piece.pair];
+    const double length = piece.along().norm();
+    faces.add(accept(placed.normal_b, view.input.solid_b, 1.0), length);
+    faces.add(accept(placed.normal_a, view.input.solid_a, -1.0), length);
+  }
+  if (faces.count == 0) return normal;
+  const auto heaviest = std::max_element(faces.ones.begin(), faces.ones.begin() + static_cast<std::ptrdiff_t>(faces.count),
+                                         [](const auto& i, const auto& j) { return i.weight < j.weight; });
+  const Vec3 flat = unit_or_zero(heaviest->sum);
+  double share = 0.0;
+  Vec3 mean = Vec3::Zero();
+  for (const std::uint32_t index : view.pieces) {
+    const RimPiece& piece = view.rim.pieces[index];
+    if (!piece.counts) continue;
+    const PlacedPair& placed = view.rim.pairs[piece.pair];
+    const double length = piece.along().norm();
+    const Vec3 face_b = accept(placed.normal_b, view.input.solid_b, 1.0);
+    const Vec3 face_a = accept(placed.normal_a, view.input.solid_a, -1.0);
+    const double by_b = face_b == Vec3::Zero() ? 0.0 : flatness(face_b, flat);
+    const double by_a = face_a == Vec3::Zero() ? 0.0 : flatness(face_a, flat);
+    share += length * std::max(by_a, by_b);
+    mean += length * (by_b * face_b + by_a * face_a);
+  }
+  mean = unit_or_zero(mean);
+  const double snap = smooth_step(tolerances::snap_from, tolerances::snap_to, share / view.sums.length);
+  const Vec3 snapped = unit_or_zero((1.0 - snap) * normal + snap * mean);
+  return snapped == Vec3::Zero() ? normal : snapped;
+}
+
+/// Compares directions by the overlap along them, on a sample of the patch's triangle pairs.
+class LeastOverlap {
+ public:
+  explicit LeastOverlap(const PatchView& view) noexcept : view_(view), side_(side_of_bodies(view)) {
+    const Vec3 mean = unit_or_zero(view.sums.normals_b - view.sums.normals_a);
+    Vec3 pressing = mean == Vec3::Zero() ? unit_or_zero(side_) : mean;
+    if (pressing == Vec3::Zero()) pressing = unit_or_zero(view.input.reference_a - view.input.reference_b);
+    // Where the bodies only touch, every direction that parts them has no overlap. Pressing them together by a trifle first
+    // tells the face's own normal from those that merely do.
+    double size = 0.0;
+    for (std::size_t i = 0; i < view.pieces.size(); i += stride()) {
+      const PlacedPair& placed = pair_at(i);
+      size = std::max({size, (placed.a[1] - placed.a[0]).norm(), (placed.b[1] - placed.b[0]).norm()});
+    }
+    shift_ = -tolerances::pressing_share * size * pressing;
+    spread_ = view.sums.length > 0.0;
+  }
+
+  void offer(const Vec3& direction, double factor) noexcept {
+    const Vec3 unit = unit_or_zero(direction);
+    if (unit == Vec3::Zero()) return;
+    const double facing = unit.dot(side_);
+    if (facing < -tolerances::weak_side) return;  // towards the wrong side of a sheet
+    const Vec3* previous = view_.input.previous_normal;
+    if (previous != nullptr && previous->dot(unit) > tolerances::same_as_before) factor *= tolerances::hysteresis;
+    const double overlap = factor * overlap_along(unit);
+    if (found_ && !(overlap < least_)) return;
+    found_ = true;
+    least_ = overlap;
+    best_ = unit;
+  }
+  void offer_both(const Vec3& direction, double factor) noexcept {
+    offer(direction, factor);
+    offer(-direction, factor);
+  }
+  [[nodiscard]] Vec3 best() const noexcept { return found_ ? best_ : Vec3::Zero(); }
+
+ private:
+  [[nodiscard]] std::size_t stride() const noexcept {
+    return std::max<std::size_t>(1, (view_.pieces.size() + view_.sample - 1) / view_.sample);
+  }
+  [[nodiscard]] const PlacedPair& pair_at(std::size_t i) const noexcept {
+    return view_.rim.pairs[view_.rim.pieces[view_.pieces[i]].pair];
+  }
+  /// The overlap of the pairs, and no less than the rim's own width: the rim bounds the common volume on all sides.
+  [[nodiscard]] double overlap_along(const Vec3& direction) const noexcept {
+    const Frame frame(direction);
+    double deepest = 0.0;
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (std::size_t i = 0; i < view_.pieces.size(); i += stride()) {
+      const double height = direction.dot(view_.rim.pieces[view_.pieces[i]].middle() - view_.rim.origin);
+      low = std::min(low, height);
+      high = std::max(high, height);
+      deepest = std::max(deepest, pair_depth(pair_at(i), frame, shift_));
+    }
+    return std::max(deepest, spread_ ? high - low : 0.0);
+  }
+
+  const PatchView& view_;
+  Vec3 side_;
+  Vec3 shift_ = Vec3::Zero();
+  Vec3 best_ = Vec3::Zero();
+  double least_ = 0.0;
+  bool found_ = false;
+  bool spread_ = false;
+};
+
+/// The candidates: the faces' normals, the area, the mean of the normals, the last run's normal.
+Vec3 least_overlap(const PatchView& view, const Vec3& area) noexcept {
+  LeastOverlap search(view);
+  const bool solid = view.input.solid_a && view.input.solid_b;
+  const auto offer = [&search, solid](const Vec3& direction, double factor) noexcept {
+    search.offer(direction, factor);
+    if (!solid) search.offer(-direction, factor);  // a sheet's normal may point either way
+  };
+  offer(area, tolerances::area_preferred);
+  Directions faces;
+  for (const std::uint32_t index : view.pieces) {
+    const RimPiece& piece = view.rim.pieces[index];
+    const PlacedPair& placed = view.rim.pairs[piece.pair];
+    const double weight = piece.along().norm();
+    faces.add(placed.normal_b, weight);
+    faces.add(-placed.normal_a, weight);
+  }
+  for (std::size_t i = 0; i < faces.count; ++i) {
+    offer(faces.ones[i].sum == Vec3::Zero() ? faces.ones[i].first : faces.ones[i].sum, 1.0);
+  }
+  offer(view.sums.normals_b - view.sums.normals_a, 1.0);
+  if (view.input.previous_normal != nullptr) search.offer(*view.input.previous_normal, 1.0);
+  if (search.best() != Vec3::Zero()) return search.best();
+  return unit_or_zero(view.input.reference_a - view.input.reference_b);
+}
+
+}  // namespace
+
+Vec3 patch_normal(const PatchView& view) noexcept {
+  const RimSums& sums = view.sums;
+  const Vec3 area = sums.vector_area(view.rim.origin);
+  const double reach = view.rim.origin.cwiseAbs().maxCoeff() + sums.diagonal();
+  const bool noticeable = area.norm() > tolerances::rim_noise * reach * sums.length;
+  // The isoperimetric quotient: 1 for a circle, 0.8 for a square, 0 for a line.
+  const double roundness =
+      sums.length > 0.0 ? 4.0 * std::numbers::pi * area.norm() / (sums.length * sums.length) : 0.0;
+  Vec3 normal = Vec3::Zero();
+  if (noticeable && roundness > (sums.closed() ? tolerances::round_closed_rim : tolerances::round_open_rim)) {
+    normal = area.normalized();
+    if (normal.dot(side_of_bodies(view)) < 0.0) normal = -normal;
+  } else {
+    normal = least_overlap(view, noticeable ? area : Vec3::Zero());
+  }
+  if (normal == Vec3::Zero()) return Vec3::UnitZ();  // two points on one another: no direction is better than another
+  return sums.length > 0.0 ? snap_to_face(view, normal) : normal;
+}
+
+}  // namespace odds::query::patch

@@ -1,0 +1,52 @@
+// From many witnesses to a few: the deepest, then those that span the largest area.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "query/patch_overlap.hpp"
+
+namespace odds::query::patch {
+
+/// Unit directions in a plane, at angles that no rectangle's sides have, so that a side is never extreme as a whole.
+struct Fan {
+  static constexpr std::size_t size = 16;
+  std::array<std::array<double, 2>, size> directions{};
+  Fan() noexcept;
+};
+
+/// Keeps, out of any number of witnesses, the extreme ones in sixteen fixed directions across the normal and the deepest.
+/// The corners of a flat patch are extreme in several directions each, whatever the triangles between them; so what stays
+/// does not depend on how a face is cut. Fixed size.
+class Extremes {
+ public:
+  Extremes(const Frame& frame, const Fan& fan) noexcept : frame_(frame), fan_(fan) {}
+  void add(const Witness& witness) noexcept;
+  [[nodiscard]] std::span<const Witness> all() noexcept;
+
+ private:
+  static constexpr std::size_t directions = Fan::size;
+  const Frame& frame_;
+  const Fan& fan_;
+  std::array<Witness, directions + 1> best_;
+  std::array<double, directions + 1> score_{};
+  std::array<Witness, directions + 1> found_;
+  bool any_ = false;
+};
+
+/// Witnesses in the order in which they are to be used.
+struct Chosen {
+  std::array<Witness, most_contacts> witnesses;
+  std::size_t count = 0;
+};
+
+/// Orders at most `most` of the witnesses: the deepest (of those equally deep to 2 %, one far out), the farthest from it, the
+/// one that adds the largest triangle, and so on while the area grows. Leaves out shallow ones and ones nearer to a chosen one
+/// than `spacing`.
+[[nodiscard]] Chosen choose(std::span<const Witness> witnesses, const Frame& frame, std::size_t most, double spacing) noexcept;
+
+/// All chosen ones as one: their mean place, weighted by depth, with the greatest depth.
+[[nodiscard]] Witness merged(const Chosen& chosen, const Vec3& normal) noexcept;
+
+}  // namespace odds::query::patch
