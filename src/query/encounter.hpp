@@ -114,6 +114,7 @@ class Encounter {
         }
         ++tested;
         if (primitive::triangles_intersect(a_.corners()[ta].data(), moved.data())) {
+          if (hits.empty() && wanted > 1) spending.keep_time_for_contacts();
           hits.add({ta, tb});
           if (hits.full(wanted)) {
             spending.spend_triangle_pairs(tested);

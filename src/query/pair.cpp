@@ -4,8 +4,8 @@
 #include <type_traits>
 
 #include "odds/math/tolerances.hpp"
+#include "odds/query/ray.hpp"
 #include "query/bottom_slice.hpp"
-#include "query/first_contact.hpp"
 #include "query/search.hpp"
 #include "query/shape_data.hpp"
 
@@ -18,7 +18,8 @@ struct Pair::Implementation {
         b(std::move(shape_b)),
         queue(options.queue_capacity),
         hits(options.hit_capacity),
-        slice(options.slice_capacity) {}
+        slice(options.slice_capacity),
+        patches(options.hit_capacity) {}
 
   std::shared_ptr<const Shape> a;
   std::shared_ptr<const Shape> b;
@@ -27,7 +28,8 @@ struct Pair::Implementation {
   BottomSlice slice;
   bool has_witness = false;
   TrianglePair witness;  ///< the pair of triangles, in leaf order, that proved the last incremental hit
-  Contact contact;
+  PatchBuilder patches;
+  Vec3 previous_normal = Vec3::Zero();  ///< of the last run's first contact, in A's frame; zero: none
   Answer answer;
 };
 
@@ -104,6 +106,44 @@ void judge(const SearchResult& result, const Request& request, bool any_hit, Ans
   }
 }
 
+/// Casts a ray for the depth inside a rim. A few node visits' worth: a probe that finds nothing in them is left out.
+bool probe_depth(const void* shape, const Vec3& origin, const Vec3& direction, double max_distance, double* distance,
+                 std::uint32_t* triangle) noexcept {
+  constexpr std::uint64_t most_nodes = 256;
+  const auto hit = cast_ray(*static_cast<const Shape*>(shape), origin, direction, max_distance, most_nodes);
+  if (!hit) return false;
+  *distance = hit->distance;
+  *triangle = hit->triangle;
+  return true;
+}
+
+template <volume::BoundingVolume V>
+void make_contacts(const Encounter<V>& encounter, const math::Pose& pose_b_in_a, const Request& request,
+                   Pair::Implementation& pair, Spending& spending) noexcept {
+  for (TrianglePair& hit : pair.hits.pairs()) hit = {encounter.a().order()[hit.a], encounter.b().order()[hit.b]};
+  PatchInput input;
+  input.hits = pair.hits.pairs();
+  input.vertices_a = pair.a->mesh().vertices();
+  input.triangles_a = pair.a->mesh().triangles();
+  input.vertices_b = pair.b->mesh().vertices();
+  input.triangles_b = pair.b->mesh().triangles();
+  input.pose_b_in_a = pose_b_in_a;
+  input.solid_a = pair.a->is_solid();
+  input.solid_b = pair.b->is_solid();
+  input.reference_a = encounter.a().origin();
+  input.reference_b = pose_b_in_a * encounter.b().origin();
+  if (!pair.previous_normal.isZero()) input.previous_normal = &pair.previous_normal;
+  input.max_contacts = request.max_contacts;
+  if (request.max_contacts > 1) {  // a single contact is asked for its speed
+    input.probe_a = {&probe_depth, pair.a.get()};
+    input.probe_b = {&probe_depth, pair.b.get()};
+  }
+  const Deadline deadline{[](void* state) noexcept { return !static_cast<Spending*>(state)->may_make_contacts(); },
+                          &spending};
+  pair.answer.contacts = pair.patches.build(input, deadline);
+  if (!pair.answer.contacts.empty()) pair.previous_normal = pair.answer.contacts.front().normal;
+}
+
 template <volume::BoundingVolume V>
 void run_on(const tree::Hierarchy<V>& a, const tree::Hierarchy<V>& b, const math::Pose& pose_b_in_a,
             const Request& request, Pair::Implementation& pair) noexcept {
@@ -120,8 +160,9 @@ void run_on(const tree::Hierarchy<V>& a, const tree::Hierarchy<V>& b, const math
     answer.cell_pair_probability = static_cast<double>(result.candidate.probability);
   }
   if (!pair.hits.empty() && request.max_contacts > 0) {
-    pair.contact = first_contact(encounter, pair.hits.pairs().front());
-    answer.contacts = {&pair.contact, 1};
+    make_contacts(encounter, pose_b_in_a, request, pair, spending);
+  } else {
+    pair.previous_normal.setZero();
   }
   answer.cost = spending.close();
 }
@@ -181,6 +222,7 @@ const Shape& Pair::b() const noexcept { return *implementation_->b; }
 void Pair::reset() noexcept {
   implementation_->answer = {};
   implementation_->slice.reset();
+  implementation_->previous_normal.setZero();
   implementation_->has_witness = false;
 }
 

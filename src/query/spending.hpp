@@ -25,6 +25,7 @@ class Spending {
       timed_ = true;
       const double ns = std::clamp(budget.microseconds * 1e3, 0.0, 1e15);
       deadline_ns_ = start_ns_ + static_cast<std::int64_t>(ns);
+      search_deadline_ns_ = deadline_ns_;
     }
   }
 
@@ -41,20 +42,16 @@ class Spending {
   }
   void note_full_queue() noexcept { ++cost_.queue_full; }
 
-  /// Polls the clock if there is a deadline. False once less than `reserve_ns` is left of the time.
-  [[nodiscard]] bool may_go_on(std::int64_t reserve_ns = writing_reserve_ns) noexcept {
-    cost_.longest_unpolled_units = std::max(cost_.longest_unpolled_units, unpolled_units_);
-    unpolled_units_ = 0;
-    if (!timed_) return true;
-    const std::int64_t now = clock_();
-    ledger_.poll(now);
-    return now + reserve_ns < deadline_ns_;
+  /// From now on the search ends early enough for contacts to be made from what it found.
+  void keep_time_for_contacts() noexcept {
+    if (!timed_) return;
+    search_deadline_ns_ = start_ns_ + static_cast<std::int64_t>(search_share * static_cast<double>(allowance_ns()));
   }
 
-  /// Nanoseconds from the start to the deadline; a very large number where there is none.
-  [[nodiscard]] std::int64_t allowance_ns() const noexcept {
-    return timed_ ? deadline_ns_ - start_ns_ : std::numeric_limits<std::int64_t>::max() / 4;
-  }
+  /// Polls the clock if there is a deadline. False once the search should stop.
+  [[nodiscard]] bool may_go_on() noexcept { return poll() < search_deadline_ns_ - writing_reserve_ns; }
+  /// The same for the making of contacts, which may use all of the time.
+  [[nodiscard]] bool may_make_contacts() noexcept { return poll() < deadline_ns_ - contacts_reserve_ns; }
 
   /// Closes the accounts; the last thing a query does.
   [[nodiscard]] Cost close() noexcept {
@@ -66,16 +63,35 @@ class Spending {
     cost_.stall_us = timed_ ? static_cast<double>(ledger_.stall_ns()) * 1e-3 : 0.0;
     if (timed_ && now > deadline_ns_) {
       cost_.overshoot_us = static_cast<double>(now - deadline_ns_) * 1e-3;
-      const std::int64_t net_over = ledger_.net_ns() - (deadline_ns_ - start_ns_);
-      cost_.net_overshoot_us = static_cast<double>(std::max<std::int64_t>(net_over, 0)) * 1e-3;
+      // Only stalls that reach beyond the deadline excuse: an earlier one was time that the search could still react
+      // to.
+      const std::int64_t stalled = ledger_.stall_ns() - stall_before_deadline_ns_;
+      cost_.net_overshoot_us = static_cast<double>(std::max<std::int64_t>(now - deadline_ns_ - stalled, 0)) * 1e-3;
     }
     return cost_;
   }
 
   /// What the writing of the answer takes at most, after the search has stopped.
   static constexpr std::int64_t writing_reserve_ns = 150;
+  /// What a patch takes at most from the moment that it hears of the deadline.
+  static constexpr std::int64_t contacts_reserve_ns = 2000;
+  /// Of the time, for the search, once a hit was found and contacts are wanted.
+  static constexpr double search_share = 0.6;
 
  private:
+  [[nodiscard]] std::int64_t allowance_ns() const noexcept { return deadline_ns_ - start_ns_; }
+
+  /// The time now, or 0, before every deadline, where there is none.
+  [[nodiscard]] std::int64_t poll() noexcept {
+    cost_.longest_unpolled_units = std::max(cost_.longest_unpolled_units, unpolled_units_);
+    unpolled_units_ = 0;
+    if (!timed_) return 0;
+    const std::int64_t now = clock_();
+    ledger_.poll(now);
+    if (now <= deadline_ns_) stall_before_deadline_ns_ = ledger_.stall_ns();
+    return now;
+  }
+
   void note(std::uint32_t units) noexcept {
     units_left_ -= std::min<std::uint64_t>(units, units_left_);
     unpolled_units_ += units;
@@ -83,10 +99,12 @@ class Spending {
 
   realtime::Clock clock_;
   std::int64_t start_ns_;
-  std::int64_t deadline_ns_ = 0;
+  std::int64_t deadline_ns_ = std::numeric_limits<std::int64_t>::max();
+  std::int64_t search_deadline_ns_ = std::numeric_limits<std::int64_t>::max();
   realtime::StallLedger ledger_;
   std::uint64_t units_left_;
   std::uint32_t unpolled_units_ = 0;
+  std::int64_t stall_before_deadline_ns_ = 0;
   bool timed_ = false;
   Cost cost_;
 };
