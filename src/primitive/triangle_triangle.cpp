@@ -87,24 +87,18 @@ bool intervals_meet(const ArrangedPair& pair) noexcept {
   return orient3d(*a[0], *a[1], *b[0], *b[1]) <= 0 && orient3d(*a[0], *a[2], *b[0], *b[2]) >= 0;
 }
 
-// Where the edge from p to q meets the plane of t; the signs are exact, the position is rounded.
-Vec3 edge_through_plane(const Vec3& p, const Vec3& q, const Vec3* const t[3]) noexcept {
-  if (orient3d(*t[0], *t[1], *t[2], p) == 0) return p;
-  if (orient3d(*t[0], *t[1], *t[2], q) == 0) return q;
-  const Vec3 normal = (*t[1] - *t[0]).cross(*t[2] - *t[0]);
-  const double p_height = std::fabs(normal.dot(p - *t[0]));
-  const double q_height = std::fabs(normal.dot(q - *t[0]));
-  const double sum = p_height + q_height;
-  const double fraction = sum > 0.0 ? p_height / sum : 0.5;
-  return p + fraction * (q - p);
-}
-
 IntersectionSegment common_interval(const ArrangedPair& pair) noexcept {
   const auto& [a, b] = pair;
   const bool a_begins_last = orient3d(*a[0], *a[1], *b[0], *b[2]) >= 0;
   const bool a_ends_first = orient3d(*a[0], *a[2], *b[0], *b[1]) <= 0;
-  return {a_begins_last ? edge_through_plane(*a[0], *a[1], b) : edge_through_plane(*b[0], *b[2], a),
-          a_ends_first ? edge_through_plane(*a[0], *a[2], b) : edge_through_plane(*b[0], *b[1], a)};
+  const auto through_b = [&b](const Vec3& p, const Vec3& q) noexcept {
+    return detail::edge_through_plane(p, q, *b[0], *b[1], *b[2]);
+  };
+  const auto through_a = [&a](const Vec3& p, const Vec3& q) noexcept {
+    return detail::edge_through_plane(p, q, *a[0], *a[1], *a[2]);
+  };
+  return {a_begins_last ? through_b(*a[0], *a[1]) : through_a(*b[0], *b[2]),
+          a_ends_first ? through_b(*a[0], *a[2]) : through_a(*b[0], *b[1])};
 }
 
 enum class Kind { apart, arranged, flat };
