@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t pairs_between_polls = 8;
 constexpr std::size_t pairs_after_deadline = 8;
 constexpr std::size_t patches_after_deadline = 2;
-constexpr std::size_t witnesses_per_pair = 4;
+constexpr std::size_t witnesses_per_pair = 6;
 
 /// A finished patch.
 struct Patch {
@@ -34,7 +34,8 @@ struct Patch {
   bool dropped = false;
 };
 
-/// A step through 0 .. count-1 that visits all, spread out from the start, so that what a short budget leaves is a sample.
+/// A step through 0 .. count-1 that visits all, spread out from the start, so that what a short budget leaves is a
+/// sample.
 std::size_t spread_step(std::size_t count) noexcept {
   auto step = static_cast<std::size_t>(0.618 * static_cast<double>(count));
   while (step > 1 && std::gcd(step, count) != 1) --step;
@@ -51,15 +52,17 @@ struct PatchBuilder::Scratch {
         witnesses(witnesses_per_pair * hit_capacity + 64),
         components(pieces.size(), hit_capacity) {}
 
+  using Measured = std::array<patch::Witness, most_contacts + 1>;
+
   void collect(const PatchInput& input, const Deadline& deadline) noexcept;
   void add_pieces(const PatchInput& input, bool silent_too) noexcept;
   void sort_by_patch(std::size_t patches) noexcept;
   Patch make_patch(const PatchInput& input, const patch::RimSums& sums, std::span<const std::uint32_t> indices,
                    const Deadline& deadline) noexcept;
-  void find_witnesses(std::span<const std::uint32_t> indices, const patch::Frame& frame, const Deadline& deadline) noexcept;
+  void find_witnesses(std::span<const std::uint32_t> indices, const patch::Frame& frame,
+                      const Deadline& deadline) noexcept;
   std::size_t probe(const PatchInput& input, const Vec3& centre, double reach, const patch::Frame& frame,
-                    patch::Chosen spread, std::array<patch::Witness, most_contacts + 1>& measured,
-                    const Deadline& deadline) noexcept;
+                    const patch::Chosen& spread, Measured& measured, const Deadline& deadline) noexcept;
   void drop_opposed(const Vec3* previous) noexcept;
   void write(const PatchInput& input) noexcept;
   bool late(const Deadline& deadline) noexcept { return expired = expired || deadline(); }
@@ -131,30 +134,23 @@ void PatchBuilder::Scratch::sort_by_patch(std::size_t count) noexcept {
   }
 }
 
-/// Fills `witnesses` with the overlap's corners of all pairs of the patch, shallow ones left out.
+/// Fills `witnesses` with the overlap's corners of all pairs of the patch; at least one.
 void PatchBuilder::Scratch::find_witnesses(std::span<const std::uint32_t> indices, const patch::Frame& frame,
                                            const Deadline& deadline) noexcept {
   witness_count = 0;
-  double deepest = 0.0;
   std::uint32_t last_pair = no_feature;
-  const std::size_t limit = expired ? pairs_after_deadline : indices.size();
-  for (std::size_t i = 0; i < std::min(limit, indices.size()); ++i) {
+  const std::size_t limit = expired ? std::min(pairs_after_deadline, indices.size()) : indices.size();
+  for (std::size_t i = 0; i < limit; ++i) {
     const std::uint32_t pair = pieces[indices[i]].pair;
     if (pair == last_pair) continue;  // the pieces of one pair follow each other
     last_pair = pair;
     const patch::PlacedPair& placed = pairs[pair];
     patch::overlap_corners(placed, frame, Vec3::Zero(), [&](const Vec3& on_a, const Vec3& on_b, double depth) noexcept {
-      if (!(depth >= 0.0) || depth < tolerances::shallow_share * deepest || !std::isfinite(depth)) return;
-      deepest = std::max(deepest, depth);
-      if (witness_count == witnesses.size()) return;
+      if (!(depth >= 0.0) || !std::isfinite(depth) || witness_count == witnesses.size()) return;
       witnesses[witness_count++] = {on_a, on_b, depth, placed.index.a, placed.index.b};
     });
     if (i % pairs_between_polls == pairs_between_polls - 1 && late(deadline)) break;
   }
-  const double least = tolerances::shallow_share * deepest;
-  const auto end = std::remove_if(witnesses.begin(), witnesses.begin() + static_cast<std::ptrdiff_t>(witness_count),
-                                  [least](const patch::Witness& w) { return w.depth < least; });
-  witness_count = static_cast<std::size_t>(end - witnesses.begin());
   if (witness_count == 0) {  // rounding has parted triangles that only touch
     const patch::RimPiece& piece = pieces[indices[0]];
     const patch::PlacedPair& placed = pairs[piece.pair];
@@ -182,28 +178,39 @@ static Vec3 span_centre(const patch::Rim& rim, std::span<const std::uint32_t> in
   return middle + sum / weight;
 }
 
-/// Measures the overlap inside the rim: at the centre and a little inside of the points that span the patch. A deep overlap's
-/// rim triangles reach only as far as they are large.
+/// Measures the overlap inside the rim: at the centre and a little inside of the points that span the patch. A deep
+/// overlap's rim triangles reach only as far as they are large. Where the overlap is round (a ball), leaves out all but
+/// its depth: what lies at its rim bears nothing.
 std::size_t PatchBuilder::Scratch::probe(const PatchInput& input, const Vec3& centre, double reach,
-                                         const patch::Frame& frame, patch::Chosen spread,
-                                         std::array<patch::Witness, most_contacts + 1>& measured,
+                                         const patch::Frame& frame, const patch::Chosen& spread, Measured& measured,
                                          const Deadline& deadline) noexcept {
   std::size_t count = 0;
   for (std::size_t i = 0; i < spread.count; ++i) {
-    patch::Witness& w = spread.witnesses[i];
+    patch::Witness w = spread.witnesses[i];
     patch::Witness inside;
     const Vec3 place = w.middle();
-    if (!late(deadline) &&
-        patch::probe_overlap(input, place + 0.02 * (centre - place), frame.normal, reach, inside) && inside.depth > w.depth) {
-      inside.on_a = place + frame.normal * frame.normal.dot(inside.on_a - place);
-      inside.on_b = place + frame.normal * frame.normal.dot(inside.on_b - place);
+    if (!late(deadline) && patch::probe_overlap(input, place + 0.02 * (centre - place), frame.normal, reach, inside) &&
+        inside.depth > w.depth) {
       w = inside;
+      w.on_a = place + frame.normal * frame.normal.dot(inside.on_a - place);
+      w.on_b = place + frame.normal * frame.normal.dot(inside.on_b - place);
     }
     measured[count++] = w;
   }
   patch::Witness inside;
   if (!late(deadline) && patch::probe_overlap(input, centre, frame.normal, reach, inside)) measured[count++] = inside;
-  return count;
+  const patch::Witness deepest = patch::deepest_of({measured.data(), count}, frame, centre);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const patch::Witness& w = measured[i];
+    const double linear = 0.5 * (w.depth + deepest.depth);
+    const bool round =
+        w.depth < 0.5 * deepest.depth && !late(deadline) &&
+        patch::probe_overlap(input, 0.5 * (w.middle() + deepest.middle()), frame.normal, reach, inside) &&
+        inside.depth > linear + tolerances::round_overlap * deepest.depth;
+    if (!round) measured[kept++] = patch::pulled_in(w, deepest);
+  }
+  return kept;
 }
 
 Patch PatchBuilder::Scratch::make_patch(const PatchInput& input, const patch::RimSums& sums,
@@ -213,27 +220,28 @@ Patch PatchBuilder::Scratch::make_patch(const PatchInput& input, const patch::Ri
   made.upper = sums.upper;
   made.normal = patch::patch_normal({input, rim, sums, indices, expired ? std::size_t{2} : std::size_t{24}});
   const patch::Frame frame(made.normal);
-  find_witnesses(indices, frame, deadline);
-  patch::Extremes extremes(frame, fan);
-  for (std::size_t i = 0; i < witness_count; ++i) extremes.add(witnesses[i]);
-  double deepest = 0.0;
-  const std::span<const patch::Witness> extreme = extremes.all();
-  for (const patch::Witness& w : extreme) deepest = std::max(deepest, w.depth);
-
   const Vec3 centre = span_centre(rim, indices, sums.centre(rim.origin), made.normal);
+  find_witnesses(indices, frame, deadline);
+  const patch::Witness deepest = patch::deepest_of({witnesses.data(), witness_count}, frame, centre);
+  patch::Extremes extremes(frame, fan, centre, deepest);
+  for (std::size_t i = 0; i < witness_count; ++i) extremes.add(witnesses[i]);
+
   const double lever = (input.reference_a - centre).norm();
   const auto spacing = [lever](double depth) noexcept {
     return std::max(tolerances::spacing_by_depth * depth, tolerances::spacing_by_lever * lever);
   };
-  made.chosen = patch::choose(extreme, frame, most_contacts, spacing(deepest));
+  made.depth = deepest.depth;
+  made.chosen = patch::choose(extremes.all(), frame, most_contacts, spacing(made.depth));
+  Measured measured;
+  std::size_t count = made.chosen.count;
   if (input.probe_a && input.probe_b && sums.length > 0.0 && !late(deadline)) {
-    std::array<patch::Witness, most_contacts + 1> measured;
-    const double reach = 2.0 * (sums.diagonal() + deepest);
-    const std::size_t count = probe(input, centre, reach, frame, made.chosen, measured, deadline);
-    for (std::size_t i = 0; i < count; ++i) deepest = std::max(deepest, measured[i].depth);
-    made.chosen = patch::choose({measured.data(), count}, frame, most_contacts, spacing(deepest));
+    const double reach = 2.0 * (sums.diagonal() + made.depth);
+    count = probe(input, centre, reach, frame, made.chosen, measured, deadline);
+    for (std::size_t i = 0; i < count; ++i) made.depth = std::max(made.depth, measured[i].depth);
+  } else {
+    for (std::size_t i = 0; i < count; ++i) measured[i] = patch::pulled_in(made.chosen.witnesses[i], deepest);
   }
-  made.depth = deepest;
+  made.chosen = patch::choose({measured.data(), count}, frame, most_contacts, spacing(made.depth));
   made.low = std::numeric_limits<double>::infinity();
   made.high = -made.low;
   for (const std::uint32_t index : indices) {
@@ -249,7 +257,8 @@ Patch PatchBuilder::Scratch::make_patch(const PatchInput& input, const patch::Ri
 /// obeyed: the shorter way out stays.
 void PatchBuilder::Scratch::drop_opposed(const Vec3* previous) noexcept {
   const auto cost = [previous](const Patch& p) noexcept {
-    return p.depth * (previous != nullptr && previous->dot(p.normal) > tolerances::same_as_before ? tolerances::hysteresis : 1.0);
+    return p.depth *
+           (previous != nullptr && previous->dot(p.normal) > tolerances::same_as_before ? tolerances::hysteresis : 1.0);
   };
   for (std::size_t i = 0; i < patch_count; ++i) {
     for (std::size_t j = i + 1; j < patch_count; ++j) {
@@ -275,11 +284,12 @@ void PatchBuilder::Scratch::write(const PatchInput& input) noexcept {
     if (!patches[i].dropped && patches[i].chosen.count > 0) order[count++] = &patches[i];
   }
   const auto rank = [&input](const Patch* p) noexcept {
-    const bool before = input.previous_normal != nullptr && input.previous_normal->dot(p->normal) > tolerances::same_as_before;
+    const bool before =
+        input.previous_normal != nullptr && input.previous_normal->dot(p->normal) > tolerances::same_as_before;
     return before ? p->depth * tolerances::keep_first : p->depth;
   };
   std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count),
-                   [&rank](const Patch* p, const Patch* q) { return rank(p) != rank(q) ? rank(p) > rank(q) : p < q; });
+            [&rank](const Patch* p, const Patch* q) { return rank(p) != rank(q) ? rank(p) > rank(q) : p < q; });
   const auto wanted = static_cast<std::size_t>(std::clamp(input.max_contacts, 1, most_contacts));
   if (count >= wanted) {
     count = wanted;  // one contact a patch: at its middle, so that it bears without tipping

@@ -96,7 +96,8 @@ std::uint32_t Components::root(std::vector<std::uint32_t>& parents, std::uint32_
   return i;
 }
 
-/// The joint at a point; a new one if none is near. A point near the border of its cell is looked for beyond it as well.
+/// The joint at a point; a new one if none is near. A point near the border of its cell is looked for beyond it as
+/// well.
 std::uint32_t Components::joint_at(const Vec3& point, std::uint32_t piece) noexcept {
   const std::size_t mask = joint_mask_;
   const auto slot_of = [&](const Vec3& p) {
@@ -107,17 +108,22 @@ std::uint32_t Components::joint_at(const Vec3& point, std::uint32_t piece) noexc
     }
     return static_cast<std::size_t>(key) & mask;
   };
-  const std::size_t home = slot_of(point);
-  for (int corner = 0; corner < 8; ++corner) {
-    const Vec3 offset((corner & 1) != 0 ? same_point_ : -same_point_, (corner & 2) != 0 ? same_point_ : -same_point_,
-                      (corner & 4) != 0 ? same_point_ : -same_point_);
-    const std::size_t start = slot_of(point + offset);
-    if (corner > 0 && start == home) continue;
+  const auto find_from = [&](std::size_t start) noexcept -> std::uint32_t {
     for (std::size_t slot = start; joint_table_[slot] != 0; slot = (slot + 1) & mask) {
       const std::uint32_t joint = joint_table_[slot] - 1;
       if ((joints_[joint].position - point).cwiseAbs().maxCoeff() <= same_point_) return joint;
     }
+    return left_out;
+  };
+  const std::size_t home = slot_of(point);
+  std::uint32_t known = find_from(home);
+  for (int corner = 0; corner < 8 && known == left_out; ++corner) {
+    const Vec3 offset((corner & 1) != 0 ? same_point_ : -same_point_, (corner & 2) != 0 ? same_point_ : -same_point_,
+                      (corner & 4) != 0 ? same_point_ : -same_point_);
+    const std::size_t start = slot_of(point + offset);
+    if (start != home) known = find_from(start);
   }
+  if (known != left_out) return known;
   std::size_t slot = home;
   while (joint_table_[slot] != 0) slot = (slot + 1) & mask;
   const auto joint = static_cast<std::uint32_t>(joint_count_++);
@@ -194,7 +200,7 @@ void Components::sum_up(const Rim& rim) noexcept {
   }
 }
 
-/// Reorders nothing: marks which curves stay, the longest first.
+/// The longest curves stay, the longest first.
 void Components::keep_the_longest() noexcept {
   for (std::uint32_t i = 0; i < curve_count_; ++i) {
     order_[i] = i;
@@ -207,6 +213,17 @@ void Components::keep_the_longest() noexcept {
   };
   std::partial_sort(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(kept_),
                     order_.begin() + static_cast<std::ptrdiff_t>(curve_count_), longer);
+}
+
+/// The curves that stand for what was kept and joined, each once.
+std::span<const std::uint32_t> Components::roots() noexcept {
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < kept_; ++k) {
+    const std::uint32_t top = root(curve_parents_, order_[k]);
+    const auto end = roots_.begin() + static_cast<std::ptrdiff_t>(count);
+    if (std::find(roots_.begin(), end, top) == end) roots_[count++] = top;
+  }
+  return {roots_.data(), count};
 }
 
 void Components::join(std::uint32_t i, std::uint32_t j) noexcept {
@@ -241,25 +258,24 @@ void Components::join_open_curves(const Rim& rim) noexcept {
   }
 }
 
-/// The inner rim of a ring (a pipe's end on a plane) runs the other way round: its vector area points against the normals
-/// along it. It belongs to the smallest curve around it.
+/// The inner rim of a ring (a pipe's end on a plane) runs the other way round: its vector area points against the
+/// normals along it. It belongs to the smallest curve around it.
 void Components::join_holes(const Rim& rim, bool solid_a, bool solid_b) noexcept {
   if (!solid_a && !solid_b) return;
-  for (std::size_t k = 0; k < kept_; ++k) {
-    const std::uint32_t hole = order_[k];
-    if (root(curve_parents_, hole) != hole || !curves_[hole].closed() || curves_[hole].length == 0.0) continue;
+  const std::span<const std::uint32_t> all = roots();
+  for (const std::uint32_t hole : all) {
+    const RimSums& inner = curves_[hole];
+    if (curve_parents_[hole] != hole || !inner.closed() || inner.length == 0.0) continue;
     // Turning a sheet around turns its normals and the rim: only the comparison with its own normals stays.
     Vec3 outwards = Vec3::Zero();
-    if (solid_a) outwards += curves_[hole].normals_b;
-    if (solid_b) outwards -= curves_[hole].normals_a;
-    const double against = direction_of(curves_[hole].vector_area(rim.origin)).dot(outwards);
-    if (against > -tolerances::hole_rim * curves_[hole].length) continue;
+    if (solid_a) outwards += inner.normals_b;
+    if (solid_b) outwards -= inner.normals_a;
+    const double with = direction_of(inner.vector_area(rim.origin)).dot(outwards);
+    if (with > -tolerances::hole_rim * inner.length) continue;
     std::uint32_t around = hole;
-    for (std::size_t m = 0; m < kept_; ++m) {
-      const std::uint32_t other = order_[m];
-      if (other == hole || root(curve_parents_, other) != other) continue;
-      if (curves_[other].length <= curves_[hole].length) continue;
-      if (!boxes_meet(curves_[other], curves_[hole], 0.1 * curves_[hole].diagonal())) continue;
+    for (const std::uint32_t other : all) {
+      if (other == hole || curve_parents_[other] != other || curves_[other].length <= inner.length) continue;
+      if (!boxes_meet(curves_[other], inner, 0.1 * inner.diagonal())) continue;
       if (around == hole || curves_[other].length < curves_[around].length) around = other;
     }
     if (around != hole) join(around, hole);
@@ -268,10 +284,11 @@ void Components::join_holes(const Rim& rim, bool solid_a, bool solid_b) noexcept
 
 /// Two curves of nearly the same normal that overlap are one contact (faces that are flush, rims that are doubled).
 void Components::join_neighbours(const Rim& rim) noexcept {
-  for (std::size_t k = 0; k < kept_; ++k) {
-    for (std::size_t m = k + 1; m < kept_; ++m) {
-      const std::uint32_t i = root(curve_parents_, order_[k]);
-      const std::uint32_t j = root(curve_parents_, order_[m]);
+  const std::span<const std::uint32_t> all = roots();
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    for (std::size_t m = k + 1; m < all.size(); ++m) {
+      const std::uint32_t i = root(curve_parents_, all[k]);
+      const std::uint32_t j = root(curve_parents_, all[m]);
       if (i == j) continue;
       const RimSums& first = curves_[i];
       const RimSums& second = curves_[j];
@@ -286,13 +303,11 @@ void Components::join_neighbours(const Rim& rim) noexcept {
 }
 
 void Components::settle(const Rim& rim) noexcept {
-  std::fill(patch_of_curve_.begin(), patch_of_curve_.begin() + static_cast<std::ptrdiff_t>(curve_count_), left_out);
-  std::size_t patches = 0;
-  for (std::size_t k = 0; k < kept_; ++k) {
-    const std::uint32_t curve = order_[k];
-    if (root(curve_parents_, curve) != curve) continue;
+  std::fill_n(patch_of_curve_.begin(), curve_count_, left_out);
+  std::uint32_t patches = 0;
+  for (const std::uint32_t curve : roots()) {
     patches_[patches] = curves_[curve];
-    patch_of_curve_[curve] = static_cast<std::uint32_t>(patches++);
+    patch_of_curve_[curve] = patches++;
   }
   for (RimPiece& piece : rim.pieces) piece.component = patch_of_curve_[root(curve_parents_, piece.component)];
   kept_ = patches;

@@ -1,6 +1,7 @@
 // Which pieces of rim belong together: connected curves first, then curves that bound one overlap.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -15,11 +16,11 @@ namespace odds::query::patch {
 struct RimSums {
   Vec3 lower = Vec3::Constant(std::numeric_limits<double>::infinity());
   Vec3 upper = Vec3::Constant(-std::numeric_limits<double>::infinity());
-  Vec3 area = Vec3::Zero();      ///< half the sum of from x to
-  Vec3 gap = Vec3::Zero();       ///< sum of to - from: zero if closed
-  Vec3 moment = Vec3::Zero();    ///< sum of length * middle
-  Vec3 normals_a = Vec3::Zero(); ///< sum of length * normal of A's triangle
-  Vec3 normals_b = Vec3::Zero(); ///< sum of length * normal of B's triangle
+  Vec3 area = Vec3::Zero();       ///< half the sum of from x to
+  Vec3 gap = Vec3::Zero();        ///< sum of to - from: zero if closed
+  Vec3 moment = Vec3::Zero();     ///< sum of length * middle
+  Vec3 normals_a = Vec3::Zero();  ///< sum of length * normal of A's triangle
+  Vec3 normals_b = Vec3::Zero();  ///< sum of length * normal of B's triangle
   double length = 0.0;
   std::uint32_t loose_ends = 0;  ///< joints that more pieces enter than leave, or the reverse
 
@@ -56,7 +57,7 @@ class Components {
  private:
   struct Joint {
     Vec3 position = Vec3::Zero();
-    std::int32_t balance = 0;        ///< pieces that leave minus pieces that enter
+    std::int32_t balance = 0;  ///< pieces that leave minus pieces that enter
     std::uint32_t first_piece = 0;
   };
 
@@ -65,6 +66,7 @@ class Components {
   bool is_copy(std::uint32_t from, std::uint32_t to) noexcept;
   void sum_up(const Rim& rim) noexcept;
   void keep_the_longest() noexcept;
+  std::span<const std::uint32_t> roots() noexcept;
   void join_open_curves(const Rim& rim) noexcept;
   void join_holes(const Rim& rim, bool solid_a, bool solid_b) noexcept;
   void join_neighbours(const Rim& rim) noexcept;
@@ -73,10 +75,10 @@ class Components {
   std::uint32_t root(std::vector<std::uint32_t>& parents, std::uint32_t i) const noexcept;
 
   std::vector<Joint> joints_;
-  std::vector<std::uint32_t> joint_table_;                          ///< open addressing, 0: free, else joint + 1
-  std::vector<std::uint64_t> copy_table_;                           ///< open addressing, 0: free, else (from + 1, to + 1)
-  std::vector<std::uint64_t> triangle_table_;                       ///< open addressing, 0: free, else (triangle + 1, curve)
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> ends_;       ///< joints of each piece
+  std::vector<std::uint32_t> joint_table_;                     ///< open addressing, 0: free, else joint + 1
+  std::vector<std::uint64_t> copy_table_;                      ///< open addressing, 0: free, else (from + 1, to + 1)
+  std::vector<std::uint64_t> triangle_table_;                  ///< open addressing, 0: free, else (triangle + 1, curve)
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> ends_;  ///< joints of each piece
   std::vector<std::uint32_t> piece_parents_;
   std::vector<std::uint32_t> curve_of_root_;
   std::vector<RimSums> curves_;
@@ -84,6 +86,7 @@ class Components {
   std::vector<std::uint32_t> curve_parents_;
   std::vector<std::uint32_t> patch_of_curve_;
   std::vector<RimSums> patches_;
+  std::array<std::uint32_t, most> roots_{};
   std::size_t joint_mask_ = 0;
   std::size_t copy_mask_ = 0;
   std::size_t joint_count_ = 0;

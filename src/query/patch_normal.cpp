@@ -1,4 +1,5 @@
-// Vector area of the rim; the face normal where the overlap is flat; the direction of least overlap where there is no area.
+// Vector area of the rim; the face normal where the overlap is flat; the direction of least overlap where there is no
+// area.
 #include "query/patch_normal.hpp"
 
 #include <algorithm>
@@ -22,8 +23,8 @@ double smooth_step(double from, double to, double x) noexcept {
   return t * t * (3.0 - 2.0 * t);
 }
 
-/// Where the bodies are, as seen from a patch with a sheet: a direction towards A's body and away from B's; zero if both are
-/// solid, for then the orientation of the surfaces says it exactly.
+/// Where the bodies are, as seen from a patch with a sheet: a direction towards A's body and away from B's; zero if
+/// both are solid, for then the orientation of the surfaces says it exactly.
 Vec3 side_of_bodies(const PatchView& view) noexcept {
   const PatchInput& input = view.input;
   if (input.solid_a && input.solid_b) return Vec3::Zero();
@@ -64,8 +65,8 @@ double flatness(const Vec3& normal, const Vec3& flat) noexcept {
   return 1.0 - smooth_step(tolerances::flat_from, tolerances::flat_to, normal.cross(flat).norm());
 }
 
-/// On a flat patch (a face of one body carries nearly all of the rim) the face's normal is the better one: where a face hangs
-/// over a ledge, the vector area leans by depth / width, and where parts of the rim are missing, by more.
+/// On a flat patch (a face of one body carries nearly all of the rim) the face's normal is the better one: where a face
+/// hangs over a ledge, the vector area leans by depth / width, and where parts of the rim are missing, by more.
 Vec3 snap_to_face(const PatchView& view, const Vec3& normal) noexcept {
   Directions faces;
   const auto towards = [&normal](const Vec3& face) noexcept {
@@ -84,8 +85,9 @@ Vec3 snap_to_face(const PatchView& view, const Vec3& normal) noexcept {
     faces.add(accept(placed.normal_a, view.input.solid_a, -1.0), length);
   }
   if (faces.count == 0) return normal;
-  const auto heaviest = std::max_element(faces.ones.begin(), faces.ones.begin() + static_cast<std::ptrdiff_t>(faces.count),
-                                         [](const auto& i, const auto& j) { return i.weight < j.weight; });
+  const auto heaviest =
+      std::max_element(faces.ones.begin(), faces.ones.begin() + static_cast<std::ptrdiff_t>(faces.count),
+                       [](const auto& i, const auto& j) { return i.weight < j.weight; });
   const Vec3 flat = unit_or_zero(heaviest->sum);
   double share = 0.0;
   Vec3 mean = Vec3::Zero();
@@ -114,8 +116,8 @@ class LeastOverlap {
     const Vec3 mean = unit_or_zero(view.sums.normals_b - view.sums.normals_a);
     Vec3 pressing = mean == Vec3::Zero() ? unit_or_zero(side_) : mean;
     if (pressing == Vec3::Zero()) pressing = unit_or_zero(view.input.reference_a - view.input.reference_b);
-    // Where the bodies only touch, every direction that parts them has no overlap. Pressing them together by a trifle first
-    // tells the face's own normal from those that merely do.
+    // Where the bodies only touch, every direction that parts them has no overlap. Pressing them together by a trifle
+    // first tells the face's own normal from those that merely do.
     double size = 0.0;
     for (std::size_t i = 0; i < view.pieces.size(); i += stride()) {
       const PlacedPair& placed = pair_at(i);
@@ -132,7 +134,16 @@ class LeastOverlap {
     if (facing < -tolerances::weak_side) return;  // towards the wrong side of a sheet
     const Vec3* previous = view_.input.previous_normal;
     if (previous != nullptr && previous->dot(unit) > tolerances::same_as_before) factor *= tolerances::hysteresis;
-    const double overlap = factor * overlap_along(unit);
+    double overlap = overlap_along(unit);
+    if (found_ && !(factor * overlap < least_)) return;
+    // The rim's triangles reach only as far as they are large: a direction that seems the shortest is measured right
+    // through.
+    Witness through;
+    const Vec3 centre = view_.sums.centre(view_.rim.origin);
+    if (spread_ && probe_overlap(view_.input, centre, unit, 4.0 * view_.sums.diagonal(), through)) {
+      overlap = std::max(overlap, through.depth);
+    }
+    overlap *= factor;
     if (found_ && !(overlap < least_)) return;
     found_ = true;
     least_ = overlap;
@@ -209,8 +220,7 @@ Vec3 patch_normal(const PatchView& view) noexcept {
   const double reach = view.rim.origin.cwiseAbs().maxCoeff() + sums.diagonal();
   const bool noticeable = area.norm() > tolerances::rim_noise * reach * sums.length;
   // The isoperimetric quotient: 1 for a circle, 0.8 for a square, 0 for a line.
-  const double roundness =
-      sums.length > 0.0 ? 4.0 * std::numbers::pi * area.norm() / (sums.length * sums.length) : 0.0;
+  const double roundness = sums.length > 0.0 ? 4.0 * std::numbers::pi * area.norm() / (sums.length * sums.length) : 0.0;
   Vec3 normal = Vec3::Zero();
   if (noticeable && roundness > (sums.closed() ? tolerances::round_closed_rim : tolerances::round_open_rim)) {
     normal = area.normalized();

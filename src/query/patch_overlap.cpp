@@ -53,9 +53,8 @@ bool exit_along(const Probed& body, const Vec3& point, const Vec3& outwards, dou
 
 double pair_depth(const PlacedPair& placed, const Frame& frame, const Vec3& shift) noexcept {
   double deepest = 0.0;
-  overlap_corners(placed, frame, shift, [&deepest](const Vec3&, const Vec3&, double depth) noexcept {
-    deepest = std::max(deepest, depth);
-  });
+  overlap_corners(placed, frame, shift,
+                  [&deepest](const Vec3&, const Vec3&, double depth) noexcept { deepest = std::max(deepest, depth); });
   return deepest;
 }
 

@@ -36,12 +36,14 @@ struct Frame {
     u = Vec3(1.0 + sign * normal.x() * normal.x() * p, sign * q, -sign * normal.x());
     v = Vec3(q, sign + normal.y() * normal.y() * p, -normal.y());
   }
-  [[nodiscard]] Vec3 operator()(const Vec3& point) const noexcept { return {u.dot(point), v.dot(point), normal.dot(point)}; }
+  [[nodiscard]] Vec3 operator()(const Vec3& point) const noexcept {
+    return {u.dot(point), v.dot(point), normal.dot(point)};
+  }
 };
 
-/// Calls found(on_a, on_b, depth) for the corners of the overlap of the two triangles seen along the frame's normal: corners
-/// of one above the other and crossings of sides. The largest depth is how far A's triangle must move along the normal to
-/// leave B's. Triangles seen edge-on (a wall on a floor) are the usual case and need no care of the caller.
+/// Calls found(on_a, on_b, depth) for the corners of the overlap of the two triangles seen along the frame's normal:
+/// corners of one above the other and crossings of sides. The largest depth is how far A's triangle must move along the
+/// normal to leave B's. Triangles seen edge-on (a wall on a floor) are the usual case and need no care of the caller.
 /// `shift` moves A's triangle first. Depths are not sorted and may be negative.
 template <class Found>
 void overlap_corners(const PlacedPair& placed, const Frame& frame, const Vec3& shift, Found&& found) noexcept {
@@ -86,7 +88,8 @@ void overlap_corners(const PlacedPair& placed, const Frame& frame, const Vec3& s
       const double seen_b = along_b.x() * along_b.x() + along_b.y() * along_b.y();
       if (seen_b <= tolerances::edge_on * tolerances::edge_on * along_b.squaredNorm()) continue;
       const double denominator = cross(along_a, along_b);
-      if (denominator * denominator <= tolerances::parallel_sides * tolerances::parallel_sides * seen_a * seen_b) continue;
+      if (denominator * denominator <= tolerances::parallel_sides * tolerances::parallel_sides * seen_a * seen_b)
+        continue;
       const Vec3 between = b[j] - a[i];
       const double s = cross(between, along_b) / denominator;
       const double t = cross(between, along_a) / denominator;
@@ -102,8 +105,9 @@ void overlap_corners(const PlacedPair& placed, const Frame& frame, const Vec3& s
 /// Largest depth of one pair along a direction, at least 0.
 [[nodiscard]] double pair_depth(const PlacedPair& placed, const Frame& frame, const Vec3& shift) noexcept;
 
-/// The overlap on the line through `point` along `normal`, by the probes: from A's surface up to B's. For solids the crossing
-/// at which the line leaves the body, for sheets the nearest within `reach`. False if a probe is missing or finds none.
+/// The overlap on the line through `point` along `normal`, by the probes: from A's surface up to B's. For solids the
+/// crossing at which the line leaves the body, for sheets the nearest within `reach`. False if a probe is missing or
+/// finds none.
 [[nodiscard]] bool probe_overlap(const PatchInput& input, const Vec3& point, const Vec3& normal, double reach,
                                  Witness& witness) noexcept;
 

@@ -1,5 +1,5 @@
-// Segments in which triangles meet. The pair is known to intersect (the exact kernel decided that), so that rounding may
-// only move the ends; it can never take the piece away.
+// Segments in which triangles meet. The pair is known to intersect (the exact kernel decided that), so that rounding
+// may only move the ends; it can never take the piece away.
 #include "query/patch_rim.hpp"
 
 #include <algorithm>

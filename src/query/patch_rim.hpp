@@ -1,4 +1,5 @@
-// The rim of an overlap: the pieces of curve in which two surfaces cross, one or more for each intersecting triangle pair.
+// The rim of an overlap: the pieces of curve in which two surfaces cross, one or more for each intersecting triangle
+// pair.
 #pragma once
 
 #include <array>
@@ -18,8 +19,8 @@ struct PlacedPair {
   TrianglePair index;
 };
 
-/// A directed piece of the rim. Both surfaces oriented outwards, the pieces of a closed rim follow one another, counter-
-/// clockwise seen from A's side: direction = normal_b x normal_a.
+/// A directed piece of the rim. Both surfaces oriented outwards, the pieces of a closed rim follow one another,
+/// counter- clockwise seen from A's side: direction = normal_b x normal_a.
 struct RimPiece {
   Vec3 from = Vec3::Zero();
   Vec3 to = Vec3::Zero();
@@ -36,9 +37,10 @@ constexpr std::size_t most_pieces_of_a_pair = 6;
 /// Fetches the triangles; false if an index is out of range or a coordinate is not finite.
 [[nodiscard]] bool place(const PatchInput& input, const TrianglePair& index, PlacedPair& placed) noexcept;
 
-/// Writes the pieces of rim of two triangles that are known to meet (`pair` stands in each of them) and returns how many:
-/// 1 as a rule; for coplanar triangles that face each other the sides of their common polygon, for coplanar ones that face
-/// the same way nothing if both bodies are solid (they say nothing about a direction); at least a point otherwise.
+/// Writes the pieces of rim of two triangles that are known to meet (`pair` stands in each of them) and returns how
+/// many: 1 as a rule; for coplanar triangles that face each other the sides of their common polygon, for coplanar ones
+/// that face the same way nothing if both bodies are solid (they say nothing about a direction); at least a point
+/// otherwise.
 [[nodiscard]] std::size_t rim_pieces(const PlacedPair& placed, bool both_solid, std::uint32_t pair,
                                      std::span<RimPiece, most_pieces_of_a_pair> pieces) noexcept;
 

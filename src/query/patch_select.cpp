@@ -35,7 +35,6 @@ Candidates gather(std::span<const Witness> witnesses, const Frame& frame) noexce
   Vec3 high = Vec3::Zero();
   for (std::size_t i = 0; i < witnesses.size() && found.count < found.list.size(); ++i) {
     const double share = found.deepest > 0.0 ? witnesses[i].depth / found.deepest : 1.0;
-    if (share < tolerances::shallow_share) continue;
     const Vec3 place = frame(witnesses[i].middle() - origin);
     low = found.count == 0 ? place : Vec3(low.cwiseMin(place));
     high = found.count == 0 ? place : Vec3(high.cwiseMax(place));
@@ -48,7 +47,8 @@ Candidates gather(std::span<const Witness> witnesses, const Frame& frame) noexce
   return found;
 }
 
-/// The area that a point adds to the polygon of the chosen ones, times a weight for depth; for the second point the length.
+/// The area that a point adds to the polygon of the chosen ones, times a weight for depth; for the second point the
+/// length.
 double gain(const Candidate& c, std::span<const Vec3> chosen) noexcept {
   const double weight = 0.5 + 0.5 * c.share;
   if (chosen.size() == 1) return weight * flat_distance(c.place, chosen[0]);
@@ -98,11 +98,16 @@ Fan::Fan() noexcept {
   }
 }
 
+Extremes::Extremes(const Frame& frame, const Fan& fan, const Vec3& centre, const Witness& deepest) noexcept
+    : frame_(frame), fan_(fan), centre_(centre), deepest_(deepest.depth) {
+  best_[directions] = deepest;
+}
+
 void Extremes::add(const Witness& witness) noexcept {
-  const Vec3 place = frame_(witness.middle());
-  for (std::size_t i = 0; i <= directions; ++i) {
-    const double score =
-        i < directions ? fan_.directions[i][0] * place.x() + fan_.directions[i][1] * place.y() : witness.depth;
+  const double weight = deepest_ > 0.0 ? 0.5 + 0.5 * witness.depth / deepest_ : 1.0;
+  const Vec3 place = weight * frame_(witness.middle() - centre_);
+  for (std::size_t i = 0; i < directions; ++i) {
+    const double score = fan_.directions[i][0] * place.x() + fan_.directions[i][1] * place.y();
     if (any_ && !(score > score_[i])) continue;
     score_[i] = score;
     best_[i] = witness;
@@ -135,7 +140,8 @@ Chosen choose(std::span<const Witness> witnesses, const Frame& frame, std::size_
       if (c.taken) continue;
       double score = 0.0;
       if (corners == 0) {
-        const double out = candidates.radius > 0.0 ? flat_distance(c.place, candidates.centre) / candidates.radius : 0.0;
+        const double out =
+            candidates.radius > 0.0 ? flat_distance(c.place, candidates.centre) / candidates.radius : 0.0;
         score = c.share + 0.02 * out;
       } else {
         double nearest = flat_distance(c.place, polygon[0]);
@@ -157,6 +163,38 @@ Chosen choose(std::span<const Witness> witnesses, const Frame& frame, std::size_
     chosen.witnesses[chosen.count++] = witnesses[best->source];
   }
   return chosen;
+}
+
+Witness deepest_of(std::span<const Witness> witnesses, const Frame& frame, const Vec3& centre) noexcept {
+  const Vec3 middle = frame(centre);
+  double depth = 0.0;
+  double radius = 0.0;
+  for (const Witness& w : witnesses) {
+    depth = std::max(depth, w.depth);
+    radius = std::max(radius, flat_distance(frame(w.middle()), middle));
+  }
+  const Witness* best = &witnesses[0];
+  double best_score = -1.0;
+  for (const Witness& w : witnesses) {
+    if (w.depth < 0.95 * depth) continue;
+    const double score = (depth > 0.0 ? w.depth / depth : 1.0) +
+                         (radius > 0.0 ? 0.02 * flat_distance(frame(w.middle()), middle) / radius : 0.0);
+    if (score <= best_score) continue;
+    best_score = score;
+    best = &w;
+  }
+  return *best;
+}
+
+Witness pulled_in(const Witness& witness, const Witness& deepest) noexcept {
+  const double least = tolerances::shallow_share * deepest.depth;
+  if (!(witness.depth < least)) return witness;
+  const double t = (least - witness.depth) / (deepest.depth - witness.depth);
+  Witness pulled = witness;
+  pulled.on_a += t * (deepest.on_a - witness.on_a);
+  pulled.on_b += t * (deepest.on_b - witness.on_b);
+  pulled.depth = least;
+  return pulled;
 }
 
 Witness merged(const Chosen& chosen, const Vec3& normal) noexcept {

@@ -16,12 +16,14 @@ struct Fan {
   Fan() noexcept;
 };
 
-/// Keeps, out of any number of witnesses, the extreme ones in sixteen fixed directions across the normal and the deepest.
-/// The corners of a flat patch are extreme in several directions each, whatever the triangles between them; so what stays
-/// does not depend on how a face is cut. Fixed size.
+/// Keeps, out of any number of witnesses, the extreme ones in sixteen fixed directions across the normal and the
+/// deepest. The corners of a flat patch are extreme in several directions each, whatever the triangles between them; so
+/// what stays does not depend on how a face is cut. Places count from `centre`, half if the overlap has no depth there:
+/// the end of a cylinder's lowest line is kept rather than the rim beside it, and yet the far corners of a tilted face.
+/// Fixed size.
 class Extremes {
  public:
-  Extremes(const Frame& frame, const Fan& fan) noexcept : frame_(frame), fan_(fan) {}
+  Extremes(const Frame& frame, const Fan& fan, const Vec3& centre, const Witness& deepest) noexcept;
   void add(const Witness& witness) noexcept;
   [[nodiscard]] std::span<const Witness> all() noexcept;
 
@@ -29,8 +31,10 @@ class Extremes {
   static constexpr std::size_t directions = Fan::size;
   const Frame& frame_;
   const Fan& fan_;
+  Vec3 centre_;
+  double deepest_;
   std::array<Witness, directions + 1> best_;
-  std::array<double, directions + 1> score_{};
+  std::array<double, directions> score_{};
   std::array<Witness, directions + 1> found_;
   bool any_ = false;
 };
@@ -41,10 +45,19 @@ struct Chosen {
   std::size_t count = 0;
 };
 
-/// Orders at most `most` of the witnesses: the deepest (of those equally deep to 2 %, one far out), the farthest from it, the
-/// one that adds the largest triangle, and so on while the area grows. Leaves out shallow ones and ones nearer to a chosen one
-/// than `spacing`.
-[[nodiscard]] Chosen choose(std::span<const Witness> witnesses, const Frame& frame, std::size_t most, double spacing) noexcept;
+/// Orders at most `most` of the witnesses: the deepest (of those equally deep to 2 %, one far out), the farthest from
+/// it, the one that adds the largest triangle, and so on while the area grows. Leaves out shallow ones and ones nearer
+/// to a chosen one than `spacing`.
+[[nodiscard]] Chosen choose(std::span<const Witness> witnesses, const Frame& frame, std::size_t most,
+                            double spacing) noexcept;
+
+/// The deepest; of those equally deep to 2 %, one far from `centre` across the normal. Precondition: not empty.
+[[nodiscard]] Witness deepest_of(std::span<const Witness> witnesses, const Frame& frame, const Vec3& centre) noexcept;
+
+/// A witness shallower than a fifth of the deepest moves towards it until it is not, its depth changing linearly: so
+/// the border of what counts does not depend on where a mesh has its vertices, and nothing appears or vanishes at a
+/// threshold. On flat overlaps that is exact; inside convex ones the true depth is greater.
+[[nodiscard]] Witness pulled_in(const Witness& witness, const Witness& deepest) noexcept;
 
 /// All chosen ones as one: their mean place, weighted by depth, with the greatest depth.
 [[nodiscard]] Witness merged(const Chosen& chosen, const Vec3& normal) noexcept;

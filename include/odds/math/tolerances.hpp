@@ -68,9 +68,13 @@ inline constexpr double rim_noise = 1e-12;
 /// missing, must be rounder. Tests: ContactPatch.CrossedPlatesPartTheShortWay, ContactPatch.FewHitsStillGiveTheNormal.
 inline constexpr double round_closed_rim = 0.05;
 inline constexpr double round_open_rim = 0.2;  ///< see round_closed_rim
-/// A point shallower than this part of the patch's depth is no contact: the rim itself has depth 0, and would brake a ball
-/// that rolls. Test: ContactPatch.SphereOnPlaneHasOneDeepContact.
+/// Contacts are where the overlap has at least this part of the patch's depth: at the rim itself it has none.
+/// Test: ContactPatch.TessellationDoesNotMoveTheContacts.
 inline constexpr double shallow_share = 0.2;
+/// Half-way to the deepest point, a flat overlap has the mean depth, a ball's a quarter of the depth more: from this much on it
+/// is round, and bears at its deepest point only (contacts around it would brake a ball that rolls).
+/// Test: ContactPatch.SphereOnPlaneHasOneDeepContact.
+inline constexpr double round_overlap = 0.12;
 /// Cosine below which two patches push against each other. Test: ContactPatch.CrossedPlatesPartTheShortWay.
 inline constexpr double opposed = -0.3;
 /// By how much the patch with the last run's normal is preferred as the first, so that the order does not flicker.
