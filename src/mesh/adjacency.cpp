@@ -29,7 +29,7 @@ std::vector<EdgeUse> sorted_edge_uses(std::span<const Triangle> triangles) {
   uses.reserve(3 * triangles.size());
   for (std::uint32_t i = 0; i < triangles.size(); ++i) {
     const Triangle& t = triangles[i];
-    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+    if (repeats_vertex(t)) continue;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t from = t[k];
       const std::uint32_t to = t[(k + 1) % 3];

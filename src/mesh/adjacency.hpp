@@ -14,6 +14,8 @@ namespace odds::mesh {
 /// For each vertex the least index of a vertex at exactly the same position (0 equals -0).
 std::vector<std::uint32_t> first_at_position(std::span<const Vec3> vertices);
 
+[[nodiscard]] inline bool repeats_vertex(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
+
 /// One side of a triangle.
 struct EdgeUse {
   Edge edge;               ///< smaller index first

@@ -42,8 +42,7 @@ class Search {
       const Vec3& a = mesh_.vertices()[t[0]];
       const Vec3& b = mesh_.vertices()[t[1]];
       const Vec3& c = mesh_.vertices()[t[2]];
-      const bool repeated = t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
-      if (repeated || has_zero_area(a, b, c)) {
+      if (repeats_vertex(t) || has_zero_area(a, b, c)) {
         note(faults_.degenerate, i);
         continue;
       }
@@ -69,7 +68,9 @@ class Search {
       }
       for (const EdgeUse& use : edge.subspan(1)) parts.join(edge[0].triangle, use.triangle, false);
     });
-    for (std::uint32_t i = 0; i < triangles_.size(); ++i) faults_.components += parts.find(i).root == i ? 1 : 0;
+    for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
+      if (parts.find(i).root == i && !repeats_vertex(triangles_[i])) ++faults_.components;
+    }
   }
 
   /// A corner is a triangle at one of its vertices. Two corners of a vertex belong to one fan if their triangles share

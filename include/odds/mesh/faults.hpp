@@ -43,11 +43,12 @@ struct Faults {
   Finding<std::uint32_t> duplicate_vertex;     ///< the same position as an earlier vertex, both used
   Finding<std::uint32_t> unused_vertex;        ///< in no triangle
 
-  bool closed = false;         ///< no boundary edge
-  bool manifold = false;       ///< no non-manifold edge, no non-manifold vertex
-  bool orientable = false;     ///< triangles can be turned so that no edge of two triangles is inconsistent
-  std::size_t components = 0;  ///< parts connected through edges
-  double area = 0.0;           ///< square metres
+  bool closed = false;      ///< no boundary edge
+  bool manifold = false;    ///< no non-manifold edge, no non-manifold vertex
+  bool orientable = false;  ///< triangles can be turned so that no edge of two triangles is inconsistent
+  std::size_t components =
+      0;              ///< parts connected through edges; triangles with a repeated vertex have none and do not count
+  double area = 0.0;  ///< square metres
   /// Cubic metres, positive if the triangles face outwards; only where closed and without inconsistent edges.
   std::optional<double> volume;
 
