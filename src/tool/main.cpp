@@ -19,6 +19,8 @@ int main(int argc, char** argv) {
   CLI::App app{"odds: mesh collision inside a hard microsecond budget, with a probability where proof did not fit"};
   app.require_subcommand(1);
   odds::tool::Action action;
+  odds::tool::add_inspect(app, action);
+  odds::tool::add_query(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& parse_error) {
