@@ -1,11 +1,14 @@
 // `odds inspect MESH`: faults, sizes, hierarchy and node statistics.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <type_traits>
 
 #include "odds/mesh/faults.hpp"
 #include "odds/mesh/repair.hpp"
@@ -14,7 +17,7 @@
 #include "tool/command.hpp"
 #include "tool/mesh_argument.hpp"
 #include "tool/progress_line.hpp"
-#include "tool/shape_options.hpp"
+#include "tool/shared_options.hpp"
 
 namespace odds::tool {
 namespace {

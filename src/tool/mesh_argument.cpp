@@ -16,7 +16,7 @@ Result<mesh::TriangleMesh> load_mesh(const std::string& argument, double scale) 
 
 std::string mesh_argument_help() {
   std::string text = "file (OBJ, STL, PLY, OFF, also .gz) or made:NAME[:key=value,...] with NAME one of";
-  for (const std::string_view name : mesh::made::shape_names()) text += " " + std::string(name);
+  for (const std::string_view name : mesh::made::shape_names()) text.append(1, ' ').append(name);
   return text;
 }
 

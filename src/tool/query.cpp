@@ -2,11 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
+#include <limits>
 #include <map>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "odds/query/pair.hpp"
@@ -18,7 +17,7 @@
 #include "tool/output_file.hpp"
 #include "tool/poses_csv.hpp"
 #include "tool/progress_line.hpp"
-#include "tool/shape_options.hpp"
+#include "tool/shared_options.hpp"
 
 namespace odds::tool {
 namespace {
@@ -140,30 +139,27 @@ void add_query(CLI::App& app, Action& action) {
   const std::map<std::string, query::Method> methods = {{"exact", query::Method::exact},
                                                         {"incremental", query::Method::incremental},
                                                         {"time-critical", query::Method::time_critical}};
-  command->add_option("--method", options->request.method, "exact, incremental or time-critical (default)")
-      ->transform(CLI::CheckedTransformer(methods).description(""));
+  add_choice(*command, "--method", options->request.method, methods, "exact, incremental or time-critical (default)");
   const std::map<std::string, query::EstimatorKind> estimators = {{"cells", query::EstimatorKind::cells},
                                                                   {"kinematic", query::EstimatorKind::kinematic}};
-  command->add_option("--estimator", options->request.estimator, "cells or kinematic (default)")
-      ->transform(CLI::CheckedTransformer(estimators).description(""));
+  add_choice(*command, "--estimator", options->request.estimator, estimators, "cells or kinematic (default)");
   add_shape_options(*command, options->shape);
   CLI::Option* budget = command->add_option("--budget-us", options->budget_us, "microseconds for one query, > 0");
   budget->check(positive_and_finite());
   command->add_option("--work", options->work, "work units for one query, > 0: repeatable bit for bit")
-      ->check(CLI::Range(std::uint64_t{1}, std::numeric_limits<std::uint64_t>::max()).description(""))
+      ->check(whole_number(1, std::numeric_limits<std::uint64_t>::max()))
       ->excludes(budget);
   command
       ->add_option("--p-min", options->request.p_min,
                    "probability from which on a pair of nodes counts, (0, 1]; 1: never")
       ->check(share_of_one());
   command->add_option("--k-min", options->request.k_min, "such pairs that end the query with an estimated hit, >= 1")
-      ->check(CLI::Range(1U, std::numeric_limits<std::uint32_t>::max()).description(""));
-  command->add_option("--contacts", options->request.max_contacts, "most contacts, 0 .. 8")
-      ->check(CLI::Range(0, 8).description(""));
+      ->check(whole_number(1, std::numeric_limits<std::uint32_t>::max()));
+  command->add_option("--contacts", options->request.max_contacts, "most contacts, 0 .. 8")->check(whole_number(0, 8));
   command->add_flag("--polygon-free", options->request.polygon_free,
                     "judge leaves by probability, not by their triangles");
   command->add_option("--repeat", options->repeat, "run each query so often and take the median time, 1 .. 10000")
-      ->check(CLI::Range(1U, 10000U).description(""));
+      ->check(whole_number(1, 10000));
   command->add_option("--scale-a", options->scale_a, "metres per unit of A's file")->check(positive_and_finite());
   command->add_option("--scale-b", options->scale_b, "metres per unit of B's file")->check(positive_and_finite());
   command->callback([options, &action] { action = [options] { return run(*options); }; });

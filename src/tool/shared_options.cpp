@@ -1,8 +1,7 @@
-#include "tool/shape_options.hpp"
+#include "tool/shared_options.hpp"
 
 #include <charconv>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <string>
 
@@ -10,8 +9,9 @@ namespace odds::tool {
 namespace {
 
 /// Plain decimals only, independent of the locale.
-std::optional<double> number_in(const std::string& text) {
-  double value = 0.0;
+template <class Number>
+std::optional<Number> number_in(const std::string& text) {
+  Number value = 0;
   const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
   if (end.ec != std::errc{} || end.ptr != text.data() + text.size()) return std::nullopt;
   return value;
@@ -26,8 +26,7 @@ void add_shape_options(CLI::App& command, query::ShapeOptions& options) {
     kinds.emplace(kind, *volume::kind_from_name(kind));
     names += (names.empty() ? "" : ", ") + std::string(kind);
   }
-  command.add_option("--bv", options.volume, "bounding volume: " + names + " (default obb)")
-      ->transform(CLI::CheckedTransformer(kinds).description(""));
+  add_choice(command, "--bv", options.volume, kinds, "bounding volume: " + names + " (default obb)");
   command.add_option("--tau", options.tau, "share of the greatest area from which on a cell is well filled, (0, 1]")
       ->check(share_of_one());
 }
@@ -35,7 +34,7 @@ void add_shape_options(CLI::App& command, query::ShapeOptions& options) {
 CLI::Validator positive_and_finite() {
   return CLI::Validator(
       [](const std::string& text) {
-        const std::optional<double> value = number_in(text);
+        const std::optional<double> value = number_in<double>(text);
         return value && std::isfinite(*value) && *value > 0.0 ? std::string() : text + " is not a finite number > 0";
       },
       "");
@@ -44,8 +43,18 @@ CLI::Validator positive_and_finite() {
 CLI::Validator share_of_one() {
   return CLI::Validator(
       [](const std::string& text) {
-        const std::optional<double> value = number_in(text);
+        const std::optional<double> value = number_in<double>(text);
         return value && *value > 0.0 && *value <= 1.0 ? std::string() : text + " is not a number in (0, 1]";
+      },
+      "");
+}
+
+CLI::Validator whole_number(std::uint64_t least, std::uint64_t greatest) {
+  return CLI::Validator(
+      [=](const std::string& text) {
+        const std::optional<std::uint64_t> value = number_in<std::uint64_t>(text);
+        if (value && *value >= least && *value <= greatest) return std::string();
+        return text + " is not a whole number from " + std::to_string(least) + " to " + std::to_string(greatest);
       },
       "");
 }

@@ -1,0 +1,37 @@
+// Options that several sub-commands share: choices by name, checks of numbers, how a mesh is made ready.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "odds/query/shape.hpp"
+
+namespace odds::tool {
+
+/// Adds --bv and --tau.
+void add_shape_options(CLI::App& command, query::ShapeOptions& options);
+
+/// Accepts finite numbers > 0.
+CLI::Validator positive_and_finite();
+/// Accepts numbers in (0, 1].
+CLI::Validator share_of_one();
+/// Accepts plain digits of a number in [least, greatest]; CLI11 itself would wrap "-3" around.
+CLI::Validator whole_number(std::uint64_t least, std::uint64_t greatest);
+
+/// An option whose value is one of the names; an unknown one is wrong usage and all names are listed.
+template <class Value>
+CLI::Option* add_choice(CLI::App& command, const std::string& option, Value& target,
+                        const std::map<std::string, Value>& values, const std::string& meaning) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : values) names.push_back(name);
+  return command
+      .add_option_function<std::string>(
+          option, [&target, values](const std::string& name) { target = values.at(name); }, meaning)
+      ->check(CLI::IsMember(names).description(""));
+}
+
+}  // namespace odds::tool
