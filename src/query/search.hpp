@@ -109,6 +109,8 @@ class TimeCriticalSearch {
     }
     spending_.spend_node_pairs(2);
     const auto children = encounter_.children(pair.a, pair.b);
+    encounter_.prefetch(children.first);
+    encounter_.prefetch(children.second);
     meet(children.first);
     if (!finished_) meet(children.second);
   }

@@ -8,8 +8,8 @@ namespace odds::math {
 /// Rigid motion x_a = rotation * x_b + translation. A variable `pose_b_in_a` maps points of frame B to frame A.
 /// Lengths in metres. Plain value; thread-safe to read.
 struct Pose {
-  Mat3 rotation = Mat3::Identity();   ///< orthonormal, determinant +1
-  Vec3 translation = Vec3::Zero();    ///< metres
+  Mat3 rotation = Mat3::Identity();  ///< orthonormal, determinant +1
+  Vec3 translation = Vec3::Zero();   ///< metres
 
   [[nodiscard]] static Pose from_quaternion(const Vec3& translation, const Quat& rotation) {
     return {rotation.normalized().toRotationMatrix(), translation};

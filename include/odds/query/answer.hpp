@@ -24,9 +24,9 @@ constexpr std::uint32_t no_feature = std::numeric_limits<std::uint32_t>::max();
 
 /// One point of contact. Frames: A's mesh frame in an Answer; world where a name says so.
 struct Contact {
-  Vec3 position = Vec3::Zero();           ///< metres
-  Vec3 normal = Vec3::UnitZ();            ///< unit; points into A: moving A along it by `depth` ends this contact (ODE's rule)
-  double depth = 0.0;                     ///< metres, >= 0
+  Vec3 position = Vec3::Zero();  ///< metres
+  Vec3 normal = Vec3::UnitZ();   ///< unit; points into A: moving A along it by `depth` ends this contact (ODE's rule)
+  double depth = 0.0;            ///< metres, >= 0
   std::uint32_t triangle_a = no_feature;  ///< index into A's mesh, or no_feature where the contact is an estimate
   std::uint32_t triangle_b = no_feature;  ///< index into B's mesh, or no_feature
 };
@@ -48,11 +48,11 @@ struct Cost {
 struct Answer {
   Verdict verdict = Verdict::clear;
   Basis basis = Basis::proved;
-  double probability = 0.0;              ///< of a hit, in [0, 1]; exactly 1 or 0 where proved
-  std::span<const Contact> contacts;     ///< in A's mesh frame, best first; valid until the pair's next run
-  bool has_cell_pair = false;            ///< whether `cell_pair` is set: some pair of nodes remained undecided
-  Contact cell_pair;                     ///< where the surfaces most probably meet: centroids, mean normals, depth estimate
-  double cell_pair_probability = 0.0;    ///< of an intersection within that pair of nodes
+  double probability = 0.0;           ///< of a hit, in [0, 1]; exactly 1 or 0 where proved
+  std::span<const Contact> contacts;  ///< in A's mesh frame, best first; valid until the pair's next run
+  bool has_cell_pair = false;         ///< whether `cell_pair` is set: some pair of nodes remained undecided
+  Contact cell_pair;  ///< where the surfaces most probably meet: centroids, mean normals, depth estimate
+  double cell_pair_probability = 0.0;  ///< of an intersection within that pair of nodes
   Cost cost;
 };
 

@@ -12,9 +12,9 @@ namespace odds::query {
 /// Microseconds are wall time from the call of `run` to its return, contacts included, and not repeatable. Work units
 /// (one per pair of nodes visited, one per pair of triangles tested) give the same bits on every run.
 struct Budget {
-  double microseconds = std::numeric_limits<double>::infinity();             ///< > 0; infinity: no limit
-  std::uint64_t work_units = std::numeric_limits<std::uint64_t>::max();      ///< > 0; max: no limit
-  realtime::Clock clock = {};                                                ///< null: realtime::fastest_clock()
+  double microseconds = std::numeric_limits<double>::infinity();         ///< > 0; infinity: no limit
+  std::uint64_t work_units = std::numeric_limits<std::uint64_t>::max();  ///< > 0; max: no limit
+  realtime::Clock clock = {};                                            ///< null: realtime::fastest_clock()
 
   [[nodiscard]] static Budget unlimited() noexcept { return {}; }
   [[nodiscard]] static Budget time(double microseconds) noexcept { return {.microseconds = microseconds}; }

@@ -1,6 +1,8 @@
 // A bounding volume hierarchy over a mesh: immutable flat arrays, statistics beside the nodes.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -45,6 +47,7 @@ class Hierarchy {
     V volume;
     std::uint32_t first;
     std::uint32_t count;
+    float radius;  ///< volume.radius(), kept: every visit of an inner pair compares two of them
     [[nodiscard]] bool is_leaf() const noexcept { return count != 0; }
   };
 
@@ -101,7 +104,10 @@ Hierarchy<V> Hierarchy<V>::build(const mesh::TriangleMesh& mesh, const BuildOpti
       const TopologyNode& node = topology.nodes[i];
       const auto triangles = std::span(hierarchy.corners_).subspan(node.begin, node.end - node.begin);
       const std::span<const Vec3> points(triangles.front().data(), triangles.size() * 3);
-      hierarchy.nodes_[i] = {V::fit(points, surface.axes[i]), node.first, node.count};
+      const V volume = V::fit(points, surface.axes[i]);
+      hierarchy.nodes_[i] = {volume, node.first, node.count, volume.radius()};
+      surface.statistics[i].relative_area =
+          static_cast<float>(static_cast<double>(surface.statistics[i].area) / std::pow(volume.volume(), 2.0 / 3.0));
       const volume::OrientedBox box = hierarchy.nodes_[i].volume.cell_box();
       counter.begin(box.center, box.axes, box.half_extents);
       for (const TriangleCorners& triangle : triangles) counter.add(triangle[0], triangle[1], triangle[2]);

@@ -69,19 +69,22 @@ struct BoxPairView {
   const Vec3f t_in_b = view.r.transpose() * view.t;
   double product_a = 1.0;
   double product_b = 1.0;
-  double fill_a = 1.0;
-  double fill_b = 1.0;
+  double enclosure_a = 1.0;
+  double enclosure_b = 1.0;
+  double volume_a = 1.0;  // an eighth of each
+  double volume_b = 1.0;
   for (int i = 0; i < 3; ++i) {
     const float overlap_a = std::min(ha[i], view.t[i] + eb[i]) - std::max(-ha[i], view.t[i] - eb[i]);
     const float overlap_b = std::min(hb[i], t_in_b[i] + ea[i]) - std::max(-hb[i], t_in_b[i] - ea[i]);
     product_a *= static_cast<double>(std::max(overlap_a, 0.0F));
     product_b *= static_cast<double>(std::max(overlap_b, 0.0F));
-    fill_b *= static_cast<double>(hb[i]) / static_cast<double>(eb[i]);
-    fill_a *= static_cast<double>(ha[i]) / static_cast<double>(ea[i]);
+    enclosure_a *= static_cast<double>(ea[i]);
+    enclosure_b *= static_cast<double>(eb[i]);
+    volume_a *= static_cast<double>(ha[i]);
+    volume_b *= static_cast<double>(hb[i]);
   }
-  const double volume_a = 8.0 * static_cast<double>(ha[0]) * static_cast<double>(ha[1]) * static_cast<double>(ha[2]);
-  const double volume_b = 8.0 * static_cast<double>(hb[0]) * static_cast<double>(hb[1]) * static_cast<double>(hb[2]);
-  return std::min({product_a * fill_b, product_b * fill_a, volume_a, volume_b});
+  return std::min(
+      {product_a * (volume_b / enclosure_b), product_b * (volume_a / enclosure_a), 8.0 * volume_a, 8.0 * volume_b});
 }
 
 /// Slab test of a segment given in the box's own axes, from its centre. A direction

@@ -1,0 +1,35 @@
+#include "odds/math/elementary.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace odds::math {
+namespace {
+
+TEST(CubeRoot, IsCloseOverTheWholeRange) {
+  for (double x = 1e-37; x < 1e38; x *= 1.37) {
+    const double expected = std::cbrt(static_cast<double>(static_cast<float>(x)));
+    EXPECT_NEAR(static_cast<double>(cube_root(static_cast<float>(x))) / expected, 1.0, 2e-6) << x;
+  }
+  EXPECT_EQ(cube_root(0.0F), 0.0F);
+  EXPECT_EQ(cube_root(-1.0F), 0.0F);
+  EXPECT_EQ(cube_root(NAN), 0.0F);
+}
+
+TEST(ProbabilityOfRate, IsCloseAndMonotone) {
+  float last = 0.0F;
+  for (double x = 1e-8; x < 40.0; x *= 1.01) {
+    const float p = probability_of_rate(static_cast<float>(x));
+    EXPECT_NEAR(static_cast<double>(p), -std::expm1(-x), 4e-7) << x;
+    EXPECT_GE(p, last - 4e-7F) << x;
+    EXPECT_LE(p, 1.0F);
+    last = p;
+  }
+  EXPECT_EQ(probability_of_rate(0.0F), 0.0F);
+  EXPECT_EQ(probability_of_rate(NAN), 0.0F);
+  EXPECT_EQ(probability_of_rate(INFINITY), 1.0F);
+}
+
+}  // namespace
+}  // namespace odds::math
