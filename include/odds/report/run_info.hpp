@@ -1,0 +1,45 @@
+// What a report says about a run besides its ticks: scene, meshes, limits, machine.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "odds/realtime/fitness.hpp"
+#include "odds/realtime/host.hpp"
+#include "odds/realtime/periodic_loop.hpp"
+#include "odds/realtime/thread_setup.hpp"
+
+namespace odds::report {
+
+struct RunMesh {
+  std::string name;
+  std::string file;  ///< may be empty for made shapes
+  std::uint64_t triangles = 0;
+};
+
+/// Filled by whoever ran the loop. Text may come from users' files: the report escapes it.
+struct RunInfo {
+  std::string scene;             ///< name or file of the scene
+  std::string version;           ///< of the program
+  double started_epoch_s = 0.0;  ///< seconds since 1970, UTC
+  std::vector<RunMesh> meshes;
+  std::string bounding_volume;  ///< "obb"
+  std::string device;           ///< "scripted: press"
+  std::vector<std::string> effects;
+  std::uint64_t seed = 0;
+
+  std::int64_t period_ns = 1'000'000;
+  double budget_us = std::numeric_limits<double>::infinity();  ///< of one query; infinity: none
+  double allowed_overshoot_us = 1.0;                           ///< net, at the 99.9th percentile
+  bool simulated_time = false;  ///< wake-up and tick times are a virtual clock's; query times are real all the same
+  realtime::LoopSummary loop;   ///< as run_periodic returned it
+
+  std::vector<realtime::SetupLine> thread;
+  std::vector<realtime::HostLine> host;
+  std::optional<realtime::Fitness> fitness;  ///< of the machine shortly before the run
+};
+
+}  // namespace odds::report

@@ -1,0 +1,1 @@
+// Stands in for the chart library where none was found at build time.

@@ -1,0 +1,246 @@
+// The files of a run: figures against the records, text that is safe whatever a scene is called, no reference outside.
+#include "odds/report/run_report.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "odds/report/hgrm.hpp"
+#include "odds/report/hlog.hpp"
+#include "report/made_recording.hpp"
+
+namespace odds::report {
+namespace {
+
+namespace fs = std::filesystem;
+using State = Check::State;
+
+class RunReport : public ::testing::Test {
+ protected:
+  void SetUp() override { directory_ = fs::temp_directory_path() / ("odds_run_report_" + std::to_string(::getpid())); }
+  void TearDown() override { fs::remove_all(directory_); }
+
+  RunFiles write(const MadeRecording& made) const {
+    const auto files = write_run_report(directory_, made.info, summarize(made.info, made.ticks), made.ticks);
+    EXPECT_TRUE(files.ok()) << files.error().message();
+    return files.value();
+  }
+  static std::string text_of(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  fs::path directory_;
+};
+
+State state(const RunSummary& summary, const std::string& key) {
+  for (const Check& check : summary.checks) {
+    if (check.key == key) return check.state;
+  }
+  ADD_FAILURE() << "no check " << key;
+  return State::not_measured;
+}
+
+/// A short recording without any trouble.
+MadeRecording calm_recording() {
+  MadeRecording made = made_recording(1.0);
+  for (haptics::TickRecord& tick : made.ticks) {
+    tick.woke_ns = tick.planned_ns + 50'000;
+    tick.done_ns = tick.planned_ns + 200'000;
+    tick.query_gross_us = tick.query_net_us;
+    tick.query_stall_us = 0.0;
+  }
+  return made;
+}
+
+TEST(RunSummary, a_calm_run_keeps_every_promise) {
+  const MadeRecording made = calm_recording();
+  for (const Check& check : summarize(made.info, made.ticks).checks) {
+    EXPECT_EQ(check.state, State::met) << check.key << ": " << check.finding;
+  }
+}
+
+TEST(RunSummary, each_kind_of_trouble_is_found_by_its_own_promise) {
+  const auto with = [](auto change) {
+    MadeRecording made = calm_recording();
+    change(made);
+    return summarize(made.info, made.ticks);
+  };
+  EXPECT_EQ(state(with([](auto& m) { m.ticks[5].done_ns += 2'000'000; }), "deadline"), State::missed);
+  EXPECT_EQ(state(with([](auto& m) { m.info.loop.skipped = 1; }), "answered"), State::missed);
+  EXPECT_EQ(state(with([](auto& m) { m.ticks[5].allocations = 1; }), "memory"), State::missed);
+  EXPECT_EQ(state(with([](auto& m) { m.ticks[5].minor_faults = 1; }), "memory"), State::missed);
+  EXPECT_EQ(state(with([](auto& m) { m.ticks[5].voluntary_switches = 1; }), "memory"), State::missed);
+  EXPECT_EQ(state(with([](auto& m) { m.ticks[5].force_n[1] = std::numeric_limits<double>::quiet_NaN(); }), "force"),
+            State::missed);
+  EXPECT_EQ(state(with([](auto& m) { m.ticks[5].safety = haptics::safety_faulted; }), "force"), State::missed);
+  EXPECT_EQ(state(with([](auto& m) { m.ticks.pop_back(); }), "recording"), State::missed);
+  EXPECT_EQ(state(with([](auto& m) {
+                    for (auto& tick : m.ticks) tick.query_net_overshoot_us = 1.5;
+                  }),
+                  "budget"),
+            State::missed);
+}
+
+TEST(RunSummary, times_on_a_restless_machine_are_inconclusive_and_counts_are_judged_all_the_same) {
+  MadeRecording made = calm_recording();
+  made.info.fitness->fit = false;
+  made.ticks[5].done_ns += 2'000'000;
+  made.ticks[6].allocations = 3;
+  RunSummary summary = summarize(made.info, made.ticks);
+  EXPECT_EQ(state(summary, "machine"), State::inconclusive);
+  EXPECT_EQ(state(summary, "deadline"), State::inconclusive);
+  EXPECT_EQ(state(summary, "budget"), State::inconclusive) << "neither passed nor failed";
+  EXPECT_EQ(state(summary, "memory"), State::missed);
+
+  made.info.fitness.reset();
+  for (auto& tick : made.ticks) tick.query_stall_us = 0.1 * tick.query_gross_us;
+  summary = summarize(made.info, made.ticks);
+  EXPECT_NEAR(summary.stall_share, 0.1, 1e-9);
+  EXPECT_EQ(state(summary, "budget"), State::inconclusive) << "by the stalls that the queries saw themselves";
+}
+
+TEST(RunSummary, what_nobody_counted_is_not_called_kept) {
+  MadeRecording made = calm_recording();
+  for (auto& tick : made.ticks) tick.allocations = haptics::not_measured;
+  EXPECT_EQ(state(summarize(made.info, made.ticks), "memory"), State::not_measured);
+  made.info.budget_us = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(state(summarize(made.info, made.ticks), "budget"), State::not_measured);
+}
+
+TEST(RunSummary, skipped_periods_count_with_the_time_until_the_next_force) {
+  MadeRecording made;
+  made.info.loop = {2, 3, false};
+  haptics::TickRecord first;
+  first.planned_ns = 0;
+  first.done_ns = 100'000;
+  haptics::TickRecord second;
+  second.tick = 4;
+  second.planned_ns = 4'000'000;
+  second.done_ns = 4'300'000;
+  second.skipped_before = 3;
+  made.ticks = {first, second};
+  const RunSummary summary = summarize(made.info, made.ticks);
+  EXPECT_EQ(summary.tick.count(), 5u);
+  for (const std::int64_t waited_ns : {100'000, 300'000, 1'300'000, 2'300'000, 3'300'000}) {
+    EXPECT_EQ(summary.tick.counters()[summary.tick.counter_of(waited_ns)], 1u) << waited_ns;
+  }
+  EXPECT_EQ(summary.longest_miss_run, 3u);
+}
+
+TEST(RunSummary, percentiles_are_those_of_the_sorted_records) {
+  const MadeRecording made = made_recording(3.0);
+  const RunSummary summary = summarize(made.info, made.ticks);
+  std::vector<double> net;
+  for (const auto& tick : made.ticks) {
+    if (tick.queries > 0) net.push_back(tick.query_net_us * 1e3);
+  }
+  std::sort(net.begin(), net.end());
+  ASSERT_EQ(summary.query_net.count(), net.size());
+  const double exact = net[static_cast<std::size_t>(0.99 * static_cast<double>(net.size()))];
+  EXPECT_NEAR(static_cast<double>(summary.query_net.value_at_percentile(99.0)), exact, 2e-3 * exact);
+}
+
+TEST_F(RunReport, tables_have_a_row_for_every_tick_and_a_value_for_every_column) {
+  const MadeRecording made = made_recording(2.0);
+  std::istringstream csv(text_of(write(made).ticks));
+  std::string line;
+  std::getline(csv, line);
+  EXPECT_EQ(line.rfind("tick,planned_ns,woke_ns,done_ns,", 0), 0u);
+  const auto columns = std::count(line.begin(), line.end(), ',');
+  std::size_t rows = 0;
+  while (std::getline(csv, line)) {
+    EXPECT_EQ(std::count(line.begin(), line.end(), ','), columns) << line;
+    ++rows;
+  }
+  EXPECT_EQ(rows, made.ticks.size());
+}
+
+TEST_F(RunReport, summary_is_json_with_the_figures_of_the_histograms) {
+  const MadeRecording made = made_recording(2.0);
+  const RunFiles files = write(made);
+  const auto json = nlohmann::json::parse(text_of(files.summary));
+  const RunSummary summary = summarize(made.info, made.ticks);
+  EXPECT_EQ(json["counts"]["planned"], 2'000);
+  EXPECT_EQ(json["counts"]["ran"].get<std::uint64_t>() + json["counts"]["skipped"].get<std::uint64_t>(), 2'000u);
+  EXPECT_EQ(json["latency"]["tick"]["max_us"].get<double>(), static_cast<double>(summary.tick.max()) * 1e-3);
+  EXPECT_EQ(json["latency"]["wake"]["samples"], made.ticks.size());
+  EXPECT_EQ(json["checks"].size(), summary.checks.size());
+
+  std::ifstream hgrm(files.tick_latency);
+  const auto table = read_hgrm(hgrm, "latency.hgrm");
+  ASSERT_TRUE(table.ok()) << table.error().message();
+  EXPECT_EQ(table.value().count, summary.tick.count());
+  std::ifstream hlog(files.log);
+  const auto log = read_hlog(hlog, "latency.hlog");
+  ASSERT_TRUE(log.ok()) << log.error().message();
+  std::uint64_t logged = 0;
+  for (const HlogInterval& interval : log.value().intervals)
+    logged += interval.tag.empty() ? interval.histogram.count() : 0;
+  EXPECT_EQ(logged, summary.tick.count());
+}
+
+TEST_F(RunReport, numbers_that_are_not_finite_never_reach_json) {
+  MadeRecording made = made_recording(1.0);
+  made.info.budget_us = std::numeric_limits<double>::infinity();
+  auto& tick = made.ticks[10];
+  tick.query_gross_us = tick.query_stall_us = tick.max_depth_m = tick.probability =
+      std::numeric_limits<double>::quiet_NaN();
+  tick.force_n = {std::numeric_limits<double>::infinity(), 0.0, 0.0};
+  const RunFiles files = write(made);
+  const auto json = nlohmann::json::parse(text_of(files.summary));  // throws on nan and inf
+  EXPECT_EQ(json["counts"]["not_finite"], 1);
+  const std::string page = text_of(files.page);
+  const auto begin = page.find("type=\"application/json\">") + 24;
+  EXPECT_TRUE(nlohmann::json::accept(page.substr(begin, page.find("</script>", begin) - begin)));
+}
+
+TEST_F(RunReport, hostile_names_stay_text) {
+  MadeRecording made = made_recording(1.0);
+  const std::string evil =
+      "</script><script>document.documentElement.dataset.evil=1</script><img src=x onerror=\"e('&')\">\xff";
+  made.info.scene = made.info.device = made.info.version = made.info.bounding_volume = evil;
+  made.info.effects = {evil};
+  made.info.meshes[0] = {evil, evil, 1};
+  made.info.host.push_back({evil, evil, realtime::HostLine::Readiness::good, evil});
+  made.info.thread.push_back({evil, realtime::SetupLine::Outcome::refused, evil});
+  made.info.fitness->reason = evil;
+  const RunFiles files = write(made);
+  const std::string page = text_of(files.page);
+  EXPECT_EQ(page.find("<img"), std::string::npos);
+  EXPECT_EQ(page.find("dataset.evil=1</script>"), std::string::npos);
+  EXPECT_TRUE(nlohmann::json::accept(text_of(files.summary)));
+}
+
+TEST_F(RunReport, page_refers_to_nothing_outside_and_stays_small) {
+  const std::string page = text_of(write(made_recording(10.0)).page);
+  EXPECT_LT(page.size(), std::size_t{2} << 20);
+  for (const char* attribute : {"src=\"", "href=\"h", "@import", "url("}) {
+    EXPECT_EQ(page.find(attribute), std::string::npos) << attribute;
+  }
+  EXPECT_NE(page.find("default-src 'none'"), std::string::npos);
+}
+
+TEST_F(RunReport, an_empty_run_still_gives_files_that_can_be_read) {
+  MadeRecording made;
+  made.info.scene = "nothing";
+  const RunFiles files = write(made);
+  EXPECT_TRUE(nlohmann::json::accept(text_of(files.summary)));
+  EXPECT_NE(text_of(files.page).find("</html>"), std::string::npos);
+}
+
+TEST_F(RunReport, says_which_file_cannot_be_written) {
+  std::ofstream(directory_.string()) << "a file where the directory should be";
+  const MadeRecording made = calm_recording();
+  const auto files = write_run_report(directory_, made.info, summarize(made.info, made.ticks), made.ticks);
+  ASSERT_FALSE(files.ok());
+  EXPECT_NE(files.error().message().find(directory_.string()), std::string::npos);
+}
+
+}  // namespace
+}  // namespace odds::report
