@@ -249,8 +249,23 @@ void write_manifolds(std::span<Patch> patches, const Vec3& half, const math::Pos
   }
 }
 
-// The exits of all patches: one and the same where the box leaves all of them on a common way no longer than the
-// longest of their own (it lies on a convex edge or corner), else each its own (it stands in a concave corner).
+// Whether no patch's leading piece lies in front of another's: then they bound a convex corner or edge.
+bool are_convex(std::span<const Patch> patches, double tolerance) noexcept {
+  const auto middle = [](const Piece& piece) {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t i = 0; i < piece.count; ++i) sum += piece.corners[i];
+    return Vec3(sum / static_cast<double>(piece.count));
+  };
+  for (const Patch& a : patches) {
+    for (const Patch& b : patches) {
+      if (a.pieces[0]->normal.dot(middle(*b.pieces[0]) - middle(*a.pieces[0])) > tolerance) return false;
+    }
+  }
+  return true;
+}
+
+// The exits of all patches: one and the same if the box lies on a convex edge or corner, or if a common way is no
+// longer than the longest of their own; else each its own (it stands in a concave corner).
 void find_exits(std::span<Patch> patches, const Pieces& pieces, const Vec3& half) noexcept {
   double longest = 0.0;
   for (Patch& patch : patches) {
@@ -261,7 +276,8 @@ void find_exits(std::span<Patch> patches, const Pieces& pieces, const Vec3& half
   std::array<const Piece*, most_pieces> everything;
   for (std::size_t i = 0; i < pieces.count; ++i) everything[i] = &pieces.all[i];
   const Exit common = shortest_exit({everything.data(), pieces.count}, half);
-  if (!(common.depth < dInfinity && common.depth <= longest * (1.0 + 1e-6))) return;
+  const bool is_common = common.depth <= longest * (1.0 + 1e-6) || are_convex(patches, same_place * half.norm());
+  if (!is_common || !(common.depth < dInfinity)) return;
   for (Patch& patch : patches) patch.exit = common;
 }
 

@@ -1,0 +1,231 @@
+// Mesh against box: resting on tessellated floors, corners, ridges, concave corners; every exit really ends the
+// overlap.
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "odds/mesh/made/terrain.hpp"
+#include "ode/ode_fixture.hpp"
+
+namespace odds::test {
+namespace {
+
+class BoxTest : public OdeTest {
+ protected:
+  std::mt19937 random{9};
+  std::uniform_real_distribution<double> uniform{-1.0, 1.0};
+};
+
+// Twice the area of the polygon of contacts around their centre, in the x-y plane.
+double spanned_area(const std::vector<dContactGeom>& contacts) {
+  Vec3 middle = Vec3::Zero();
+  for (const dContactGeom& contact : contacts) middle += position_of(contact) / static_cast<double>(contacts.size());
+  std::vector<Vec3> points;
+  for (const dContactGeom& contact : contacts) points.push_back(position_of(contact) - middle);
+  std::sort(points.begin(), points.end(),
+            [](const Vec3& a, const Vec3& b) { return std::atan2(a.y(), a.x()) < std::atan2(b.y(), b.x()); });
+  double twice = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3& next = points[(i + 1) % points.size()];
+    twice += points[i].x() * next.y() - points[i].y() * next.x();
+  }
+  return 0.5 * twice;
+}
+
+TEST_F(BoxTest, RestingOnATessellatedFloorAllNormalsAreVerticalAndCornersAreHeld) {
+  const dGeomID floor = mesh_geom(box_shape(2, 2, 0.2, 16), space);
+  const dGeomID box = dCreateBox(space, 0.3, 0.2, 0.1);
+  for (int round = 0; round < 300; ++round) {
+    rotate(box, Vec3(0, 0, 1), 3.0 * uniform(random));
+    dGeomSetPosition(box, 0.5 * uniform(random), 0.5 * uniform(random), 0.149);
+    const auto contacts = collide(box, floor, 8);
+    ASSERT_GE(contacts.size(), 4u);
+    expect_sound(contacts, box, floor);
+    for (const dContactGeom& contact : contacts) {
+      EXPECT_NEAR(contact.normal[2], 1.0, 1e-9);
+      EXPECT_NEAR(contact.depth, 0.001, 1e-9);
+    }
+    EXPECT_GT(spanned_area(contacts), 0.95 * 0.06);
+    EXPECT_GT(spanned_area(collide(box, floor, 4)), 0.7 * 0.06);
+  }
+}
+
+TEST_F(BoxTest, ATiltedBoxIsAsDeepAsItsLowestCorner) {
+  const dGeomID floor = mesh_geom(box_shape(2, 2, 0.2, 16), space);
+  const dGeomID box = dCreateBox(space, 0.3, 0.2, 0.1);
+  for (int round = 0; round < 300; ++round) {
+    rotate(box, Vec3(uniform(random), uniform(random), uniform(random)), uniform(random));
+    dGeomSetPosition(box, 0.5 * uniform(random), 0.5 * uniform(random), 0.2);
+    // Lowered until its lowest corner is 2 mm deep.
+    dReal aabb[6];
+    dGeomGetAABB(box, aabb);
+    const dReal* p = dGeomGetPosition(box);
+    dGeomSetPosition(box, p[0], p[1], p[2] + 0.1 - aabb[4] - 0.002);
+    const auto contacts = collide(box, floor);
+    ASSERT_FALSE(contacts.empty());
+    EXPECT_NEAR(contacts[0].depth, 0.002, 1e-9);
+    for (const dContactGeom& contact : contacts) EXPECT_NEAR(contact.normal[2], 1.0, 1e-9);
+  }
+}
+
+TEST_F(BoxTest, GoingTheDeepestWayOutEndsTheOverlapOfConvexBodies) {
+  const dGeomID mesh = mesh_geom(box_shape(0.8, 1.0, 1.2, 2), space);
+  const dGeomID twin = dCreateBox(space, 0.8, 1.0, 1.2);
+  const dGeomID box = dCreateBox(space, 0.5, 0.6, 0.7);
+  int hits = 0;
+  int much_longer = 0;
+  for (int round = 0; round < 500; ++round) {
+    rotate(box, Vec3(uniform(random), uniform(random), uniform(random)), 3.0 * uniform(random));
+    const Vec3 position = Vec3(uniform(random), uniform(random), uniform(random));
+    dGeomSetPosition(box, position.x(), position.y(), position.z());
+    const auto contacts = collide(box, mesh);
+    const auto reference = collide(box, twin);
+    const double least = reference.empty()
+                             ? 0.0
+                             : std::max_element(reference.begin(), reference.end(), [](const auto& x, const auto& y) {
+                                 return x.depth < y.depth;
+                               })->depth;
+    if (least > 1e-6) {
+      ASSERT_FALSE(contacts.empty());
+    }
+    if (reference.empty()) {
+      ASSERT_TRUE(contacts.empty());
+    }
+    if (contacts.empty() || least > 0.15) continue;  // deep overlaps have several reasonable ways out
+    ++hits;
+    double out = 0.0;
+    for (const dContactGeom& contact : contacts) {
+      EXPECT_NEAR((normal_of(contact) - normal_of(contacts[0])).norm(), 0.0, 1e-3)
+          << "one manifold between convex bodies";
+      out = std::max(out, contact.depth);
+    }
+    much_longer += out > 2.0 * least + 1e-3;
+    const Vec3 away = position + (out + 1e-7) * normal_of(contacts[0]);
+    dGeomSetPosition(box, away.x(), away.y(), away.z());
+    for (const dContactGeom& left : collide(box, twin)) EXPECT_LT(left.depth, 1e-3) << "round " << round;
+  }
+  EXPECT_GT(hits, 100);
+  EXPECT_LT(much_longer, hits / 50);
+}
+
+TEST_F(BoxTest, AMeshCornerInATableTopIsPushedOutOfTheTop) {
+  const dGeomID mesh = mesh_geom(box_shape(0.2, 0.2, 0.2, 3), space);
+  rotate(mesh, Vec3(1, -1, 0), std::acos(std::sqrt(1.0 / 3.0)));  // a diagonal stands upright
+  dReal aabb[6];
+  dGeomGetAABB(mesh, aabb);
+  const dGeomID table = dCreateBox(space, 2, 2, 0.1);
+  dGeomSetPosition(table, 0, 0, -0.05);
+  const dGeomID plane = dCreatePlane(nullptr, 0, 0, 1, 0);
+  dGeomSetPosition(mesh, 0, 0, 0.16);
+  const auto reference = collide(mesh, plane);
+  ASSERT_EQ(reference.size(), 1u);
+  const auto contacts = collide(mesh, table);
+  ASSERT_FALSE(contacts.empty());
+  EXPECT_NEAR(contacts[0].depth, reference[0].depth, 1e-9);
+  for (const dContactGeom& contact : contacts) EXPECT_NEAR(contact.normal[2], 1.0, 1e-9);
+  dGeomDestroy(plane);
+}
+
+TEST_F(BoxTest, CrossedEdgesArePushedApartAcrossBoth) {
+  const dGeomID mesh = mesh_geom(box_shape(1, 0.2, 0.2), space);
+  rotate(mesh, Vec3(1, 0, 0), M_PI / 4);  // its upper edge runs along x
+  const dGeomID box = dCreateBox(space, 0.2, 1, 0.2);
+  rotate(box, Vec3(0, 1, 0), M_PI / 4);  // its lower edge runs along y
+  const double half_diagonal = 0.1 * std::sqrt(2.0);
+  dGeomSetPosition(box, 0.13, 0.07, 2.0 * half_diagonal - 0.01);
+  const auto contacts = collide(box, mesh);
+  ASSERT_FALSE(contacts.empty());
+  EXPECT_NEAR(contacts[0].normal[2], 1.0, 1e-6);
+  EXPECT_NEAR(contacts[0].depth, 0.01, 1e-6);
+  EXPECT_NEAR(contacts[0].pos[0], 0.13, 1e-6);
+  EXPECT_NEAR(contacts[0].pos[1], 0.0, 1e-6);
+}
+
+TEST_F(BoxTest, InAConcaveCornerFloorAndWallBothPush) {
+  // A floor (z = 0) and a wall (x = 0), each of 8 x 8 cells.
+  std::vector<Vec3> vertices;
+  std::vector<mesh::Triangle> triangles;
+  const auto sheet = [&](const auto& at) {
+    const auto base = static_cast<std::uint32_t>(vertices.size());
+    for (std::uint32_t i = 0; i <= 8; ++i) {
+      for (std::uint32_t j = 0; j <= 8; ++j) vertices.push_back(at(i / 8.0, j / 8.0));
+    }
+    for (std::uint32_t i = 0; i < 8; ++i) {
+      for (std::uint32_t j = 0; j < 8; ++j) {
+        const std::uint32_t a = base + 9 * i + j;
+        triangles.push_back({a, a + 9, a + 10});
+        triangles.push_back({a, a + 10, a + 1});
+      }
+    }
+  };
+  sheet([](double u, double v) { return Vec3(u, v, 0); });
+  sheet([](double u, double v) { return Vec3(0, u, v); });
+  auto made = mesh::TriangleMesh::make(vertices, triangles);
+  ASSERT_TRUE(made.ok());
+  const dGeomID corner = mesh_geom(
+      query::Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(made).value())).value(), space);
+  const dGeomID box = dCreateBox(space, 0.3, 0.3, 0.3);
+  dGeomSetPosition(box, 0.148, 0.5, 0.149);
+  const auto contacts = collide(box, corner);
+  int up = 0;
+  int sideways = 0;
+  for (const dContactGeom& contact : contacts) {
+    if (contact.normal[2] > 0.999) {
+      ++up;
+      EXPECT_NEAR(contact.depth, 0.001, 1e-9);
+    } else {
+      ++sideways;
+      EXPECT_NEAR(contact.normal[0], 1.0, 1e-9);
+      EXPECT_NEAR(contact.depth, 0.002, 1e-9);
+    }
+  }
+  EXPECT_EQ(up, 4);
+  EXPECT_EQ(sideways, 4);
+}
+
+TEST_F(BoxTest, SwallowedByAClosedMeshItIsPushedOut) {
+  const dGeomID mesh = mesh_geom(box_shape(2, 2, 2, 4), space);
+  const dGeomID box = dCreateBox(space, 0.2, 0.2, 0.2);
+  dGeomSetPosition(box, 0.1, 0.2, 0.6);
+  const auto contacts = collide(box, mesh);
+  ASSERT_EQ(contacts.size(), 1u);
+  EXPECT_NEAR(contacts[0].normal[2], 1.0, 1e-9);
+  EXPECT_NEAR(contacts[0].depth, 0.5, 1e-9);
+}
+
+TEST_F(BoxTest, OnTerrainNoNormalPointsIntoTheGround) {
+  mesh::made::Terrain hills;
+  hills.cells = 48;
+  const dGeomID terrain = mesh_geom(shape_of(hills), space);
+  const dGeomID box = dCreateBox(space, 0.1, 0.1, 0.1);
+  int contacts_seen = 0;
+  for (int round = 0; round < 300; ++round) {
+    rotate(box, Vec3(uniform(random), uniform(random), uniform(random)), 3.0 * uniform(random));
+    dGeomSetPosition(box, 0.8 * uniform(random), 0.8 * uniform(random), 0.1 * uniform(random));
+    const auto contacts = collide(box, terrain);
+    expect_sound(contacts, box, terrain);
+    for (const dContactGeom& contact : contacts) {
+      ++contacts_seen;
+      EXPECT_GT(contact.normal[2], 0.0) << "round " << round;
+      EXPECT_LE(contact.depth, 0.18) << "at most the box's diagonal";
+    }
+  }
+  EXPECT_GT(contacts_seen, 200);
+}
+
+TEST_F(BoxTest, ManySmallTrianglesAreCutOffAndCountedYetHoldTheBox) {
+  const dGeomID floor = mesh_geom(box_shape(2, 2, 0.2, 50), space);
+  const dGeomID box = dCreateBox(space, 0.6, 0.6, 0.1);
+  dGeomSetPosition(box, 0.013, 0.017, 0.149);
+  const auto contacts = collide(box, floor);
+  EXPECT_EQ(stats().primitive_cut_off, 1u);
+  ASSERT_GE(contacts.size(), 3u);
+  for (const dContactGeom& contact : contacts) {
+    EXPECT_NEAR(contact.normal[2], 1.0, 1e-9);
+    EXPECT_NEAR(contact.depth, 0.001, 1e-9);
+  }
+  EXPECT_GT(spanned_area(contacts), 0.3 * 0.36);
+}
+
+}  // namespace
+}  // namespace odds::test

@@ -1,0 +1,147 @@
+// Mesh against plane: exact depths, and contacts that span the footprint.
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "odds/math/pose.hpp"
+#include "ode/ode_fixture.hpp"
+
+namespace odds::test {
+namespace {
+
+math::Pose pose_of(dGeomID geom) {
+  const dReal* p = dGeomGetPosition(geom);
+  const dReal* r = dGeomGetRotation(geom);
+  math::Pose pose;
+  pose.translation = Vec3(p[0], p[1], p[2]);
+  pose.rotation << r[0], r[1], r[2], r[4], r[5], r[6], r[8], r[9], r[10];
+  return pose;
+}
+
+Vec3 random_direction(std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  return Vec3(normal(random), normal(random), normal(random)).normalized();
+}
+
+class PlaneTest : public OdeTest {
+ protected:
+  std::mt19937 random{11};
+};
+
+TEST_F(PlaneTest, DeepestVertexAndAllDepthsAreExact) {
+  const auto shape = sphere_shape(0.5, 6);
+  const dGeomID mesh = mesh_geom(shape, space);
+  std::uniform_real_distribution<double> uniform(-0.6, 0.6);
+  int hits = 0;
+  for (int round = 0; round < 300; ++round) {
+    const Vec3 normal = random_direction(random);
+    const double offset = uniform(random);
+    const dGeomID plane = dCreatePlane(nullptr, normal.x(), normal.y(), normal.z(), offset);
+    rotate(mesh, random_direction(random), 3.0 * uniform(random));
+    dGeomSetPosition(mesh, uniform(random), uniform(random), uniform(random));
+    const math::Pose pose = pose_of(mesh);
+    double deepest = -1.0;
+    for (const Vec3& vertex : shape->mesh().vertices()) deepest = std::max(deepest, offset - normal.dot(pose * vertex));
+    const auto contacts = collide(mesh, plane);
+    EXPECT_EQ(contacts.empty(), deepest < 0.0);
+    expect_sound(contacts, mesh, plane);
+    if (!contacts.empty()) {
+      ++hits;
+      EXPECT_NEAR(contacts[0].depth, deepest, 2e-6 * shape->mesh().size()) << "first among equals";
+    }
+    for (const dContactGeom& contact : contacts) {
+      EXPECT_NEAR(contact.depth, offset - normal.dot(position_of(contact)), 1e-12);
+      EXPECT_LT((normal_of(contact) - normal).norm(), 1e-12);
+      const Vec3 local = pose.inverse() * position_of(contact);
+      const auto& triangle = shape->mesh().triangles()[static_cast<std::size_t>(contact.side1)];
+      const auto is_it = [&](std::uint32_t v) { return (shape->mesh().vertices()[v] - local).norm() < 1e-12; };
+      EXPECT_TRUE(std::any_of(triangle.begin(), triangle.end(), is_it)) << "a vertex of the triangle that side1 names";
+    }
+    dGeomDestroy(plane);
+  }
+  EXPECT_GT(hits, 100);
+}
+
+TEST_F(PlaneTest, AMeshBoxIsAsDeepAsOdesBox) {
+  const dGeomID mesh = mesh_geom(box_shape(0.4, 0.6, 0.8, 5), space);
+  const dGeomID box = dCreateBox(space, 0.4, 0.6, 0.8);
+  const dGeomID plane = dCreatePlane(space, 0, 0, 1, 0);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (int round = 0; round < 300; ++round) {
+    for (const dGeomID geom : {mesh, box}) dGeomSetPosition(geom, 0, 0, 0.35);
+    const Vec3 axis = random_direction(random);
+    const double angle = 3.0 * uniform(random);
+    for (const dGeomID geom : {mesh, box}) rotate(geom, axis, angle);
+    const auto ours = collide(mesh, plane);
+    const auto odes = collide(box, plane);
+    ASSERT_EQ(ours.empty(), odes.empty());
+    if (ours.empty()) continue;
+    const auto depth = [](const dContactGeom& x, const dContactGeom& y) { return x.depth < y.depth; };
+    EXPECT_NEAR(std::max_element(ours.begin(), ours.end(), depth)->depth,
+                std::max_element(odes.begin(), odes.end(), depth)->depth, 2e-6);
+  }
+}
+
+TEST_F(PlaneTest, AFlatBottomIsHeldAtItsFourCornersOnly) {
+  const dGeomID mesh = mesh_geom(box_shape(0.4, 0.6, 0.2, 10), space);
+  const dGeomID plane = dCreatePlane(space, 0, 0, 1, 0);
+  dGeomSetPosition(mesh, 3, 4, 0.099);
+  rotate(mesh, Vec3(0, 0, 1), 0.4);
+  const auto contacts = collide(mesh, plane);
+  ASSERT_EQ(contacts.size(), 4u) << "points between the corners add nothing";
+  for (const dContactGeom& contact : contacts) {
+    EXPECT_NEAR(contact.depth, 0.001, 1e-12);
+    EXPECT_NEAR((position_of(contact) - Vec3(3, 4, -0.001)).norm(), std::hypot(0.2, 0.3), 1e-9);
+  }
+}
+
+TEST_F(PlaneTest, TwoContactsOfFourAreTheFarthestApart) {
+  const dGeomID mesh = mesh_geom(box_shape(0.4, 0.6, 0.2, 3), space);
+  const dGeomID plane = dCreatePlane(space, 0, 0, 1, 0);
+  dGeomSetPosition(mesh, 0, 0, 0.099);
+  const auto contacts = collide(mesh, plane, 2);
+  ASSERT_EQ(contacts.size(), 2u);
+  EXPECT_NEAR((position_of(contacts[0]) - position_of(contacts[1])).norm(), std::hypot(0.4, 0.6), 1e-9);
+}
+
+TEST_F(PlaneTest, EdgeTwoContactsCornerOne) {
+  const dGeomID mesh = mesh_geom(box_shape(1, 1, 1, 4), space);
+  const dGeomID plane = dCreatePlane(space, 0, 0, 1, 0);
+  rotate(mesh, Vec3(1, 0, 0), M_PI / 4);
+  dGeomSetPosition(mesh, 0, 0, std::sqrt(0.5) - 0.01);
+  auto contacts = collide(mesh, plane);
+  ASSERT_EQ(contacts.size(), 2u);
+  for (const dContactGeom& contact : contacts) EXPECT_NEAR(contact.depth, 0.01, 1e-9);
+  rotate(mesh, Vec3(1, -1, 0), std::acos(std::sqrt(1.0 / 3.0)));  // a diagonal stands upright
+  const math::Pose pose = pose_of(mesh);
+  double lowest = 0.0;
+  for (int c = 0; c < 8; ++c) {
+    lowest = std::min(lowest, (pose.rotation * Vec3(c & 1 ? .5 : -.5, c & 2 ? .5 : -.5, c & 4 ? .5 : -.5)).z());
+  }
+  dGeomSetPosition(mesh, 0, 0, -lowest - 0.01);
+  contacts = collide(mesh, plane);
+  ASSERT_EQ(contacts.size(), 1u);
+  EXPECT_NEAR(contacts[0].depth, 0.01, 1e-9);
+}
+
+TEST_F(PlaneTest, VerticesThatNoTriangleUsesDoNotTouch) {
+  auto mesh = mesh::TriangleMesh::make({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, -5}}, {{0, 1, 2}});
+  ASSERT_TRUE(mesh.ok());
+  auto shape = query::Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(mesh).value()));
+  ASSERT_TRUE(shape.ok());
+  const dGeomID geom = mesh_geom(shape.value(), space);
+  const dGeomID plane = dCreatePlane(space, 0, 0, 1, -1);
+  EXPECT_TRUE(collide(geom, plane).empty());
+}
+
+TEST_F(PlaneTest, AnExhaustedWorkBudgetIsCountedAndStillSound) {
+  const dGeomID mesh = mesh_geom(sphere_shape(1, 20), space);
+  const dGeomID plane = dCreatePlane(space, 0, 0, 1, 0);
+  ASSERT_EQ(dGeomOddsMeshSetWorkBudget(mesh, 30), 1);
+  const auto contacts = collide(mesh, plane);
+  EXPECT_EQ(stats().primitive_cut_off, 1u);
+  expect_sound(contacts, mesh, plane);
+}
+
+}  // namespace
+}  // namespace odds::test

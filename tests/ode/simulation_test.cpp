@@ -1,0 +1,119 @@
+// End to end: things dropped on things come to rest and stay, 10 s at 1 kHz.
+#include <cmath>
+#include <cstring>
+
+#include "ode/ode_fixture.hpp"
+
+namespace odds::test {
+namespace {
+
+constexpr double period = 1e-3;  // seconds
+
+class Simulation : public OdeTest {
+ protected:
+  void SetUp() override {
+    OdeTest::SetUp();
+    world = dWorldCreate();
+    joints = dJointGroupCreate(0);
+    dWorldSetGravity(world, 0, 0, -9.81);
+    dWorldSetERP(world, 0.2);
+    dWorldSetContactMaxCorrectingVel(world, 0.5);
+    dWorldSetContactSurfaceLayer(world, 1e-4);
+  }
+  void TearDown() override {
+    dJointGroupDestroy(joints);
+    dWorldDestroy(world);
+    OdeTest::TearDown();
+  }
+
+  dBodyID body_of(dGeomID geom, double x, double y, double z) {
+    const dBodyID body = dBodyCreate(world);
+    dMass mass;
+    dMassSetBoxTotal(&mass, 1.0, 0.2, 0.2, 0.2);
+    dBodySetMass(body, &mass);
+    dGeomSetBody(geom, body);
+    dBodySetPosition(body, x, y, z);
+    return body;
+  }
+
+  void step() {
+    dSpaceCollide(space, this, [](void* data, dGeomID a, dGeomID b) {
+      auto* self = static_cast<Simulation*>(data);
+      if (dGeomGetBody(a) == nullptr && dGeomGetBody(b) == nullptr) return;
+      dContact contacts[8];
+      const int count = dCollide(a, b, 8, &contacts[0].geom, sizeof(dContact));
+      for (int i = 0; i < count; ++i) {
+        std::memset(static_cast<void*>(&contacts[i].surface), 0, sizeof contacts[i].surface);
+        contacts[i].surface.mu = 0.8;
+        dJointAttach(dJointCreateContact(self->world, self->joints, &contacts[i]), dGeomGetBody(a), dGeomGetBody(b));
+      }
+    });
+    dWorldStep(world, period);
+    dJointGroupEmpty(joints);
+  }
+
+  // Runs 10 s; after the first two nothing may move by more than `drift` (metres), turn, or be faster than `speed` at
+  // the end.
+  void expect_rest(dBodyID body, double height, double drift, double speed = 1e-3) {
+    for (int i = 0; i < 2000; ++i) step();
+    const Vec3 settled = Vec3(dBodyGetPosition(body)[0], dBodyGetPosition(body)[1], dBodyGetPosition(body)[2]);
+    EXPECT_NEAR(settled.z(), height, 5e-4);
+    double farthest = 0.0;
+    for (int i = 0; i < 8000; ++i) {
+      step();
+      const dReal* p = dBodyGetPosition(body);
+      farthest = std::max(farthest, (Vec3(p[0], p[1], p[2]) - settled).norm());
+    }
+    EXPECT_LT(farthest, drift);
+    const dReal* v = dBodyGetLinearVel(body);
+    EXPECT_LT(Vec3(v[0], v[1], v[2]).norm(), speed);
+  }
+
+  // The body's own up axis still points up.
+  static double tilt_degrees(dBodyID body) {
+    return std::acos(std::min(1.0, dBodyGetRotation(body)[10])) * 180.0 / M_PI;
+  }
+
+  dWorldID world = nullptr;
+  dJointGroupID joints = nullptr;
+};
+
+TEST_F(Simulation, AMeshBoxOnAPlane) {
+  dCreatePlane(space, 0, 0, 1, 0);
+  const dBodyID body = body_of(mesh_geom(box_shape(0.2, 0.2, 0.2, 4), space), 0, 0, 0.15);
+  expect_rest(body, 0.1, 1e-4);
+  EXPECT_LT(tilt_degrees(body), 0.1);
+}
+
+TEST_F(Simulation, AMeshBoxOnAMeshFloor) {
+  const dGeomID floor = mesh_geom(box_shape(2, 2, 0.2, 8), space);
+  const dGeomID box = mesh_geom(box_shape(0.2, 0.2, 0.2, 2), space);
+  ASSERT_EQ(oddsPreparePair(floor, box), 1);
+  const dBodyID body = body_of(box, 0.07, 0.03, 0.25);
+  expect_rest(body, 0.2, 5e-4);
+  EXPECT_LT(tilt_degrees(body), 0.2);
+}
+
+TEST_F(Simulation, AnOdeBoxOnAMeshFloor) {
+  mesh_geom(box_shape(2, 2, 0.2, 8), space);
+  const dBodyID body = body_of(dCreateBox(space, 0.2, 0.2, 0.2), 0.07, 0.03, 0.25);
+  expect_rest(body, 0.2, 1e-4);
+  EXPECT_LT(tilt_degrees(body), 0.1);
+}
+
+TEST_F(Simulation, AMeshBoxOnAnOdeBox) {
+  const dGeomID table = dCreateBox(space, 2, 2, 0.2);
+  dGeomSetPosition(table, 0, 0, 0);
+  const dBodyID body = body_of(mesh_geom(box_shape(0.2, 0.2, 0.2, 3), space), 0.07, 0.03, 0.25);
+  expect_rest(body, 0.2, 1e-4);
+  EXPECT_LT(tilt_degrees(body), 0.1);
+}
+
+TEST_F(Simulation, ASphereOnAMeshFloorStaysWhereItFell) {
+  mesh_geom(box_shape(2, 2, 0.2, 8), space);
+  const dBodyID body = body_of(dCreateSphere(space, 0.1), 0.07, 0.03, 0.25);
+  expect_rest(body, 0.2, 1e-4);
+}
+
+}  // namespace
+}  // namespace odds::test

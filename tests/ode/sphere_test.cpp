@@ -1,0 +1,217 @@
+// Mesh against sphere: ODE's own box-sphere as reference; internal edges; inside; sheets.
+#include <cmath>
+#include <random>
+
+#include "odds/mesh/made/terrain.hpp"
+#include "ode/ode_fixture.hpp"
+
+namespace odds::test {
+namespace {
+
+std::shared_ptr<const query::Shape> shape_from(std::vector<Vec3> vertices, std::vector<mesh::Triangle> triangles) {
+  auto mesh = mesh::TriangleMesh::make(std::move(vertices), std::move(triangles));
+  if (!mesh.ok()) throw std::runtime_error(mesh.error().message());
+  return query::Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(mesh).value())).value();
+}
+
+class SphereTest : public OdeTest {
+ protected:
+  std::mt19937 random{5};
+};
+
+TEST_F(SphereTest, AMeshBoxAnswersLikeOdesBox) {
+  const dGeomID mesh = mesh_geom(box_shape(0.8, 1.0, 1.2, 4), space);
+  const dGeomID box = dCreateBox(space, 0.8, 1.0, 1.2);
+  const dGeomID sphere = dCreateSphere(space, 0.25);
+  std::uniform_real_distribution<double> uniform(-0.9, 0.9);
+  int hits = 0;
+  int inside = 0;
+  for (int round = 0; round < 1000; ++round) {
+    const Vec3 center(uniform(random), uniform(random), uniform(random));
+    dGeomSetPosition(sphere, center.x(), center.y(), center.z());
+    const auto ours = collide(mesh, sphere);
+    const auto odes = collide(box, sphere);
+    ASSERT_EQ(ours.empty(), odes.empty()) << center.transpose();
+    if (ours.empty()) continue;
+    ++hits;
+    expect_sound(ours, mesh, sphere);
+    EXPECT_NEAR(ours[0].depth, odes[0].depth, 1e-9) << center.transpose();
+    EXPECT_LT((normal_of(ours[0]) - normal_of(odes[0])).norm(), 1e-6) << center.transpose();
+    const Vec3 gap = Vec3(0.4, 0.5, 0.6) - center.cwiseAbs();
+    inside += gap.minCoeff() > 0.0;
+    EXPECT_EQ(ours.size(), 1u) << "a box is convex: one place is nearest " << center.transpose();
+  }
+  EXPECT_GT(hits, 300);
+  EXPECT_GT(inside, 100);
+}
+
+TEST_F(SphereTest, RotatedAndMovedMeshesAnswerTheSame) {
+  const dGeomID mesh = mesh_geom(box_shape(0.8, 1.0, 1.2, 3), space);
+  const dGeomID box = dCreateBox(space, 0.8, 1.0, 1.2);
+  const dGeomID sphere = dCreateSphere(space, 0.3);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  int hits = 0;
+  for (int round = 0; round < 300; ++round) {
+    const Vec3 axis(uniform(random), uniform(random), 1.5);
+    const double angle = 3.0 * uniform(random);
+    for (const dGeomID geom : {mesh, box}) {
+      rotate(geom, axis, angle);
+      dGeomSetPosition(geom, 100, -50, 3);
+    }
+    dGeomSetPosition(sphere, 100 + 0.8 * uniform(random), -50 + 0.8 * uniform(random), 3 + 0.8 * uniform(random));
+    const auto ours = collide(sphere, mesh);
+    const auto odes = collide(sphere, box);
+    ASSERT_EQ(ours.empty(), odes.empty());
+    if (ours.empty()) continue;
+    ++hits;
+    EXPECT_NEAR(ours[0].depth, odes[0].depth, 1e-9);
+    EXPECT_LT((normal_of(ours[0]) - normal_of(odes[0])).norm(), 1e-6);
+  }
+  EXPECT_GT(hits, 100);
+}
+
+TEST_F(SphereTest, RollingOverATessellatedFloorMeetsNoInternalEdge) {
+  const dGeomID floor = mesh_geom(box_shape(2, 2, 0.2, 16), space);
+  const dGeomID sphere = dCreateSphere(space, 0.1);
+  for (int step = 0; step < 400; ++step) {
+    const double x = -0.5 + 0.0025 * step;  // crosses edges and vertices exactly every 50 steps
+    dGeomSetPosition(sphere, x, 0.125 + 0.3 * x, 0.199);
+    const auto contacts = collide(floor, sphere);
+    ASSERT_EQ(contacts.size(), 1u) << "at x = " << x;
+    EXPECT_NEAR(contacts[0].normal[2], -1.0, 1e-9);
+    EXPECT_NEAR(contacts[0].depth, 0.001, 1e-9);
+  }
+}
+
+TEST_F(SphereTest, AGrooveGivesTwoContactsWithTheirOwnNormals) {
+  // Two slopes of 45 degrees that meet along y at x = 0.
+  const auto groove = shape_from({{-1, -1, 1}, {0, -1, 0}, {1, -1, 1}, {-1, 1, 1}, {0, 1, 0}, {1, 1, 1}},
+                                 {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}});
+  const dGeomID mesh = mesh_geom(groove, space);
+  const dGeomID sphere = dCreateSphere(space, 0.3);
+  dGeomSetPosition(sphere, 0, 0.2, 0.3 * std::sqrt(2.0) - 0.02);
+  const auto contacts = collide(sphere, mesh);
+  ASSERT_EQ(contacts.size(), 2u);
+  expect_sound(contacts, sphere, mesh);
+  for (const dContactGeom& contact : contacts) {
+    EXPECT_NEAR(contact.normal[2], std::sqrt(0.5), 1e-9);
+    EXPECT_NEAR(std::abs(contact.normal[0]), std::sqrt(0.5), 1e-9);
+    EXPECT_NEAR(contact.depth, 0.02 * std::sqrt(0.5), 1e-9);
+  }
+  EXPECT_LT(contacts[0].normal[0] * contacts[1].normal[0], 0.0);
+}
+
+TEST_F(SphereTest, ARidgeGivesOneContact) {
+  const auto ridge = shape_from({{-1, -1, -1}, {0, -1, 0}, {1, -1, -1}, {-1, 1, -1}, {0, 1, 0}, {1, 1, -1}},
+                                {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}});
+  const dGeomID mesh = mesh_geom(ridge, space);
+  const dGeomID sphere = dCreateSphere(space, 0.3);
+  dGeomSetPosition(sphere, 0.01, 0.3, 0.28);
+  const auto contacts = collide(sphere, mesh);
+  ASSERT_EQ(contacts.size(), 1u);
+  EXPECT_NEAR(contacts[0].depth, 0.3 - std::hypot(0.01, 0.28), 1e-9);
+}
+
+TEST_F(SphereTest, SwallowedDeepByAClosedMeshItIsPushedToTheNearestSurface) {
+  const dGeomID mesh = mesh_geom(box_shape(1, 2, 3, 6), space);
+  const dGeomID sphere = dCreateSphere(space, 0.01);
+  dGeomSetPosition(sphere, 0.2, 0.1, 0.3);
+  const auto contacts = collide(sphere, mesh);
+  ASSERT_EQ(contacts.size(), 1u);
+  EXPECT_NEAR(contacts[0].normal[0], 1.0, 1e-9) << "out through the face at x = 0.5";
+  EXPECT_NEAR(contacts[0].depth, 0.31, 1e-9);
+}
+
+TEST_F(SphereTest, InAConcavePocketTheSignIsRight) {
+  // The groove closed to a solid below: above the groove is outside although inside the bounding box.
+  const auto solid = shape_from({{-1, -1, 1},
+                                 {0, -1, 0},
+                                 {1, -1, 1},
+                                 {-1, 1, 1},
+                                 {0, 1, 0},
+                                 {1, 1, 1},
+                                 {-1, -1, -1},
+                                 {1, -1, -1},
+                                 {-1, 1, -1},
+                                 {1, 1, -1}},
+                                {{0, 1, 4},
+                                 {0, 4, 3},
+                                 {1, 2, 5},
+                                 {1, 5, 4},
+                                 {6, 8, 9},
+                                 {6, 9, 7},
+                                 {0, 3, 8},
+                                 {0, 8, 6},
+                                 {2, 7, 9},
+                                 {2, 9, 5},
+                                 {6, 7, 1},
+                                 {6, 1, 0},
+                                 {7, 2, 1},
+                                 {8, 4, 9},
+                                 {8, 3, 4},
+                                 {9, 4, 5}});
+  const dGeomID mesh = mesh_geom(solid, space);
+  const dGeomID sphere = dCreateSphere(space, 0.05);
+  dGeomSetPosition(sphere, 0, 0, 0.5);
+  EXPECT_TRUE(collide(sphere, mesh).empty()) << "free in the groove";
+  dGeomSetPosition(sphere, 0.001, 0, 0.03);
+  for (const dContactGeom& contact : collide(sphere, mesh)) EXPECT_GT(contact.normal[2], 0.5);
+  dGeomSetPosition(sphere, 0.3, 0, 0.1);
+  const auto inside = collide(sphere, mesh);
+  ASSERT_EQ(inside.size(), 1u);
+  EXPECT_NEAR(inside[0].depth, 0.05 + 0.2 * std::sqrt(0.5), 1e-9);
+  EXPECT_NEAR(inside[0].normal[2], std::sqrt(0.5), 1e-9);
+}
+
+TEST_F(SphereTest, ASheetPushesToTheSideWhereTheCentreIs) {
+  const auto sheet = shape_from({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {{0, 1, 2}, {0, 2, 3}});
+  const dGeomID mesh = mesh_geom(sheet, space);
+  const dGeomID sphere = dCreateSphere(space, 0.1);
+  for (const double side : {1.0, -1.0}) {
+    dGeomSetPosition(sphere, 0.2, 0.3, 0.09 * side);
+    const auto contacts = collide(sphere, mesh);
+    ASSERT_EQ(contacts.size(), 1u);
+    EXPECT_NEAR(contacts[0].normal[2], side, 1e-9);
+    EXPECT_NEAR(contacts[0].depth, 0.01, 1e-9);
+  }
+}
+
+TEST_F(SphereTest, ACentreExactlyOnTheSurfaceIsPushedOutward) {
+  const dGeomID mesh = mesh_geom(box_shape(1, 1, 1, 4), space);
+  const dGeomID sphere = dCreateSphere(space, 0.1);
+  dGeomSetPosition(sphere, 0.1, 0.2, 0.5);
+  const auto contacts = collide(sphere, mesh);
+  ASSERT_GE(contacts.size(), 1u);
+  EXPECT_NEAR(contacts[0].normal[2], 1.0, 1e-9);
+  EXPECT_NEAR(contacts[0].depth, 0.1, 1e-9);
+}
+
+TEST_F(SphereTest, MoreTrianglesThanTheScratchHoldsStillGivesTheNearest) {
+  mesh::made::Terrain fine;
+  fine.cells = 120;
+  const auto terrain = shape_of(fine);
+  const dGeomID mesh = mesh_geom(terrain, space);
+  const dGeomID sphere = dCreateSphere(space, 0.45);
+  const Vec3 center(0.1, 0.05, 0.42);
+  dGeomSetPosition(sphere, center.x(), center.y(), center.z());
+  double nearest = 1e9;
+  for (const Vec3& vertex : terrain->mesh().vertices()) nearest = std::min(nearest, (vertex - center).norm());
+  const auto contacts = collide(mesh, sphere);
+  ASSERT_LT(nearest, 0.45) << "the test's own premise";
+  ASSERT_EQ(contacts.size(), 1u);
+  EXPECT_GE(contacts[0].depth, 0.45 - nearest - 1e-12);
+  EXPECT_LT(contacts[0].depth, 0.45 - nearest + 0.01);
+  EXPECT_EQ(stats().primitive_cut_off, 1u);
+}
+
+TEST_F(SphereTest, AnExhaustedBudgetIsCountedAndSound) {
+  const dGeomID mesh = mesh_geom(sphere_shape(1, 20), space);
+  const dGeomID sphere = dCreateSphere(space, 0.5);
+  dGeomSetPosition(sphere, 1.2, 0, 0);
+  ASSERT_EQ(dGeomOddsMeshSetWorkBudget(mesh, 2), 1);
+  expect_sound(collide(mesh, sphere), mesh, sphere);
+  EXPECT_EQ(stats().primitive_cut_off, 1u);
+}
+
+}  // namespace
+}  // namespace odds::test
