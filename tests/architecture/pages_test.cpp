@@ -38,6 +38,20 @@ Violations judge_links(const SourceFile& page, const std::filesystem::path& top)
   return found;
 }
 
+/// Names of the code in back-ticks, `query::Pair::run` or `tree::Hierarchy<V>`, stand in a public header.
+Violations judge_names(const SourceFile& page, const std::string& public_headers) {
+  static const std::regex quoted("`((?:[A-Za-z_]+(?:<[^`>]*>)?::)+)([A-Za-z_]+)[^`]*`");
+  Violations found;
+  for (auto at = std::sregex_iterator(page.text.begin(), page.text.end(), quoted); at != std::sregex_iterator(); ++at) {
+    const std::string name = (*at)[2].str();
+    if ((*at)[1].str().starts_with("std::")) continue;
+    if (!std::regex_search(public_headers, std::regex("\\b" + name + "\\b"))) {
+      found.push_back(page.path + ": names " + (*at)[0].str() + ", which no public header has");
+    }
+  }
+  return found;
+}
+
 TEST(Markdown, FindsFencedBlocks) {
   const auto blocks = fenced_blocks("text\n```sh run\nls\n```\n\n```cpp file=a.cpp\nint a;\nint b;\n```\n");
   ASSERT_EQ(blocks.size(), 2u);
@@ -61,6 +75,20 @@ TEST(PageRules, RefuseDeadLinks) {
   EXPECT_EQ(judge_links({"docs/a.md", "[x](theory.md) [y](theory.md#sources) [z](https://example.org/q)"}, ODDS_SOURCE_DIR),
             Violations{});
   EXPECT_EQ(judge_links({"docs/a.md", "[x](no_such_page.md)"}, ODDS_SOURCE_DIR).size(), 1u);
+}
+
+TEST(PageRules, RefuseNamesThatNoHeaderHas) {
+  const std::string headers = "class Pair { void run(); };";
+  EXPECT_EQ(judge_names({"a.md", "`query::Pair::run` and `std::vector` and `plain`"}, headers), Violations{});
+  EXPECT_EQ(judge_names({"a.md", "`query::Pair::walk`"}, headers).size(), 1u);
+}
+
+TEST(Pages, NameWhatExists) {
+  std::string headers;
+  for (const SourceFile& file : read_files(ODDS_SOURCE_DIR, {"include"})) headers += file.text;
+  Violations found;
+  for (const SourceFile& page : read_pages()) append(found, judge_names(page, headers));
+  EXPECT_TRUE(found.empty()) << join(found);
 }
 
 TEST(Pages, ShowTheCodeThatIsCompiled) {
