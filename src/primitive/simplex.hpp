@@ -1,19 +1,17 @@
 // Points, segments and triangles as what they really are, and their exact intersection: for input that fixes no plane.
 #pragma once
 
-#include <array>
-
 #include "odds/math/types.hpp"
 
 namespace odds::primitive::detail {
 
 /// Corners in general position: 1 (point), 2 (segment) or 3 (triangle with area).
 struct Simplex {
-  std::array<Vec3, 3> corner;
+  Vec3 corner[3];
   int count;
 
-  [[nodiscard]] const Vec3* begin() const noexcept { return corner.data(); }
-  [[nodiscard]] const Vec3* end() const noexcept { return corner.data() + count; }
+  [[nodiscard]] const Vec3* begin() const noexcept { return corner; }
+  [[nodiscard]] const Vec3* end() const noexcept { return corner + count; }
 };
 
 /// The closed set that three corners span, without what is redundant. Exact.

@@ -91,11 +91,11 @@ IntersectionSegment common_interval(const ArrangedPair& pair) noexcept {
   const auto& [a, b] = pair;
   const bool a_begins_last = orient3d(*a[0], *a[1], *b[0], *b[2]) >= 0;
   const bool a_ends_first = orient3d(*a[0], *a[2], *b[0], *b[1]) <= 0;
-  const auto through_b = [&b](const Vec3& p, const Vec3& q) noexcept {
-    return detail::edge_through_plane(p, q, *b[0], *b[1], *b[2]);
+  const auto through_b = [&pair](const Vec3& p, const Vec3& q) noexcept {
+    return detail::edge_through_plane(p, q, *pair.b[0], *pair.b[1], *pair.b[2]);
   };
-  const auto through_a = [&a](const Vec3& p, const Vec3& q) noexcept {
-    return detail::edge_through_plane(p, q, *a[0], *a[1], *a[2]);
+  const auto through_a = [&pair](const Vec3& p, const Vec3& q) noexcept {
+    return detail::edge_through_plane(p, q, *pair.a[0], *pair.a[1], *pair.a[2]);
   };
   return {a_begins_last ? through_b(*a[0], *a[1]) : through_a(*b[0], *b[2]),
           a_ends_first ? through_b(*a[0], *a[2]) : through_a(*b[0], *b[1])};

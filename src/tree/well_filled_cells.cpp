@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "odds/math/tolerances.hpp"
+
 namespace odds::tree {
 namespace {
-
-constexpr double kCountSlack = 1e-9;
 
 // A triangle cut by at most six planes has at most nine corners.
 struct Polygon {
@@ -136,7 +136,7 @@ void CellCounter::begin(const Vec3& center, const Mat3& axes, const Vec3& half_e
   to_box_ = axes.transpose();
   area_.fill(0.0);
   const double largest = half_extents.maxCoeff();
-  const double thinnest = largest > 0.0 ? kThinnestExtent * largest : 1.0;
+  const double thinnest = largest > 0.0 ? tolerances::thinnest_extent * largest : 1.0;
   Vec3 cell_sides;
   for (int i = 0; i < 3; ++i) {
     const bool widened = half_extents[i] < thinnest;
@@ -176,7 +176,7 @@ void CellCounter::add(const Vec3& a, const Vec3& b, const Vec3& c) noexcept {
 }
 
 std::uint16_t CellCounter::count(double tau) const noexcept {
-  const double threshold = tau * max_area_ * (1.0 - kCountSlack);
+  const double threshold = tau * max_area_ * (1.0 - tolerances::cell_fill_slack);
   int filled = 0;
   for (const double area : area_) filled += area >= threshold ? 1 : 0;
   return static_cast<std::uint16_t>(filled);

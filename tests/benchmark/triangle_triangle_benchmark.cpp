@@ -18,12 +18,13 @@ struct Pair {
   std::array<Vec3, 3> b;
 };
 
-enum Kind { apart, crossing, mixed, shared_corner, one_plane };
+enum Kind { apart, crossing, mixed, shared_corner, one_plane_exactly, one_plane_rounded };
 
 std::vector<Pair> make_pairs(Kind kind) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
   const auto draw = [&] { return Vec3(unit(random), unit(random), unit(random)); };
+  const odds::Mat3 turn = odds::Quat(0.3, 0.1, -0.5, 0.7).normalized().toRotationMatrix();
   std::vector<Pair> pairs;
   while (pairs.size() < 1024) {
     Pair p{{draw(), draw(), draw()}, {draw(), draw(), draw()}};
@@ -31,9 +32,12 @@ std::vector<Pair> make_pairs(Kind kind) {
       for (Vec3& corner : p.b) corner += Vec3(1.0, 0.5, 0.5);
     }
     if (kind == shared_corner) p.b[0] = p.a[0];
-    if (kind == one_plane) {
-      for (auto* t : {&p.a, &p.b}) {
-        for (Vec3& corner : *t) corner.z() = corner.x() + corner.y();  // up to rounding
+    for (auto* t : {&p.a, &p.b}) {
+      for (Vec3& corner : *t) {
+        // On a grid of 2^-20 the sum is exact.
+        if (kind == one_plane_exactly) corner = Vec3((corner * 0x1p20).array().round()) * 0x1p-20;
+        if (kind == one_plane_exactly || kind == one_plane_rounded) corner.z() = corner.x() + corner.y();
+        if (kind == one_plane_rounded) corner = turn * corner;
       }
     }
     const bool meet = triangles_intersect(p.a.data(), p.b.data());
@@ -55,7 +59,8 @@ BENCHMARK_CAPTURE(intersect, apart, apart);
 BENCHMARK_CAPTURE(intersect, crossing, crossing);
 BENCHMARK_CAPTURE(intersect, mixed, mixed);
 BENCHMARK_CAPTURE(intersect, shared_corner, shared_corner);
-BENCHMARK_CAPTURE(intersect, one_plane_up_to_rounding, one_plane);
+BENCHMARK_CAPTURE(intersect, one_plane_exactly, one_plane_exactly);
+BENCHMARK_CAPTURE(intersect, one_plane_rounded, one_plane_rounded);
 
 void segment_of_crossing(benchmark::State& state) {
   const std::vector<Pair> pairs = make_pairs(crossing);

@@ -83,4 +83,12 @@ inline constexpr double keep_first = 1.05;
 inline constexpr double spacing_by_depth = 0.5;
 inline constexpr double spacing_by_lever = 1e-3;  ///< see spacing_by_depth
 
+/// A half extent of a node below this part of the largest counts as this part when cells are counted; no unit. Thinner
+/// cells would be filled or empty by the rounding of corners (1e-7 in floats).
+/// Test: WellFilledCells.FlatBoxKeepsItsSurfaceInOneLayerDespiteRounding.
+inline constexpr double thinnest_extent = 1e-4;
+/// A cell still counts as well filled if this part of the area is missing; no unit. Sums of clipped areas err by about
+/// 1e-12. Test: WellFilledCells.DiagonalSectionFillsItsCellsExactly.
+inline constexpr double cell_fill_slack = 1e-9;
+
 }  // namespace odds::tolerances

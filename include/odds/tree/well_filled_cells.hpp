@@ -13,9 +13,6 @@ namespace odds::tree {
 inline constexpr int kCellsPerAxis = 8;
 inline constexpr std::size_t kCellsPerNode = 512;  ///< kCellsPerAxis^3
 
-/// A half extent below this part of the largest one is widened to it (see CellCounter::begin).
-inline constexpr double kThinnestExtent = 1e-4;
-
 /// Area of the largest plane section of a cuboid with these sides (any order, any length unit): a * sqrt(b^2 + c^2) for
 /// a >= b >= c, the section through two opposite longest edges (Klein and Zachmann 2003: "MaxArea").
 [[nodiscard]] double max_section_area(const Vec3& sides) noexcept;
@@ -37,8 +34,8 @@ class CellCounter {
   /// so that the total area is conserved whatever the box's rounding. A triangle without area adds nothing.
   void add(const Vec3& a, const Vec3& b, const Vec3& c) noexcept;
 
-  /// Cells, 0 to 512, with area >= tau * MaxArea of a cell; tau > 0. Less by one part in 10^9 still counts, lest
-  /// rounding decide about a polygon that fills its cell exactly.
+  /// Cells, 0 to 512, with area >= tau * MaxArea of a cell; tau > 0. Less by tolerances::cell_fill_slack still counts,
+  /// lest rounding decide about a polygon that fills its cell exactly.
   [[nodiscard]] std::uint16_t count(double tau) const noexcept;
 
   /// Area in m^2 in the cell (x, y, z), each 0 to 7.
