@@ -13,8 +13,8 @@ enum class Kind : std::uint8_t { word, blank, line_end, control };
 constexpr std::array<Kind, 256> make_kinds() {
   std::array<Kind, 256> kinds{};
   for (std::size_t c = 0; c < 0x20; ++c) kinds[c] = Kind::control;
-  for (const unsigned char c : {' ', '\t', '\v', '\f'}) kinds[c] = Kind::blank;
-  for (const unsigned char c : {'\n', '\r'}) kinds[c] = Kind::line_end;
+  for (const char c : {' ', '\t', '\v', '\f'}) kinds[static_cast<unsigned char>(c)] = Kind::blank;
+  for (const char c : {'\n', '\r'}) kinds[static_cast<unsigned char>(c)] = Kind::line_end;
   return kinds;
 }
 constexpr std::array<Kind, 256> kinds = make_kinds();
