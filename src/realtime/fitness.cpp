@@ -1,3 +1,4 @@
+// A tight loop over the clock, watched by the stall ledger.
 #include "odds/realtime/fitness.hpp"
 
 #include <cstdio>

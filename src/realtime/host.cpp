@@ -1,3 +1,4 @@
+// One function per line of the host block, each from the kernel's own files.
 #include "odds/realtime/host.hpp"
 
 #include <sys/resource.h>

@@ -1,3 +1,4 @@
+// The real sleep; the loop itself is a template.
 #include "odds/realtime/periodic_loop.hpp"
 
 #include <time.h>

@@ -1,3 +1,4 @@
+// One function per wish; each reads back what the kernel made of it.
 #include "odds/realtime/thread_setup.hpp"
 
 #include <alloca.h>

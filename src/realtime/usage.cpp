@@ -1,3 +1,4 @@
+// Resource usage of a thread, by getrusage.
 #include "odds/realtime/usage.hpp"
 
 #include <sys/resource.h>

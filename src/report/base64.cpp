@@ -1,3 +1,4 @@
+// Base64, checked strictly.
 #include "report/base64.hpp"
 
 #include <cstdint>

@@ -1,3 +1,4 @@
+// Writing and reading the percentile table.
 #include "odds/report/hgrm.hpp"
 
 #include <algorithm>

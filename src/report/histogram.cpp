@@ -1,3 +1,4 @@
+// The arithmetic of the buckets.
 #include "odds/report/histogram.hpp"
 
 #include <algorithm>

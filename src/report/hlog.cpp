@@ -1,3 +1,4 @@
+// Writing and reading the lines of the interval log; histogram_codec.cpp does the histograms in it.
 #include "odds/report/hlog.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Latencies second by second, for HdrHistogram's log analysers.
 #include <algorithm>
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// The top of the page: what the run was, whether the promises were kept, the figures that matter most.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// The sections of the page below its top.
 #include <fmt/format.h>
 
 #include <array>

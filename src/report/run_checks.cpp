@@ -1,3 +1,4 @@
+// The promises of the loop, one function each.
 #include "report/run_checks.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Puts the files of a run into their directory.
 #include "odds/report/run_report.hpp"
 
 #include <cerrno>

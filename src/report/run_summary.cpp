@@ -1,3 +1,4 @@
+// One pass over the records of a run.
 #include "odds/report/run_summary.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// The figures of a run for programs. The only file that sees the JSON library.
 #include <cmath>
 #include <nlohmann/json.hpp>
 

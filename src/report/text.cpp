@@ -1,3 +1,4 @@
+// Numbers for people: grouping, units, as many digits as mean something.
 #include "report/text.hpp"
 
 #include <fmt/format.h>

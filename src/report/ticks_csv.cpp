@@ -1,3 +1,4 @@
+// Every record as a line of CSV.
 #include <fmt/format.h>
 
 #include <iterator>
