@@ -51,13 +51,14 @@ std::uint64_t MeshBuilder::held_bytes() const noexcept {
 }
 
 template <class T>
-void MeshBuilder::grow(std::vector<T>& vector, std::uint64_t size, bool exactly) {
+void MeshBuilder::grow(std::vector<T>& vector, std::uint64_t size, std::uint64_t largest_size) {
   if (size <= vector.capacity()) return;
   const auto fits = [&](std::uint64_t capacity) {  // while growing, the old and the new block are both held
     return held_bytes() <= max_bytes_ && capacity <= (max_bytes_ - held_bytes()) / sizeof(T);
   };
-  std::uint64_t capacity = exactly ? size : std::max<std::uint64_t>({size, 2 * vector.capacity(), 16});
-  if (!fits(capacity)) capacity = std::max<std::uint64_t>(size, vector.capacity() + vector.capacity() / 8);
+  const std::uint64_t held = vector.capacity();
+  std::uint64_t capacity = std::min(std::max<std::uint64_t>({size, 2 * held, 16}), largest_size);
+  if (!fits(capacity)) capacity = std::min(std::max(size, held + held / 8), largest_size);
   if (!fits(capacity)) {
     input_.refuse("the mesh needs more memory than 10 times the size of its file + 64 MiB",
                   "unpack the file if it is packed; otherwise it is not a sensible mesh");
@@ -67,8 +68,8 @@ void MeshBuilder::grow(std::vector<T>& vector, std::uint64_t size, bool exactly)
 
 void MeshBuilder::reserve(std::uint64_t vertices, std::uint64_t triangles) {
   check_limits(vertices, triangles);
-  grow(vertices_, vertices, true);
-  grow(triangles_, triangles, true);
+  grow(vertices_, vertices, vertices);
+  grow(triangles_, triangles, triangles);
 }
 
 void MeshBuilder::check_limits(std::uint64_t vertices, std::uint64_t triangles) const {
@@ -78,12 +79,12 @@ void MeshBuilder::check_limits(std::uint64_t vertices, std::uint64_t triangles) 
 
 void MeshBuilder::grow_vertices() {
   if (vertices_.size() >= max_vertices_) refuse_vertex_limit();
-  grow(vertices_, vertices_.size() + 1, false);
+  grow(vertices_, vertices_.size() + 1, max_vertices_);
 }
 
 void MeshBuilder::grow_triangles() {
   if (triangles_.size() >= max_triangles_) refuse_triangle_limit();
-  grow(triangles_, triangles_.size() + 1, false);
+  grow(triangles_, triangles_.size() + 1, max_triangles_);
 }
 
 Vec3 MeshBuilder::checked(double x, double y, double z) const {
@@ -123,7 +124,7 @@ std::uint32_t MeshBuilder::weld_vertex(double x, double y, double z) {
 void MeshBuilder::grow_table() {
   const std::size_t size = std::max<std::size_t>(64, 2 * table_.size());
   std::vector<std::uint32_t> larger;
-  grow(larger, size, true);
+  grow(larger, size, size);
   larger.assign(size, 0);
   const std::size_t mask = size - 1;
   for (std::size_t vertex = 0; vertex < vertices_.size(); ++vertex) {

@@ -47,8 +47,10 @@ class MeshBuilder {
   TriangleMesh finish(const std::string& hint = "") &&;
 
  private:
+  /// Room for `size` items and, where memory allows, for as many again, but never for more than `largest_size`: the
+  /// limits of the options hold because a vector's capacity never exceeds them.
   template <class T>
-  void grow(std::vector<T>& vector, std::uint64_t size, bool exactly);
+  void grow(std::vector<T>& vector, std::uint64_t size, std::uint64_t largest_size);
   void grow_triangles();
   void grow_vertices();
   void grow_table();

@@ -160,6 +160,7 @@ class HeaderReader {
     if (!has_format_) input_.refuse("the header has no format line", "add 'format ascii 1.0' or what the data is");
     std::uint64_t needed = 0;
     const std::uint64_t there = input_.remaining();
+    const std::uint64_t room = there + (header_.encoding == Encoding::ascii ? 1 : 0);  // a last line may lack its end
     for (const Element& element : header_.elements) {
       if (element.count == 0) continue;
       if (element.properties.empty()) {
@@ -167,7 +168,7 @@ class HeaderReader {
                       "declare its properties or remove it");
       }
       const std::uint64_t least = element.least_bytes(header_.encoding);
-      const std::uint64_t left = there + 1 - std::min(there + 1, needed);  // a last line may lack its end
+      const std::uint64_t left = room - needed;
       if (element.count > left / least) {
         input_.refuse("the header claims " + std::to_string(element.count) + " elements " + in_quotes(element.name) +
                           ", but only " + std::to_string(there) + " bytes follow it",

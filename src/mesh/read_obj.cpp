@@ -67,9 +67,9 @@ class ObjReader {
     if (given < 0 && status == std::errc{} && static_cast<std::uint64_t>(-(given + 1)) < count) {
       return static_cast<std::uint32_t>(count - static_cast<std::uint64_t>(-(given + 1)) - 1);
     }
-    if (given == 0) input_.refuse("a face refers to vertex 0", "count vertices from 1 (or backwards from -1)");
     constexpr std::int64_t largest = std::numeric_limits<std::uint32_t>::max();
     if (given < 0 || status != std::errc{} || given > largest) refuse_index(input_.line, corner);
+    if (given == 0) input_.refuse("a face refers to vertex 0", "count vertices from 1 (or backwards from -1)");
     if (static_cast<std::uint64_t>(given) > std::max(count, farthest_index_)) {
       farthest_index_ = static_cast<std::uint64_t>(given);  // its vertex may still come
       farthest_line_ = input_.line;

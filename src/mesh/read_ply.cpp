@@ -195,6 +195,7 @@ class PlyReader {
   }
 
   void corners(const Property& property) {
+    const std::uint64_t begin = input_.offset();
     const std::uint64_t count = length(property);
     builder_.begin_polygon();
     for (std::uint64_t i = 0; i < count; ++i) {
@@ -206,6 +207,7 @@ class PlyReader {
       }
       builder_.add_corner(static_cast<std::uint32_t>(index));
     }
+    input_.place_at(begin);
     builder_.end_polygon();
   }
 

@@ -53,6 +53,8 @@ std::string packed(std::string_view content) {
 std::string obj_file(const mesh::TriangleMesh& mesh) { return written(mesh::write_obj, mesh); }
 std::string stl_binary_file(const mesh::TriangleMesh& mesh) { return written(mesh::write_stl_binary, mesh); }
 
+std::string ply_written(const mesh::TriangleMesh& mesh) { return written(mesh::write_ply, mesh); }
+
 std::string stl_ascii_file(const mesh::TriangleMesh& mesh) {
   std::string text = "solid made\n";
   for (const mesh::Triangle& triangle : mesh.triangles()) {

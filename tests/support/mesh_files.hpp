@@ -18,6 +18,8 @@ std::string packed(std::string_view content);
 
 std::string obj_file(const mesh::TriangleMesh& mesh);
 std::string stl_binary_file(const mesh::TriangleMesh& mesh);
+/// As mesh::write_ply writes it.
+std::string ply_written(const mesh::TriangleMesh& mesh);
 std::string stl_ascii_file(const mesh::TriangleMesh& mesh);
 std::string off_file(const mesh::TriangleMesh& mesh);
 enum class PlyEncoding { ascii, little_endian, big_endian };
