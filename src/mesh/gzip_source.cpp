@@ -2,6 +2,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <new>
 #include <optional>
 #include <vector>
 
@@ -10,6 +11,12 @@
 
 namespace odds::mesh {
 namespace {
+
+// zlib's memory comes from operator new, like everything else here: one hook on it sees all that reading allocates.
+voidpf allocate(voidpf, uInt count, uInt size) {
+  return ::operator new(static_cast<std::size_t>(count) * size, std::nothrow);
+}
+void release(voidpf, voidpf memory) { ::operator delete(memory); }
 
 constexpr std::size_t piece_bytes = std::size_t{1} << 16;
 
@@ -21,6 +28,8 @@ class Inflater {
         name_(std::move(name)),
         max_unpacked_bytes_(max_unpacked_bytes),
         packed_(static_cast<std::size_t>(std::min<std::uint64_t>(piece_bytes, stored.size()))) {
+    zlib_.zalloc = allocate;
+    zlib_.zfree = release;
     constexpr int gzip_only = 16 + MAX_WBITS;
     if (inflateInit2(&zlib_, gzip_only) != Z_OK) {
       throw Refusal{{name_, "", "not enough memory to unpack gzip", "free some memory"}};

@@ -1,0 +1,9 @@
+// libFuzzer: any bytes as OFF, plain or packed.
+#include <cstdint>
+
+#include "check_reading.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  odds::fuzz::read_and_check(std::as_bytes(std::span(data, size)), odds::mesh::Format::off);
+  return 0;
+}

@@ -1,0 +1,9 @@
+// libFuzzer: any bytes as PLY, plain or packed.
+#include <cstdint>
+
+#include "check_reading.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  odds::fuzz::read_and_check(std::as_bytes(std::span(data, size)), odds::mesh::Format::ply);
+  return 0;
+}
