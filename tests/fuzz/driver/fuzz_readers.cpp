@@ -79,6 +79,17 @@ bool same(const Result<mesh::TriangleMesh>& a, const Result<mesh::TriangleMesh>&
   return equal(a.value().vertices(), b.value().vertices()) && equal(a.value().triangles(), b.value().triangles());
 }
 
+/// An error's words without what they quote and count.
+std::string kind_of(const std::string& what) {
+  std::string kind;
+  bool quoted = false;
+  for (const char c : what) {
+    if (c == '\'') quoted = !quoted;
+    if (!quoted && (c < '0' || c > '9')) kind += c;
+  }
+  return kind.substr(0, 60);
+}
+
 /// What is wrong with the readers on this input; empty if nothing.
 std::string judge(const Input& input, std::uint64_t n, Totals& totals) {
   const std::string name = n % 3 == 0 || input.format.empty() ? "input" : "input." + input.format;
@@ -90,8 +101,7 @@ std::string judge(const Input& input, std::uint64_t n, Totals& totals) {
   totals.largest_peak = std::max(totals.largest_peak, peak);
   ++(result.ok() ? totals.meshes : totals.errors);
   if (!result.ok()) {
-    const std::string& what = result.error().what;
-    ++totals.errors_by_kind[what.substr(0, what.find_first_of("0123456789'(", 1))];
+    ++totals.errors_by_kind[kind_of(result.error().what)];
   }
   if (peak > 10 * bytes.size() + bound_constant) return "memory: " + std::to_string(peak) + " bytes";
   if (std::string found = complaint(result, bytes, name); !found.empty()) return found;
