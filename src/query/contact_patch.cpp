@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <vector>
 
@@ -13,14 +14,25 @@
 #include "query/patch_overlap.hpp"
 #include "query/patch_rim.hpp"
 #include "query/patch_select.hpp"
+#include "query/patch_watch.hpp"
 
 namespace odds::query {
 namespace {
 
-constexpr std::size_t pairs_between_polls = 8;
-constexpr std::size_t pairs_after_deadline = 8;
-constexpr std::size_t patches_after_deadline = 2;
+using patch::Watch;
+using patch::Witness;
+
 constexpr std::size_t witnesses_per_pair = 6;
+constexpr std::size_t least_pairs = 4;  ///< looked at however late it is
+
+/// How thoroughly a patch is made: by the clock, or, when that has run out, from a handful of triangles without it.
+struct Effort {
+  std::size_t pairs;    ///< most pairs that the rim is made of
+  std::size_t patches;  ///< most patches
+  std::size_t sample;   ///< pairs that candidate normals are compared on
+};
+constexpr Effort thorough{std::numeric_limits<std::size_t>::max(), patch::Components::most, 24};
+constexpr Effort hasty{least_pairs, 2, 2};
 
 /// A finished patch.
 struct Patch {
@@ -42,125 +54,9 @@ std::size_t spread_step(std::size_t count) noexcept {
   return std::max<std::size_t>(step, 1);
 }
 
-}  // namespace
-
-struct PatchBuilder::Scratch {
-  explicit Scratch(std::size_t hit_capacity)
-      : pairs(hit_capacity),
-        pieces(patch::most_pieces_of_a_pair * hit_capacity),
-        by_patch(pieces.size()),
-        witnesses(witnesses_per_pair * hit_capacity + 64),
-        components(pieces.size(), hit_capacity) {}
-
-  using Measured = std::array<patch::Witness, most_contacts + 1>;
-
-  void collect(const PatchInput& input, const Deadline& deadline) noexcept;
-  void add_pieces(const PatchInput& input, bool silent_too) noexcept;
-  void sort_by_patch(std::size_t patches) noexcept;
-  Patch make_patch(const PatchInput& input, const patch::RimSums& sums, std::span<const std::uint32_t> indices,
-                   const Deadline& deadline) noexcept;
-  void find_witnesses(std::span<const std::uint32_t> indices, const patch::Frame& frame,
-                      const Deadline& deadline) noexcept;
-  std::size_t probe(const PatchInput& input, const Vec3& centre, double reach, const patch::Frame& frame,
-                    const patch::Chosen& spread, Measured& measured, const Deadline& deadline) noexcept;
-  void drop_opposed(const Vec3* previous) noexcept;
-  void write(const PatchInput& input) noexcept;
-  bool late(const Deadline& deadline) noexcept { return expired = expired || deadline(); }
-
-  std::vector<patch::PlacedPair> pairs;
-  std::vector<patch::RimPiece> pieces;
-  std::vector<std::uint32_t> by_patch;
-  std::array<std::uint32_t, patch::Components::most + 1> first_of_patch{};
-  std::vector<patch::Witness> witnesses;
-  patch::Components components;
-  patch::Fan fan;
-  std::array<Patch, patch::Components::most> patches;
-  std::array<Contact, most_contacts> contacts;
-  patch::Rim rim;
-  std::size_t pair_count = 0;
-  std::size_t piece_count = 0;
-  std::size_t witness_count = 0;
-  std::size_t patch_count = 0;
-  std::size_t contact_count = 0;
-  bool expired = false;
-};
-
-/// Places the triangles and cuts the rim into pieces.
-void PatchBuilder::Scratch::collect(const PatchInput& input, const Deadline& deadline) noexcept {
-  const std::size_t count = std::min(input.hits.size(), pairs.size());
-  const std::size_t step = count > 0 ? spread_step(count) : 1;
-  std::size_t next = 0;
-  pair_count = 0;
-  for (std::size_t i = 0; i < count; ++i, next = (next + step) % count) {
-    if (patch::place(input, input.hits[next], pairs[pair_count])) ++pair_count;
-    if (i % pairs_between_polls == pairs_between_polls - 1 && late(deadline)) break;
-  }
-  if (expired) pair_count = std::min(pair_count, pairs_after_deadline);
-  add_pieces(input, false);
-  if (piece_count == 0) add_pieces(input, true);
-  Vec3 lower = Vec3::Constant(std::numeric_limits<double>::infinity());
-  Vec3 upper = -lower;
-  for (std::size_t i = 0; i < piece_count; ++i) {
-    lower = lower.cwiseMin(pieces[i].from).cwiseMin(pieces[i].to);
-    upper = upper.cwiseMax(pieces[i].from).cwiseMax(pieces[i].to);
-  }
-  rim.pieces = {pieces.data(), piece_count};
-  rim.pairs = {pairs.data(), pair_count};
-  rim.origin = piece_count > 0 ? Vec3(0.5 * lower + 0.5 * upper) : Vec3::Zero();
-}
-
-/// Coplanar triangles that face the same way are silent between solids: they speak only where nothing else does.
-void PatchBuilder::Scratch::add_pieces(const PatchInput& input, bool silent_too) noexcept {
-  piece_count = 0;
-  std::array<patch::RimPiece, patch::most_pieces_of_a_pair> found;
-  for (std::size_t i = 0; i < pair_count; ++i) {
-    const std::size_t count = patch::rim_pieces(pairs[i], input.solid_a && input.solid_b && !silent_too,
-                                                static_cast<std::uint32_t>(i), found);
-    for (std::size_t k = 0; k < count; ++k) {
-      if (found[k].from.allFinite() && found[k].to.allFinite()) pieces[piece_count++] = found[k];
-    }
-  }
-}
-
-void PatchBuilder::Scratch::sort_by_patch(std::size_t count) noexcept {
-  first_of_patch.fill(0);
-  for (std::size_t i = 0; i < piece_count; ++i) {
-    if (pieces[i].component < count) ++first_of_patch[pieces[i].component + 1];
-  }
-  for (std::size_t p = 1; p < first_of_patch.size(); ++p) first_of_patch[p] += first_of_patch[p - 1];
-  std::array<std::uint32_t, patch::Components::most + 1> next = first_of_patch;
-  for (std::uint32_t i = 0; i < piece_count; ++i) {
-    if (pieces[i].component < count) by_patch[next[pieces[i].component]++] = i;
-  }
-}
-
-/// Fills `witnesses` with the overlap's corners of all pairs of the patch; at least one.
-void PatchBuilder::Scratch::find_witnesses(std::span<const std::uint32_t> indices, const patch::Frame& frame,
-                                           const Deadline& deadline) noexcept {
-  witness_count = 0;
-  std::uint32_t last_pair = no_feature;
-  const std::size_t limit = expired ? std::min(pairs_after_deadline, indices.size()) : indices.size();
-  for (std::size_t i = 0; i < limit; ++i) {
-    const std::uint32_t pair = pieces[indices[i]].pair;
-    if (pair == last_pair) continue;  // the pieces of one pair follow each other
-    last_pair = pair;
-    const patch::PlacedPair& placed = pairs[pair];
-    patch::overlap_corners(placed, frame, Vec3::Zero(), [&](const Vec3& on_a, const Vec3& on_b, double depth) noexcept {
-      if (!(depth >= 0.0) || !std::isfinite(depth) || witness_count == witnesses.size()) return;
-      witnesses[witness_count++] = {on_a, on_b, depth, placed.index.a, placed.index.b};
-    });
-    if (i % pairs_between_polls == pairs_between_polls - 1 && late(deadline)) break;
-  }
-  if (witness_count == 0) {  // rounding has parted triangles that only touch
-    const patch::RimPiece& piece = pieces[indices[0]];
-    const patch::PlacedPair& placed = pairs[piece.pair];
-    witnesses[witness_count++] = {piece.middle(), piece.middle(), 0.0, placed.index.a, placed.index.b};
-  }
-}
-
 /// Centroid of the surface that the rim spans, which unlike the mean of the rim does not care how finely it is cut.
-static Vec3 span_centre(const patch::Rim& rim, std::span<const std::uint32_t> indices, const Vec3& middle,
-                        const Vec3& normal) noexcept {
+Vec3 span_centre(const patch::Rim& rim, std::span<const std::uint32_t> indices, const Vec3& middle,
+                 const Vec3& normal) noexcept {
   Vec3 sum = Vec3::Zero();
   double weight = 0.0;
   double magnitude = 0.0;
@@ -178,70 +74,204 @@ static Vec3 span_centre(const patch::Rim& rim, std::span<const std::uint32_t> in
   return middle + sum / weight;
 }
 
+double spacing(double depth, double lever) noexcept {
+  return std::max(tolerances::spacing_by_depth * depth, tolerances::spacing_by_lever * lever);
+}
+
+}  // namespace
+
+struct PatchBuilder::Scratch {
+  explicit Scratch(std::size_t hit_capacity)
+      : pairs(hit_capacity),
+        pieces(patch::most_pieces_of_a_pair * hit_capacity),
+        by_patch(pieces.size()),
+        witnesses(witnesses_per_pair * hit_capacity + 64),
+        components(pieces.size(), hit_capacity) {}
+
+  using Measured = std::array<Witness, most_contacts + 1>;
+  using Indices = std::span<const std::uint32_t>;
+
+  void place_pairs(const PatchInput& input, Watch& watch) noexcept;
+  void make_rim(const PatchInput& input, const Effort& effort, Watch& watch) noexcept;
+  void cut_pairs(const PatchInput& input, std::size_t count, bool silent_too, Watch& watch) noexcept;
+  void sort_by_patch(std::size_t count) noexcept;
+  bool make_patches(const PatchInput& input, const Effort& effort, Watch& watch) noexcept;
+  Patch make_patch(const PatchInput& input, const patch::RimSums& sums, Indices indices, const Effort& effort,
+                   Watch& watch) noexcept;
+  void find_witnesses(Indices indices, const patch::Frame& frame, Watch& watch) noexcept;
+  std::size_t probe(const PatchInput& input, const Vec3& centre, double reach, const patch::Frame& frame,
+                    const patch::Chosen& spread, Measured& measured, Watch& watch) noexcept;
+  void drop_opposed(const Vec3* previous) noexcept;
+  void write(const PatchInput& input) noexcept;
+
+  std::vector<patch::PlacedPair> pairs;
+  std::vector<patch::RimPiece> pieces;
+  std::vector<std::uint32_t> by_patch;
+  std::array<std::uint32_t, patch::Components::most + 1> first_of_patch{};
+  std::vector<Witness> witnesses;
+  patch::Components components;
+  patch::Fan fan;
+  std::array<Patch, patch::Components::most> patches;
+  std::array<Contact, most_contacts> contacts;
+  patch::Rim rim;
+  std::size_t pair_count = 0;
+  std::size_t piece_count = 0;
+  std::size_t witness_count = 0;
+  std::size_t patch_count = 0;
+  std::size_t contact_count = 0;
+};
+
+void PatchBuilder::Scratch::place_pairs(const PatchInput& input, Watch& watch) noexcept {
+  const std::size_t count = std::min(input.hits.size(), pairs.size());
+  const std::size_t step = count > 0 ? spread_step(count) : 1;
+  std::size_t next = 0;
+  pair_count = 0;
+  for (std::size_t i = 0; i < count; ++i, next = (next + step) % count) {
+    if (patch::place(input, input.hits[next], pairs[pair_count])) ++pair_count;
+    if (watch.late(i) && pair_count >= least_pairs) break;
+  }
+}
+
+void PatchBuilder::Scratch::make_rim(const PatchInput& input, const Effort& effort, Watch& watch) noexcept {
+  const std::size_t count = std::min(pair_count, effort.pairs);
+  cut_pairs(input, count, false, watch);
+  if (piece_count == 0) cut_pairs(input, count, true, watch);
+  Vec3 lower = Vec3::Constant(std::numeric_limits<double>::infinity());
+  Vec3 upper = -lower;
+  for (std::size_t i = 0; i < piece_count; ++i) {
+    lower = lower.cwiseMin(pieces[i].from).cwiseMin(pieces[i].to);
+    upper = upper.cwiseMax(pieces[i].from).cwiseMax(pieces[i].to);
+  }
+  rim.pieces = {pieces.data(), piece_count};
+  rim.pairs = {pairs.data(), pair_count};
+  rim.origin = piece_count > 0 ? Vec3(0.5 * lower + 0.5 * upper) : Vec3::Zero();
+}
+
+/// Coplanar triangles that face the same way are silent between solids: they speak only where nothing else does.
+void PatchBuilder::Scratch::cut_pairs(const PatchInput& input, std::size_t count, bool silent_too,
+                                      Watch& watch) noexcept {
+  piece_count = 0;
+  const bool skip_silent = input.solid_a && input.solid_b && !silent_too;
+  std::array<patch::RimPiece, patch::most_pieces_of_a_pair> found;
+  for (std::size_t i = 0; i < count && !watch.late(i); ++i) {
+    const std::size_t cut = patch::rim_pieces(pairs[i], skip_silent, static_cast<std::uint32_t>(i), found);
+    for (std::size_t k = 0; k < cut; ++k) {
+      if (found[k].from.allFinite() && found[k].to.allFinite()) pieces[piece_count++] = found[k];
+    }
+  }
+}
+
+void PatchBuilder::Scratch::sort_by_patch(std::size_t count) noexcept {
+  first_of_patch.fill(0);
+  for (std::size_t i = 0; i < piece_count; ++i) {
+    if (pieces[i].component < count) ++first_of_patch[pieces[i].component + 1];
+  }
+  for (std::size_t p = 1; p < first_of_patch.size(); ++p) first_of_patch[p] += first_of_patch[p - 1];
+  std::array<std::uint32_t, patch::Components::most + 1> next = first_of_patch;
+  for (std::uint32_t i = 0; i < piece_count; ++i) {
+    if (pieces[i].component < count) by_patch[next[pieces[i].component]++] = i;
+  }
+}
+
+/// False if the time was up before the first patch was begun.
+bool PatchBuilder::Scratch::make_patches(const PatchInput& input, const Effort& effort, Watch& watch) noexcept {
+  patch_count = 0;
+  make_rim(input, effort, watch);
+  if (watch.late()) return false;
+  const std::span<const patch::RimSums> sums = components.group(rim, input.solid_a, input.solid_b, watch);
+  if (watch.late()) return false;
+  sort_by_patch(sums.size());
+  for (std::size_t i = 0; i < sums.size() && patch_count < effort.patches; ++i) {
+    const Indices indices{by_patch.data() + first_of_patch[i], first_of_patch[i + 1] - first_of_patch[i]};
+    if (indices.empty()) continue;
+    if (patch_count > 0 && watch.late()) break;
+    patches[patch_count++] = make_patch(input, sums[i], indices, effort, watch);
+  }
+  return true;
+}
+
+/// Fills `witnesses` with the overlap's corners of all pairs of the patch; at least one.
+void PatchBuilder::Scratch::find_witnesses(Indices indices, const patch::Frame& frame, Watch& watch) noexcept {
+  witness_count = 0;
+  std::uint32_t last_pair = no_feature;
+  for (std::size_t i = 0; i < indices.size() && !(watch.late(i) && i >= least_pairs); ++i) {
+    const std::uint32_t pair = pieces[indices[i]].pair;
+    if (pair == last_pair) continue;  // the pieces of one pair follow each other
+    last_pair = pair;
+    const patch::PlacedPair& placed = pairs[pair];
+    patch::overlap_corners(placed, frame, Vec3::Zero(), [&](const Vec3& on_a, const Vec3& on_b, double depth) noexcept {
+      if (!(depth >= 0.0) || !std::isfinite(depth) || witness_count == witnesses.size()) return;
+      witnesses[witness_count++] = {on_a, on_b, depth, placed.index.a, placed.index.b};
+    });
+  }
+  if (witness_count == 0) {  // rounding has parted triangles that only touch
+    const patch::RimPiece& piece = pieces[indices[0]];
+    const patch::PlacedPair& placed = pairs[piece.pair];
+    witnesses[witness_count++] = {piece.middle(), piece.middle(), 0.0, placed.index.a, placed.index.b};
+  }
+}
+
 /// Measures the overlap inside the rim: at the centre and a little inside of the points that span the patch. A deep
 /// overlap's rim triangles reach only as far as they are large. Where the overlap is round (a ball), leaves out all but
 /// its depth: what lies at its rim bears nothing.
 std::size_t PatchBuilder::Scratch::probe(const PatchInput& input, const Vec3& centre, double reach,
                                          const patch::Frame& frame, const patch::Chosen& spread, Measured& measured,
-                                         const Deadline& deadline) noexcept {
+                                         Watch& watch) noexcept {
+  const auto measure = [&](const Vec3& place, Witness& found) noexcept {
+    return !watch.late() && patch::probe_overlap(input, place, frame.normal, reach, watch, found);
+  };
   std::size_t count = 0;
+  Witness inside;
+  if (measure(centre, inside)) measured[count++] = inside;
   for (std::size_t i = 0; i < spread.count; ++i) {
-    patch::Witness w = spread.witnesses[i];
-    patch::Witness inside;
+    Witness w = spread.witnesses[i];
     const Vec3 place = w.middle();
-    if (!late(deadline) && patch::probe_overlap(input, place + 0.02 * (centre - place), frame.normal, reach, inside) &&
-        inside.depth > w.depth) {
+    if (measure(place + 0.02 * (centre - place), inside) && inside.depth > w.depth) {
       w = inside;
       w.on_a = place + frame.normal * frame.normal.dot(inside.on_a - place);
       w.on_b = place + frame.normal * frame.normal.dot(inside.on_b - place);
     }
     measured[count++] = w;
   }
-  patch::Witness inside;
-  if (!late(deadline) && patch::probe_overlap(input, centre, frame.normal, reach, inside)) measured[count++] = inside;
-  const patch::Witness deepest = patch::deepest_of({measured.data(), count}, frame, centre);
+  const Witness deepest = patch::deepest_of({measured.data(), count}, frame, centre, 0.25 * reach);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const patch::Witness& w = measured[i];
+    const Witness& w = measured[i];
     const double linear = 0.5 * (w.depth + deepest.depth);
-    const bool round =
-        w.depth < 0.5 * deepest.depth && !late(deadline) &&
-        patch::probe_overlap(input, 0.5 * (w.middle() + deepest.middle()), frame.normal, reach, inside) &&
-        inside.depth > linear + tolerances::round_overlap * deepest.depth;
+    const bool round = w.depth < 0.5 * deepest.depth && measure(0.5 * (w.middle() + deepest.middle()), inside) &&
+                       inside.depth > linear + tolerances::round_overlap * deepest.depth;
     if (!round) measured[kept++] = patch::pulled_in(w, deepest);
   }
   return kept;
 }
 
-Patch PatchBuilder::Scratch::make_patch(const PatchInput& input, const patch::RimSums& sums,
-                                        std::span<const std::uint32_t> indices, const Deadline& deadline) noexcept {
+Patch PatchBuilder::Scratch::make_patch(const PatchInput& input, const patch::RimSums& sums, Indices indices,
+                                        const Effort& effort, Watch& watch) noexcept {
   Patch made;
   made.lower = sums.lower;
   made.upper = sums.upper;
-  made.normal = patch::patch_normal({input, rim, sums, indices, expired ? std::size_t{2} : std::size_t{24}});
+  made.normal = patch::patch_normal({input, rim, sums, indices, effort.sample}, watch);
   const patch::Frame frame(made.normal);
   const Vec3 centre = span_centre(rim, indices, sums.centre(rim.origin), made.normal);
-  find_witnesses(indices, frame, deadline);
-  const patch::Witness deepest = patch::deepest_of({witnesses.data(), witness_count}, frame, centre);
+  find_witnesses(indices, frame, watch);
+  const double radius = 0.5 * sums.diagonal();
+  const Witness deepest = patch::deepest_of({witnesses.data(), witness_count}, frame, centre, radius);
   patch::Extremes extremes(frame, fan, centre, deepest);
-  for (std::size_t i = 0; i < witness_count; ++i) extremes.add(witnesses[i]);
+  for (std::size_t i = 0; i < witness_count && !(watch.late(i) && i >= least_pairs); ++i) extremes.add(witnesses[i]);
 
   const double lever = (input.reference_a - centre).norm();
-  const auto spacing = [lever](double depth) noexcept {
-    return std::max(tolerances::spacing_by_depth * depth, tolerances::spacing_by_lever * lever);
-  };
   made.depth = deepest.depth;
-  made.chosen = patch::choose(extremes.all(), frame, most_contacts, spacing(made.depth));
+  made.chosen = patch::choose(extremes.all(), frame, most_contacts, spacing(made.depth, lever));
   Measured measured;
   std::size_t count = made.chosen.count;
-  if (input.probe_a && input.probe_b && sums.length > 0.0 && !late(deadline)) {
+  if (input.probe_a && input.probe_b && sums.length > 0.0 && !watch.late()) {
     const double reach = 2.0 * (sums.diagonal() + made.depth);
-    count = probe(input, centre, reach, frame, made.chosen, measured, deadline);
+    count = probe(input, centre, reach, frame, made.chosen, measured, watch);
     for (std::size_t i = 0; i < count; ++i) made.depth = std::max(made.depth, measured[i].depth);
   } else {
     for (std::size_t i = 0; i < count; ++i) measured[i] = patch::pulled_in(made.chosen.witnesses[i], deepest);
   }
-  made.chosen = patch::choose({measured.data(), count}, frame, most_contacts, spacing(made.depth));
+  made.chosen = patch::choose({measured.data(), count}, frame, most_contacts, spacing(made.depth, lever));
   made.low = std::numeric_limits<double>::infinity();
   made.high = -made.low;
   for (const std::uint32_t index : indices) {
@@ -316,18 +346,14 @@ PatchBuilder& PatchBuilder::operator=(PatchBuilder&&) noexcept = default;
 
 std::span<const Contact> PatchBuilder::build(const PatchInput& input, const Deadline& deadline) noexcept {
   Scratch& s = *scratch_;
-  s.expired = false;
-  s.collect(input, deadline);
-  if (s.piece_count == 0) return {};
-  const std::span<const patch::RimSums> sums = s.components.group(s.rim, input.solid_a, input.solid_b);
-  s.sort_by_patch(sums.size());
-  s.patch_count = 0;
-  for (std::size_t i = 0; i < sums.size(); ++i) {
-    const std::span<const std::uint32_t> indices{s.by_patch.data() + s.first_of_patch[i],
-                                                 s.first_of_patch[i + 1] - s.first_of_patch[i]};
-    if (indices.empty()) continue;
-    if (s.patch_count > 0 && s.late(deadline) && s.patch_count >= patches_after_deadline) break;
-    s.patches[s.patch_count++] = s.make_patch(input, sums[i], indices, deadline);
+  Watch watch(deadline);
+  s.place_pairs(input, watch);
+  if (!s.make_patches(input, thorough, watch)) {
+    const Deadline never;
+    Watch without_clock(never);
+    PatchInput without_probes = input;
+    without_probes.probe_a = without_probes.probe_b = {};
+    s.make_patches(without_probes, hasty, without_clock);
   }
   s.drop_opposed(input.previous_normal);
   s.write(input);

@@ -76,12 +76,16 @@ Components::Components(std::size_t most_pieces, std::size_t most_pairs)
       patch_of_curve_(most_pieces),
       patches_(most) {}
 
-std::span<const RimSums> Components::group(const Rim& rim, bool solid_a, bool solid_b) noexcept {
+std::span<const RimSums> Components::group(const Rim& rim, bool solid_a, bool solid_b, Watch& watch) noexcept {
   if (rim.pieces.empty()) return {};
-  connect(rim);
-  sum_up(rim);
+  prepare(rim);
+  connect(rim, watch);
+  if (watch.late()) return {};
+  sum_up(rim, watch);
+  if (watch.late()) return {};
   keep_the_longest();
-  join_open_curves(rim);
+  join_open_curves(rim, watch);
+  if (watch.late()) return {};
   join_holes(rim, solid_a, solid_b);
   join_neighbours(rim);
   settle(rim);
@@ -96,36 +100,41 @@ std::uint32_t Components::root(std::vector<std::uint32_t>& parents, std::uint32_
   return i;
 }
 
-/// The joint at a point; a new one if none is near. A point near the border of its cell is looked for beyond it as
-/// well.
+/// The joint at a point; a new one if none is near. Joints stand in cells of a grid; a point near the border of its
+/// cell is looked for beyond it as well.
 std::uint32_t Components::joint_at(const Vec3& point, std::uint32_t piece) noexcept {
-  const std::size_t mask = joint_mask_;
-  const auto slot_of = [&](const Vec3& p) {
-    std::uint64_t key = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto cell = static_cast<std::int64_t>(std::floor(p[axis] / cell_));
-      key = math::scramble(key ^ static_cast<std::uint64_t>(cell));
-    }
-    return static_cast<std::size_t>(key) & mask;
+  using Cell = std::array<std::uint64_t, 3>;
+  // Shifted by an odd amount, so that rims in planes of round coordinates do not lie on the borders of cells.
+  const auto cell_of = [this](const Vec3& p) noexcept {
+    constexpr double odd = 1099511627776.3819660;
+    return Cell{static_cast<std::uint64_t>(p.x() * cells_per_metre_ + odd),
+                static_cast<std::uint64_t>(p.y() * cells_per_metre_ + odd),
+                static_cast<std::uint64_t>(p.z() * cells_per_metre_ + odd)};
   };
-  const auto find_from = [&](std::size_t start) noexcept -> std::uint32_t {
-    for (std::size_t slot = start; joint_table_[slot] != 0; slot = (slot + 1) & mask) {
+  const auto slot_of = [this](const Cell& c) noexcept {
+    const std::uint64_t key = c[0] + (c[1] << 21U) + (c[1] >> 43U) + (c[2] << 42U) + (c[2] >> 22U);
+    return static_cast<std::size_t>(math::scramble(key)) & joint_mask_;
+  };
+  const auto find_in = [&](const Cell& cell) noexcept -> std::uint32_t {
+    for (std::size_t slot = slot_of(cell); joint_table_[slot] != 0; slot = (slot + 1) & joint_mask_) {
       const std::uint32_t joint = joint_table_[slot] - 1;
       if ((joints_[joint].position - point).cwiseAbs().maxCoeff() <= same_point_) return joint;
     }
     return left_out;
   };
-  const std::size_t home = slot_of(point);
-  std::uint32_t known = find_from(home);
-  for (int corner = 0; corner < 8 && known == left_out; ++corner) {
-    const Vec3 offset((corner & 1) != 0 ? same_point_ : -same_point_, (corner & 2) != 0 ? same_point_ : -same_point_,
-                      (corner & 4) != 0 ? same_point_ : -same_point_);
-    const std::size_t start = slot_of(point + offset);
-    if (start != home) known = find_from(start);
+  const Cell home = cell_of(point);
+  std::uint32_t known = find_in(home);
+  const Cell low = cell_of(point - Vec3::Constant(same_point_));
+  const Cell high = cell_of(point + Vec3::Constant(same_point_));
+  if (low != high) {
+    for (unsigned corner = 0; corner < 8 && known == left_out; ++corner) {
+      known = find_in({(corner & 1U) != 0 ? high[0] : low[0], (corner & 2U) != 0 ? high[1] : low[1],
+                       (corner & 4U) != 0 ? high[2] : low[2]});
+    }
   }
   if (known != left_out) return known;
-  std::size_t slot = home;
-  while (joint_table_[slot] != 0) slot = (slot + 1) & mask;
+  std::size_t slot = slot_of(home);
+  while (joint_table_[slot] != 0) slot = (slot + 1) & joint_mask_;
   const auto joint = static_cast<std::uint32_t>(joint_count_++);
   joints_[joint] = {point, 0, piece};
   joint_table_[slot] = joint + 1;
@@ -144,7 +153,7 @@ bool Components::is_copy(std::uint32_t from, std::uint32_t to) noexcept {
   return false;
 }
 
-void Components::connect(const Rim& rim) noexcept {
+void Components::prepare(const Rim& rim) noexcept {
   double extent = 0.0;
   double reach = 0.0;
   for (const RimPiece& piece : rim.pieces) {
@@ -153,13 +162,17 @@ void Components::connect(const Rim& rim) noexcept {
     reach = std::max(reach, piece.from.cwiseAbs().maxCoeff());
   }
   same_point_ = std::max(tolerances::same_joint * extent, tolerances::on_plane * reach);
-  cell_ = std::max(256.0 * same_point_, std::numeric_limits<double>::min());
+  const double cell = 256.0 * same_point_;
+  cells_per_metre_ = cell > 1e-290 ? 1.0 / cell : 0.0;  // so small a rim is one cell
   joint_mask_ = table_size(2 * rim.pieces.size()) - 1;  // only as much of the tables as is needed, for clearing costs
   copy_mask_ = table_size(rim.pieces.size()) - 1;
   std::fill_n(joint_table_.begin(), joint_mask_ + 1, 0U);
   std::fill_n(copy_table_.begin(), copy_mask_ + 1, std::uint64_t{0});
   joint_count_ = 0;
-  for (std::uint32_t i = 0; i < rim.pieces.size(); ++i) {
+}
+
+void Components::connect(const Rim& rim, Watch& watch) noexcept {
+  for (std::uint32_t i = 0; i < rim.pieces.size() && !watch.late(i); ++i) {
     piece_parents_[i] = i;
     RimPiece& piece = rim.pieces[i];
     const std::uint32_t from = joint_at(piece.from - rim.origin, i);
@@ -177,9 +190,9 @@ void Components::connect(const Rim& rim) noexcept {
   }
 }
 
-void Components::sum_up(const Rim& rim) noexcept {
+void Components::sum_up(const Rim& rim, Watch& watch) noexcept {
   curve_count_ = 0;
-  for (std::uint32_t i = 0; i < rim.pieces.size(); ++i) {
+  for (std::uint32_t i = 0; i < rim.pieces.size() && !watch.late(i); ++i) {
     const std::uint32_t top = root(piece_parents_, i);
     if (top == i) {
       curve_of_root_[i] = static_cast<std::uint32_t>(curve_count_);
@@ -236,13 +249,14 @@ void Components::join(std::uint32_t i, std::uint32_t j) noexcept {
 }
 
 /// Pieces of a rim of which parts are missing belong together if one triangle carries both.
-void Components::join_open_curves(const Rim& rim) noexcept {
+void Components::join_open_curves(const Rim& rim, Watch& watch) noexcept {
   bool any = false;
   for (std::size_t i = 0; i < kept_; ++i) any = any || !curves_[order_[i]].closed();
   if (!any) return;
   const std::size_t mask = table_size(2 * rim.pairs.size()) - 1;
   std::fill_n(triangle_table_.begin(), mask + 1, std::uint64_t{0});
-  for (const RimPiece& piece : rim.pieces) {
+  for (std::size_t i = 0; i < rim.pieces.size() && !watch.late(i); ++i) {
+    const RimPiece& piece = rim.pieces[i];
     const std::uint32_t top = root(curve_parents_, piece.component);
     if (curves_[top].closed()) continue;
     const TrianglePair& index = rim.pairs[piece.pair].index;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "query/patch_rim.hpp"
+#include "query/patch_watch.hpp"
 
 namespace odds::query::patch {
 
@@ -48,9 +49,9 @@ class Components {
 
   Components(std::size_t most_pieces, std::size_t most_pairs);
 
-  /// Sets `component` of every piece to the index of its patch (or `left_out`) and `counts` of copies to false.
-  /// Returns the sums of each patch.
-  std::span<const RimSums> group(const Rim& rim, bool solid_a, bool solid_b) noexcept;
+  /// Sets `component` of every piece to the index of its patch (or `left_out`) and `counts` of copies to false. Returns
+  /// the sums of each patch; nothing if the time was up before it was done.
+  std::span<const RimSums> group(const Rim& rim, bool solid_a, bool solid_b, Watch& watch) noexcept;
 
   static constexpr std::uint32_t left_out = 0xffffffffU;
 
@@ -62,12 +63,13 @@ class Components {
   };
 
   std::uint32_t joint_at(const Vec3& point, std::uint32_t piece) noexcept;
-  void connect(const Rim& rim) noexcept;
+  void prepare(const Rim& rim) noexcept;
+  void connect(const Rim& rim, Watch& watch) noexcept;
   bool is_copy(std::uint32_t from, std::uint32_t to) noexcept;
-  void sum_up(const Rim& rim) noexcept;
+  void sum_up(const Rim& rim, Watch& watch) noexcept;
   void keep_the_longest() noexcept;
   std::span<const std::uint32_t> roots() noexcept;
-  void join_open_curves(const Rim& rim) noexcept;
+  void join_open_curves(const Rim& rim, Watch& watch) noexcept;
   void join_holes(const Rim& rim, bool solid_a, bool solid_b) noexcept;
   void join_neighbours(const Rim& rim) noexcept;
   void join(std::uint32_t i, std::uint32_t j) noexcept;
@@ -92,7 +94,7 @@ class Components {
   std::size_t joint_count_ = 0;
   std::size_t curve_count_ = 0;
   std::size_t kept_ = 0;
-  double cell_ = 1.0;
+  double cells_per_metre_ = 1.0;
   double same_point_ = 0.0;
 };
 

@@ -67,7 +67,7 @@ double flatness(const Vec3& normal, const Vec3& flat) noexcept {
 
 /// On a flat patch (a face of one body carries nearly all of the rim) the face's normal is the better one: where a face
 /// hangs over a ledge, the vector area leans by depth / width, and where parts of the rim are missing, by more.
-Vec3 snap_to_face(const PatchView& view, const Vec3& normal) noexcept {
+Vec3 snap_to_face(const PatchView& view, const Vec3& normal, Watch& watch) noexcept {
   Directions faces;
   const auto towards = [&normal](const Vec3& face) noexcept {
     const double facing = face.dot(normal);
@@ -76,8 +76,8 @@ Vec3 snap_to_face(const PatchView& view, const Vec3& normal) noexcept {
   const auto accept = [&](const Vec3& face, bool solid, double sign) noexcept {
     return solid && sign * face.dot(normal) < 0.0 ? Vec3::Zero() : towards(face);
   };
-  for (const std::uint32_t index : view.pieces) {
-    const RimPiece& piece = view.rim.pieces[index];
+  for (std::size_t i = 0; i < view.pieces.size() && !watch.late(i); ++i) {
+    const RimPiece& piece = view.rim.pieces[view.pieces[i]];
     if (!piece.counts) continue;
     const PlacedPair& placed = view.rim.pairs[piece.pair];
     const double length = piece.along().norm();
@@ -91,8 +91,8 @@ Vec3 snap_to_face(const PatchView& view, const Vec3& normal) noexcept {
   const Vec3 flat = unit_or_zero(heaviest->sum);
   double share = 0.0;
   Vec3 mean = Vec3::Zero();
-  for (const std::uint32_t index : view.pieces) {
-    const RimPiece& piece = view.rim.pieces[index];
+  for (std::size_t i = 0; i < view.pieces.size() && !watch.late(i); ++i) {
+    const RimPiece& piece = view.rim.pieces[view.pieces[i]];
     if (!piece.counts) continue;
     const PlacedPair& placed = view.rim.pairs[piece.pair];
     const double length = piece.along().norm();
@@ -103,6 +103,7 @@ Vec3 snap_to_face(const PatchView& view, const Vec3& normal) noexcept {
     share += length * std::max(by_a, by_b);
     mean += length * (by_b * face_b + by_a * face_a);
   }
+  if (watch.late()) return normal;
   mean = unit_or_zero(mean);
   const double snap = smooth_step(tolerances::snap_from, tolerances::snap_to, share / view.sums.length);
   const Vec3 snapped = unit_or_zero((1.0 - snap) * normal + snap * mean);
@@ -112,7 +113,7 @@ Vec3 snap_to_face(const PatchView& view, const Vec3& normal) noexcept {
 /// Compares directions by the overlap along them, on a sample of the patch's triangle pairs.
 class LeastOverlap {
  public:
-  explicit LeastOverlap(const PatchView& view) noexcept : view_(view), side_(side_of_bodies(view)) {
+  LeastOverlap(const PatchView& view, Watch& watch) noexcept : view_(view), watch_(watch), side_(side_of_bodies(view)) {
     const Vec3 mean = unit_or_zero(view.sums.normals_b - view.sums.normals_a);
     Vec3 pressing = mean == Vec3::Zero() ? unit_or_zero(side_) : mean;
     if (pressing == Vec3::Zero()) pressing = unit_or_zero(view.input.reference_a - view.input.reference_b);
@@ -131,6 +132,7 @@ class LeastOverlap {
     const Vec3 unit = unit_or_zero(direction);
     if (unit == Vec3::Zero()) return;
     const double facing = unit.dot(side_);
+    if (found_ && watch_.late()) return;
     if (facing < -tolerances::weak_side) return;  // towards the wrong side of a sheet
     const Vec3* previous = view_.input.previous_normal;
     if (previous != nullptr && previous->dot(unit) > tolerances::same_as_before) factor *= tolerances::hysteresis;
@@ -140,7 +142,7 @@ class LeastOverlap {
     // through.
     Witness through;
     const Vec3 centre = view_.sums.centre(view_.rim.origin);
-    if (spread_ && probe_overlap(view_.input, centre, unit, 4.0 * view_.sums.diagonal(), through)) {
+    if (spread_ && probe_overlap(view_.input, centre, unit, 4.0 * view_.sums.diagonal(), watch_, through)) {
       overlap = std::max(overlap, through.depth);
     }
     overlap *= factor;
@@ -178,6 +180,7 @@ class LeastOverlap {
   }
 
   const PatchView& view_;
+  Watch& watch_;
   Vec3 side_;
   Vec3 shift_ = Vec3::Zero();
   Vec3 best_ = Vec3::Zero();
@@ -187,8 +190,8 @@ class LeastOverlap {
 };
 
 /// The candidates: the faces' normals, the area, the mean of the normals, the last run's normal.
-Vec3 least_overlap(const PatchView& view, const Vec3& area) noexcept {
-  LeastOverlap search(view);
+Vec3 least_overlap(const PatchView& view, const Vec3& area, Watch& watch) noexcept {
+  LeastOverlap search(view, watch);
   const bool solid = view.input.solid_a && view.input.solid_b;
   const auto offer = [&search, solid](const Vec3& direction, double factor) noexcept {
     search.offer(direction, factor);
@@ -196,8 +199,8 @@ Vec3 least_overlap(const PatchView& view, const Vec3& area) noexcept {
   };
   offer(area, tolerances::area_preferred);
   Directions faces;
-  for (const std::uint32_t index : view.pieces) {
-    const RimPiece& piece = view.rim.pieces[index];
+  for (std::size_t i = 0; i < view.pieces.size() && !watch.late(i); ++i) {
+    const RimPiece& piece = view.rim.pieces[view.pieces[i]];
     const PlacedPair& placed = view.rim.pairs[piece.pair];
     const double weight = piece.along().norm();
     faces.add(placed.normal_b, weight);
@@ -214,7 +217,7 @@ Vec3 least_overlap(const PatchView& view, const Vec3& area) noexcept {
 
 }  // namespace
 
-Vec3 patch_normal(const PatchView& view) noexcept {
+Vec3 patch_normal(const PatchView& view, Watch& watch) noexcept {
   const RimSums& sums = view.sums;
   const Vec3 area = sums.vector_area(view.rim.origin);
   const double reach = view.rim.origin.cwiseAbs().maxCoeff() + sums.diagonal();
@@ -226,10 +229,10 @@ Vec3 patch_normal(const PatchView& view) noexcept {
     normal = area.normalized();
     if (normal.dot(side_of_bodies(view)) < 0.0) normal = -normal;
   } else {
-    normal = least_overlap(view, noticeable ? area : Vec3::Zero());
+    normal = least_overlap(view, noticeable ? area : Vec3::Zero(), watch);
   }
   if (normal == Vec3::Zero()) return Vec3::UnitZ();  // two points on one another: no direction is better than another
-  return sums.length > 0.0 ? snap_to_face(view, normal) : normal;
+  return sums.length > 0.0 ? snap_to_face(view, normal, watch) : normal;
 }
 
 }  // namespace odds::query::patch

@@ -17,7 +17,8 @@ struct PatchView {
   std::size_t sample = 24;                ///< most triangle pairs to look at when candidates are compared
 };
 
-/// Unit normal into A. See PatchBuilder for the rule. Always finite and of unit length.
-[[nodiscard]] Vec3 patch_normal(const PatchView& view) noexcept;
+/// Unit normal into A. When the time is up, what is known by then. See PatchBuilder for the rule. Always finite and of
+/// unit length.
+[[nodiscard]] Vec3 patch_normal(const PatchView& view, Watch& watch) noexcept;
 
 }  // namespace odds::query::patch

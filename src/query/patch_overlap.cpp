@@ -58,7 +58,7 @@ double pair_depth(const PlacedPair& placed, const Frame& frame, const Vec3& shif
   return deepest;
 }
 
-bool probe_overlap(const PatchInput& input, const Vec3& point, const Vec3& normal, double reach,
+bool probe_overlap(const PatchInput& input, const Vec3& point, const Vec3& normal, double reach, Watch& watch,
                    Witness& witness) noexcept {
   if (!input.probe_a || !input.probe_b) return false;
   const Probed a{input.probe_a, input.vertices_a, input.triangles_a, input.solid_a};
@@ -67,7 +67,8 @@ bool probe_overlap(const PatchInput& input, const Vec3& point, const Vec3& norma
   double down = 0.0;
   double up = 0.0;
   Witness found;
-  if (!exit_along(a, point, -normal, reach, &down, &found.triangle_a)) return false;
+  if (watch.late() || !exit_along(a, point, -normal, reach, &down, &found.triangle_a)) return false;
+  if (watch.late()) return false;
   if (!exit_along(b, to_b * (point - input.pose_b_in_a.translation), to_b * normal, reach, &up, &found.triangle_b)) {
     return false;
   }

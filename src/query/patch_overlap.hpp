@@ -7,6 +7,7 @@
 
 #include "odds/math/tolerances.hpp"
 #include "query/patch_rim.hpp"
+#include "query/patch_watch.hpp"
 
 namespace odds::query::patch {
 
@@ -109,6 +110,6 @@ void overlap_corners(const PlacedPair& placed, const Frame& frame, const Vec3& s
 /// crossing at which the line leaves the body, for sheets the nearest within `reach`. False if a probe is missing or
 /// finds none.
 [[nodiscard]] bool probe_overlap(const PatchInput& input, const Vec3& point, const Vec3& normal, double reach,
-                                 Witness& witness) noexcept;
+                                 Watch& watch, Witness& witness) noexcept;
 
 }  // namespace odds::query::patch

@@ -9,7 +9,11 @@ namespace odds::query::patch {
 namespace {
 
 double cross(const Vec3& p, const Vec3& q) noexcept { return p.x() * q.y() - p.y() * q.x(); }
-double flat_distance(const Vec3& p, const Vec3& q) noexcept { return std::hypot(p.x() - q.x(), p.y() - q.y()); }
+double flat_distance(const Vec3& p, const Vec3& q) noexcept {
+  const double x = p.x() - q.x();
+  const double y = p.y() - q.y();
+  return std::sqrt(x * x + y * y);
+}
 
 /// A candidate in the frame of the patch: place across the normal, and depth as a share of the greatest.
 struct Candidate {
@@ -165,20 +169,19 @@ Chosen choose(std::span<const Witness> witnesses, const Frame& frame, std::size_
   return chosen;
 }
 
-Witness deepest_of(std::span<const Witness> witnesses, const Frame& frame, const Vec3& centre) noexcept {
-  const Vec3 middle = frame(centre);
+Witness deepest_of(std::span<const Witness> witnesses, const Frame& frame, const Vec3& centre, double radius) noexcept {
   double depth = 0.0;
-  double radius = 0.0;
-  for (const Witness& w : witnesses) {
-    depth = std::max(depth, w.depth);
-    radius = std::max(radius, flat_distance(frame(w.middle()), middle));
-  }
+  for (const Witness& w : witnesses) depth = std::max(depth, w.depth);
+  const double per_depth = depth > 0.0 ? 1.0 / depth : 0.0;
+  const double per_radius = radius > 0.0 ? 0.02 / radius : 0.0;
   const Witness* best = &witnesses[0];
   double best_score = -1.0;
   for (const Witness& w : witnesses) {
     if (w.depth < 0.95 * depth) continue;
-    const double score = (depth > 0.0 ? w.depth / depth : 1.0) +
-                         (radius > 0.0 ? 0.02 * flat_distance(frame(w.middle()), middle) / radius : 0.0);
+    const Vec3 out = w.middle() - centre;
+    const double u = frame.u.dot(out);
+    const double v = frame.v.dot(out);
+    const double score = w.depth * per_depth + per_radius * std::sqrt(u * u + v * v);
     if (score <= best_score) continue;
     best_score = score;
     best = &w;

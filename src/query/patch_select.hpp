@@ -51,8 +51,9 @@ struct Chosen {
 [[nodiscard]] Chosen choose(std::span<const Witness> witnesses, const Frame& frame, std::size_t most,
                             double spacing) noexcept;
 
-/// The deepest; of those equally deep to 2 %, one far from `centre` across the normal. Precondition: not empty.
-[[nodiscard]] Witness deepest_of(std::span<const Witness> witnesses, const Frame& frame, const Vec3& centre) noexcept;
+/// The deepest; of those equally deep to 2 %, one far from `centre` (up to about `radius`). Precondition: not empty.
+[[nodiscard]] Witness deepest_of(std::span<const Witness> witnesses, const Frame& frame, const Vec3& centre,
+                                 double radius) noexcept;
 
 /// A witness shallower than a fifth of the deepest moves towards it until it is not, its depth changing linearly: so
 /// the border of what counts does not depend on where a mesh has its vertices, and nothing appears or vanishes at a

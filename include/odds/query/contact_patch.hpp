@@ -34,7 +34,7 @@ struct DepthProbe {
   explicit operator bool() const noexcept { return ray != nullptr; }
 };
 
-/// Says whether the time is up. Null: never. Polled every few microseconds at most.
+/// Says whether the time is up. Null: never. Polled every microsecond or two.
 struct Deadline {
   bool (*expired)(void* self) noexcept = nullptr;
   void* self = nullptr;
@@ -83,7 +83,7 @@ class PatchBuilder {
   PatchBuilder& operator=(PatchBuilder&&) noexcept;
 
   /// Contacts in A's mesh frame, valid until the next call. Empty only if no hit has indices in range; every number
-  /// finite. After the deadline has expired it finishes with what is known, within about two microseconds.
+  /// finite. After the deadline has expired it finishes with what is known, within about four microseconds.
   [[nodiscard]] std::span<const Contact> build(const PatchInput& input, const Deadline& deadline = {}) noexcept;
 
  private:
