@@ -340,7 +340,7 @@ Result<World> World::make(const WorldOptions& options) {
   if (made->options.clock.now_ns == nullptr) made->options.clock = realtime::fastest_clock();
   dSetMessageHandler(&count_message);
   made->world = dWorldCreate();
-  made->space = dSweepAndPruneSpaceCreate(nullptr, dSAP_AXES_XYZ);  // the hash space allocates at every call
+  made->space = dSimpleSpaceCreate(nullptr);  // the hash space and sweep-and-prune allocate where boxes overlap
   dSpaceSetCleanup(made->space, 0);
   made->contacts = dJointGroupCreate(0);
   World world(std::move(made));

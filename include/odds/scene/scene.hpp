@@ -1,0 +1,116 @@
+// What a scene file says: meshes, bodies, a device, limits, and the effects that are wanted.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "odds/haptics/safety.hpp"
+#include "odds/haptics/settings.hpp"
+#include "odds/haptics/virtual_coupling.hpp"
+#include "odds/math/error.hpp"
+#include "odds/math/pose.hpp"
+#include "odds/ode/world.hpp"
+#include "odds/query/request.hpp"
+#include "odds/realtime/thread_setup.hpp"
+#include "odds/volume/kind.hpp"
+
+namespace odds::scene {
+
+/// The first line of every scene: format = "odds.scene/1".
+inline constexpr std::string_view format_name = "odds.scene/1";
+
+struct Loop {
+  std::int64_t period_ns = 1'000'000;
+  double seconds = 10.0;
+  realtime::ThreadRequest thread;  ///< real-time priority, locked memory, processor
+  [[nodiscard]] double period_s() const noexcept { return 1e-9 * static_cast<double>(period_ns); }
+};
+
+/// [[mesh]]
+struct Mesh {
+  std::string name;
+  std::string file;     ///< as written: a path, or "made:SHAPE:key=value,..."
+  double scale = 1.0;   ///< metres per unit of the file
+  std::string package;  ///< system package that holds the file; for the error message if it is not there
+  haptics::Place place;
+};
+
+/// [[body]]
+struct Body {
+  std::string name;
+  std::size_t mesh = 0;  ///< index into Scene::meshes
+  math::Pose pose;       ///< at the start; a body that follows a device begins where the device is
+  bool dynamic = false;
+  ode::MassSpec mass;
+  bool follows_device = false;
+  haptics::Place place;
+};
+
+/// [device.NAME]
+struct Device {
+  std::string name;
+  std::string type;
+  haptics::Settings settings;  ///< the whole table; the device's factory reads its part
+  haptics::SafetyLimits limits;
+  std::optional<double> physical_damping_ns_per_m;
+  haptics::Place place;
+};
+
+/// An effect is computed if and only if its table is there.
+template <class Parameters>
+struct Effect : Parameters {
+  haptics::Place place;  ///< of the table that asked for it
+};
+
+struct Contact {
+  double stiffness_n_per_m = 20000.0;
+  double damping_ns_per_m = 20.0;
+  double max_correcting_velocity_m_per_s = 1.0;
+};
+struct Friction {
+  double mu = 0.0;
+};
+struct Gravity {
+  Vec3 g_m_per_s2 = Vec3(0.0, 0.0, -9.81);
+};
+
+struct Effects {
+  std::optional<Effect<Contact>> contact;
+  std::optional<Effect<Friction>> friction;
+  std::optional<Effect<Gravity>> gravity;
+  std::optional<Effect<haptics::VirtualCoupling>> virtual_coupling;
+  std::optional<Effect<ode::Damping>> damping;
+};
+
+/// A scene that makes sense in itself: names resolve, numbers are in range. Files are not opened yet, except the
+/// device's.
+struct Scene {
+  std::string file;                      ///< for messages
+  std::filesystem::path base_directory;  ///< relative paths refer to it
+  std::vector<std::string>
+      search;  ///< further directories for meshes; "${NAME}" stands for a variable of the environment
+  Loop loop;
+  query::Request query;
+  volume::Kind volume = volume::Kind::obb;
+  ode::Solver solver = ode::Solver::exact;
+  int solver_iterations = 20;
+  double max_speed_m_per_s = 20.0;
+  double max_spin_rad_per_s = 200.0;
+  std::vector<Mesh> meshes;
+  std::vector<Body> bodies;
+  std::optional<Device> device;
+  Effects effects;
+
+  /// What the world is made from. Effects without a table are off in it.
+  [[nodiscard]] ode::WorldOptions world_options() const;
+};
+
+/// Reads a scene. Errors name file, line and column, and the nearest valid name where one was mistyped.
+Result<Scene> read_scene(const std::filesystem::path& path);
+/// The same from text; `name` stands in error messages.
+Result<Scene> parse_scene(std::string_view text, const std::string& name, const std::filesystem::path& base_directory);
+
+}  // namespace odds::scene

@@ -1,0 +1,104 @@
+// A scene brought to life: meshes loaded, world built, device open; and the loop that runs it.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "odds/haptics/device_track.hpp"
+#include "odds/haptics/recording_device.hpp"
+#include "odds/haptics/renderer.hpp"
+#include "odds/haptics/tick_record.hpp"
+#include "odds/realtime/periodic_loop.hpp"
+#include "odds/realtime/thread_setup.hpp"
+#include "odds/scene/pose_track.hpp"
+#include "odds/scene/scene.hpp"
+
+namespace odds::scene {
+
+/// Work units that stand for one microsecond where a scene gives microseconds and the run is to be repeatable.
+inline constexpr double work_units_per_us = 20.0;
+
+struct SimulationOptions {
+  /// Time passes only in the loop's sleep, budgets are work units instead of microseconds: as fast as the machine can,
+  /// and the same forces bit for bit on every run.
+  bool simulated_time = false;
+  std::optional<double> seconds;  ///< how long to run; nothing: as the scene says
+  haptics::AllocationCount allocations = nullptr;
+  /// Called while building: what is being done, and how far it is in [0, 1]. May be empty.
+  std::function<void(std::string_view what, double share)> progress;
+};
+
+/// What a run left behind.
+struct RunOutcome {
+  realtime::LoopSummary loop;
+  std::vector<haptics::TickRecord> ticks;  ///< in order
+  std::uint64_t records_lost = 0;          ///< the writer did not keep up
+  std::vector<realtime::SetupLine> thread;
+  haptics::DeviceTrack device_track;  ///< what the device said; empty without a device
+  PoseTrack poses;                    ///< of all dynamic bodies
+  haptics::SafetyCounts safety;
+  std::uint64_t failed_reads = 0;
+  std::uint64_t rescued_steps = 0;
+  std::uint64_t contacts_left_out = 0;
+};
+
+/// One mesh of the scene, for people.
+struct LoadedMesh {
+  std::string name;
+  std::string file;
+  std::uint64_t triangles = 0;
+};
+
+/// Not copyable, not movable: the renderer points into it.
+class Simulation {
+ public:
+  static Result<std::unique_ptr<Simulation>> make(Scene scene, const SimulationOptions& options);
+  ~Simulation();
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
+
+  /// Runs the loop to its end, or until `stop` is requested, in a thread of its own; returns when it has ended. Once
+  /// per simulation.
+  RunOutcome run(const std::stop_token& stop = {});
+
+  [[nodiscard]] const Scene& scene() const noexcept { return scene_; }
+  [[nodiscard]] const std::vector<LoadedMesh>& meshes() const noexcept { return meshes_; }
+  /// Sentences about what may go wrong with this scene; e.g. the sampled-data rule.
+  [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
+  /// The budget that the queries really have.
+  [[nodiscard]] const query::Budget& budget() const noexcept;
+  [[nodiscard]] ode::World& world() noexcept { return *world_; }
+  [[nodiscard]] haptics::Renderer& renderer() noexcept { return *renderer_; }
+  /// The body that follows the device, if there is one.
+  [[nodiscard]] std::optional<ode::BodyId> tool() const noexcept { return tool_; }
+  /// The pull of the coupling as it would be at a time of the loop; nothing pulls without a device.
+  [[nodiscard]] ode::Coupling pull_at(std::int64_t now_ns);
+
+ private:
+  Simulation(Scene scene, const SimulationOptions& options);
+  std::optional<Error> load();
+  std::optional<Error> add_bodies(const std::vector<std::shared_ptr<const query::Shape>>& shapes);
+  std::optional<Error> add_hand();
+  void report(std::string_view what, double share) const;
+  [[nodiscard]] PoseTrack make_pose_track() const;
+  void run_loop(const std::stop_token& stop, RunOutcome& outcome);
+
+  Scene scene_;
+  SimulationOptions options_;
+  std::vector<LoadedMesh> meshes_;
+  std::vector<std::string> warnings_;
+  std::optional<ode::World> world_;
+  std::vector<ode::BodyId> bodies_;
+  std::optional<ode::BodyId> tool_;
+  std::uint64_t ticks_ = 0;  // planned
+  std::unique_ptr<haptics::RecordingDevice> device_;
+  std::unique_ptr<haptics::Renderer> renderer_;
+};
+
+}  // namespace odds::scene

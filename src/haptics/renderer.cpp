@@ -1,0 +1,116 @@
+// The tick.
+#include "odds/haptics/renderer.hpp"
+
+#include <algorithm>
+#include <vector>
+
+namespace odds::haptics {
+namespace {
+
+bool finite(const DeviceState& s) {
+  return s.position_m.allFinite() && s.orientation.coeffs().allFinite() && s.velocity_m_per_s.allFinite() &&
+         s.angular_velocity_rad_per_s.allFinite();
+}
+
+void copy(const Vec3& from, std::array<double, 3>& to) { to = {from.x(), from.y(), from.z()}; }
+void copy(const Quat& from, std::array<double, 4>& to) { to = {from.w(), from.x(), from.y(), from.z()}; }
+
+void copy(const ode::StepSummary& step, TickRecord& record) {
+  record.queries = step.queries;
+  record.query_gross_us = step.query_gross_us;
+  record.query_stall_us = step.query_stall_us;
+  record.query_net_us = step.query_gross_us - step.query_stall_us;
+  record.query_overshoot_us = step.query_overshoot_us;
+  record.query_net_overshoot_us = step.query_net_overshoot_us;
+  record.node_pairs = step.node_pairs;
+  record.triangle_pairs = step.triangle_pairs;
+  record.verdict = step.verdict;
+  record.basis = step.basis;
+  record.probability = step.probability;
+  record.collision_us = step.collision_us;
+  record.step_us = step.step_us;
+  record.contacts = step.contacts;
+  record.max_depth_m = step.max_depth_m;
+}
+
+}  // namespace
+
+Renderer::Renderer(ode::World& world, const std::optional<Hand>& hand, AllocationCount allocations)
+    : world_(&world), hand_(hand), allocations_(allocations) {
+  if (hand_) world.add_coupling(hand_->tool);
+  if (hand_) safety_.emplace(hand_->limits);
+}
+
+bool Renderer::begin() noexcept {
+  failed_reads_ = 0;
+  rescued_steps_ = 0;
+  contacts_left_out_ = 0;
+  if (!hand_) return true;
+  DeviceState state;
+  if (!hand_->device->read(0, state) || !finite(state)) return false;
+  state_ = state;
+  fresh_ns_ = 0;
+  safety_.emplace(hand_->limits);
+  world_->set_state(hand_->tool,
+                    {{state.orientation.toRotationMatrix(), state.position_m}, Vec3::Zero(), Vec3::Zero()});
+  return true;
+}
+
+bool Renderer::warm_up(int ticks) {
+  std::vector<ode::BodyState> before;
+  for (std::uint32_t i = 0; i < world_->body_count(); ++i) before.push_back(world_->state({i}));
+  for (int i = 0; i < ticks; ++i) {
+    TickRecord record;
+    tick(0, record);
+  }
+  for (std::uint32_t i = 0; i < world_->body_count(); ++i) world_->set_state({i}, before[i]);
+  return begin();
+}
+
+void Renderer::read_device(std::int64_t now_ns) noexcept {
+  DeviceState state = state_;
+  if (!hand_->device->read(now_ns, state) || !finite(state)) {
+    ++failed_reads_;  // the last good state stays, and grows stale
+    return;
+  }
+  state_ = state;
+  if (state.fresh) fresh_ns_ = now_ns;
+}
+
+void Renderer::write_device(std::int64_t now_ns, const ode::BodyState& tool, TickRecord& record) noexcept {
+  const Vec3 center = tool.pose * world_->mass(hand_->tool).center_m;
+  const ode::Wrench on_hand = reaction_on_hand(world_->coupling_wrench(hand_->tool), center, state_.position_m);
+  DeviceCommand command{now_ns, on_hand.force_n, on_hand.torque_nm, 0};
+  safety_->apply(command, world_->options().step_s, 1e-9 * static_cast<double>(now_ns - fresh_ns_));
+  if (!hand_->device->write(command)) safety_->trip();  // a device that takes no commands must not keep an old one
+  copy(command.force_n, record.force_n);
+  copy(command.torque_nm, record.torque_nm);
+  record.safety = command.flags;
+}
+
+void Renderer::tick(std::int64_t now_ns, TickRecord& record) noexcept {
+  const std::uint64_t allocated = allocations_ != nullptr ? allocations_() : 0;
+  if (hand_) {
+    read_device(now_ns);
+    world_->set_coupling(hand_->tool, hand_->coupling.towards(state_));
+  }
+  const ode::StepSummary step = world_->step();
+  copy(step, record);
+  contacts_left_out_ += step.contacts_left_out;
+  if (step.bodies_slowed + step.bodies_recovered > 0) ++rescued_steps_;
+  if (hand_) {
+    if (step.bodies_recovered > 0) safety_->trip();
+    const ode::BodyState tool = world_->state(hand_->tool);
+    write_device(now_ns, tool, record);
+    copy(state_.position_m, record.device_position_m);
+    copy(state_.orientation, record.device_orientation_wxyz);
+    copy(tool.pose.translation, record.tool_position_m);
+    copy(Quat(tool.pose.rotation), record.tool_orientation_wxyz);
+  }
+  if (allocations_ != nullptr) {
+    record.allocations =
+        static_cast<std::uint32_t>(std::min<std::uint64_t>(allocations_() - allocated, not_measured - 1));
+  }
+}
+
+}  // namespace odds::haptics

@@ -1,0 +1,225 @@
+// Building a scene and running its loop.
+#include "odds/scene/simulation.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+#include "odds/haptics/device_registry.hpp"
+#include "odds/realtime/recorder.hpp"
+#include "odds/realtime/usage.hpp"
+#include "scene/mesh_loading.hpp"
+
+namespace odds::scene {
+namespace {
+
+using haptics::TickRecord;
+
+constexpr double pose_rate_hz = 100.0;  // enough for the eye
+constexpr std::size_t stack_bytes = 256 * 1024;
+constexpr std::uint64_t timer_slack_ns = 1;
+constexpr int warm_up_ticks = 32;
+// A day at 1 kHz: beyond it the records of one run would not fit into memory.
+constexpr double most_ticks = 86.4e6;
+
+// Turns microseconds into work units, so that nothing depends on the clock.
+query::Budget repeatable(const query::Budget& asked) {
+  query::Budget budget = query::Budget::unlimited();
+  if (asked.work_units != query::Budget{}.work_units) {
+    budget.work_units = asked.work_units;
+  } else if (std::isfinite(asked.microseconds)) {
+    budget.work_units = static_cast<std::uint64_t>(std::max(1.0, std::round(asked.microseconds * work_units_per_us)));
+  }
+  return budget;
+}
+
+void note_usage(const realtime::ThreadUsage& used, TickRecord& record) {
+  record.minor_faults = static_cast<std::uint32_t>(used.minor_faults);
+  record.major_faults = static_cast<std::uint32_t>(used.major_faults);
+  record.voluntary_switches = static_cast<std::uint32_t>(used.voluntary_switches);
+  record.involuntary_switches = static_cast<std::uint32_t>(used.involuntary_switches);
+}
+
+}  // namespace
+
+Simulation::Simulation(Scene scene, const SimulationOptions& options) : scene_(std::move(scene)), options_(options) {}
+
+Simulation::~Simulation() {
+  if (device_) {
+    device_->enable_forces(false);
+    device_->close();
+  }
+}
+
+void Simulation::report(std::string_view what, double share) const {
+  if (options_.progress) options_.progress(what, share);
+}
+
+const query::Budget& Simulation::budget() const noexcept { return world_->options().query.budget; }
+
+Result<std::unique_ptr<Simulation>> Simulation::make(Scene scene, const SimulationOptions& options) {
+  std::unique_ptr<Simulation> simulation(new Simulation(std::move(scene), options));
+  if (auto error = simulation->load()) return *error;
+  return simulation;
+}
+
+std::optional<Error> Simulation::load() {
+  const double seconds = options_.seconds.value_or(scene_.loop.seconds);
+  const double wanted = std::ceil(seconds / scene_.loop.period_s() - 1e-9);
+  if (!(wanted >= 1.0) || wanted > most_ticks) {
+    return Error{scene_.file, "", fmt::format("a run of {} s is not possible", seconds),
+                 "give more than 0 s and at most 86.4 million ticks"};
+  }
+  ticks_ = static_cast<std::uint64_t>(wanted);
+  if (options_.simulated_time) scene_.query.budget = repeatable(scene_.query.budget);
+  std::vector<std::shared_ptr<const query::Shape>> shapes;
+  for (const Mesh& mesh : scene_.meshes) {
+    const std::string what = fmt::format("mesh '{}'", mesh.name);
+    report(what, 0.0);
+    auto shape = load_shape(scene_, mesh, [&](double share) { report(what, share); });
+    if (!shape) return shape.error();
+    meshes_.push_back({mesh.name, mesh.file, shape.value()->mesh().triangles().size()});
+    shapes.push_back(std::move(shape).value());
+    report(what, 1.0);
+  }
+  Result<ode::World> world = ode::World::make(scene_.world_options());
+  if (!world) return world.error();
+  world_.emplace(std::move(world).value());
+  if (auto error = add_bodies(shapes)) return error;
+  if (auto error = add_hand()) return error;
+  report("memory of the loop", 0.0);
+  if (auto error = world_->prepare()) {
+    error->file = scene_.file;
+    return error;
+  }
+  report("memory of the loop", 1.0);
+  return std::nullopt;
+}
+
+std::optional<Error> Simulation::add_bodies(const std::vector<std::shared_ptr<const query::Shape>>& shapes) {
+  for (const Body& body : scene_.bodies) {
+    const auto& shape = shapes[body.mesh];
+    Result<ode::BodyId> id = body.dynamic ? world_->add_dynamic(shape, body.pose, body.mass, body.name)
+                                          : world_->add_fixed(shape, body.pose, body.name);
+    if (!id) {
+      return Error{scene_.file, body.place.text(), fmt::format("body '{}': {}", body.name, id.error().what),
+                   id.error().remedy};
+    }
+    bodies_.push_back(id.value());
+    if (body.dynamic && !world_->mass(id.value()).from_closed_mesh) {
+      warnings_.push_back(
+          fmt::format("the mesh of '{}' encloses no volume: its inertia is that of its bounding box", body.name));
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<Error> Simulation::add_hand() {
+  std::optional<haptics::Hand> hand;
+  if (scene_.device) {
+    const haptics::DeviceRequest request{&scene_.device->settings, scene_.base_directory};
+    auto device = haptics::make_device(scene_.device->type, request);
+    if (!device) return device.error();
+    device_ = std::make_unique<haptics::RecordingDevice>(std::move(device).value(), ticks_);
+    if (auto error = device_->open()) return error;
+    haptics::DeviceSpec spec = device_->spec();
+    if (scene_.device->physical_damping_ns_per_m)
+      spec.physical_damping_ns_per_m = *scene_.device->physical_damping_ns_per_m;
+    const haptics::VirtualCoupling& coupling = *scene_.effects.virtual_coupling;
+    if (auto warning = haptics::passivity_warning(coupling, spec, scene_.loop.period_s()))
+      warnings_.push_back(*warning);
+    const auto follows =
+        std::find_if(scene_.bodies.begin(), scene_.bodies.end(), [](const Body& b) { return b.follows_device; });
+    tool_ = bodies_[static_cast<std::size_t>(follows - scene_.bodies.begin())];
+    hand = haptics::Hand{device_.get(), *tool_, coupling, scene_.device->limits};
+  }
+  renderer_ = std::make_unique<haptics::Renderer>(*world_, hand, options_.allocations);
+  if (!renderer_->begin()) {
+    return Error{scene_.file, scene_.device->place.text(),
+                 fmt::format("the device '{}' gives no position: {}", scene_.device->name, device_->last_error()),
+                 "check the device"};
+  }
+  return std::nullopt;
+}
+
+ode::Coupling Simulation::pull_at(std::int64_t now_ns) {
+  haptics::DeviceState state;
+  if (!device_ || !device_->read(now_ns, state)) return {};
+  return static_cast<const haptics::VirtualCoupling&>(*scene_.effects.virtual_coupling).towards(state);
+}
+
+PoseTrack Simulation::make_pose_track() const {
+  const double stride = std::round(1.0 / (pose_rate_hz * scene_.loop.period_s()));
+  std::vector<ode::BodyId> moving;
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    if (!scene_.bodies[i].dynamic) continue;
+    moving.push_back(bodies_[i]);
+    names.push_back(scene_.bodies[i].name);
+  }
+  return {std::move(moving), std::move(names), static_cast<std::uint64_t>(std::max(1.0, stride)), ticks_};
+}
+
+void Simulation::run_loop(const std::stop_token& stop, RunOutcome& outcome) {
+  std::optional<realtime::Recorder<TickRecord>> recorder;
+  realtime::SimulatedTime simulated;
+  realtime::TimeSource time = simulated.source();
+  if (!options_.simulated_time) {
+    const auto ring = static_cast<std::size_t>(std::max(256.0, 1.0 / scene_.loop.period_s()));
+    recorder.emplace(ring, [&](std::span<const TickRecord> batch) {
+      outcome.ticks.insert(outcome.ticks.end(), batch.begin(), batch.end());
+    });
+    realtime::ThreadRequest request = scene_.loop.thread;
+    request.timer_slack_ns = timer_slack_ns;
+    request.prefault_stack_bytes = stack_bytes;
+    outcome.thread = realtime::set_up_this_thread(request);
+    time = realtime::real_time();
+  }
+  renderer_->warm_up(warm_up_ticks);
+  if (device_) device_->enable_forces(true);
+  const realtime::LoopPlan plan{scene_.loop.period_ns, ticks_};
+  outcome.loop = realtime::run_periodic(plan, time, stop, [&](const realtime::Tick& tick) noexcept {
+    TickRecord record;
+    const realtime::ThreadUsage before = realtime::thread_usage();
+    const auto now_ns = static_cast<std::int64_t>(tick.index) * plan.period_ns;
+    renderer_->tick(now_ns, record);
+    record.done_ns = time.clock();
+    note_usage(realtime::thread_usage() - before, record);
+    record.tick = tick.index;
+    record.planned_ns = tick.planned_ns;
+    record.woke_ns = tick.woke_ns;
+    record.skipped_before = tick.skipped_before;
+    outcome.poses.note(tick.index, now_ns, *world_);
+    if (recorder) {
+      recorder->push(record);
+    } else {
+      outcome.ticks.push_back(record);  // within what was reserved
+    }
+  });
+  if (recorder) {
+    recorder->finish();
+    outcome.records_lost = recorder->dropped();
+  }
+}
+
+RunOutcome Simulation::run(const std::stop_token& stop) {
+  RunOutcome outcome;
+  outcome.ticks.resize(ticks_);  // touches the pages
+  outcome.ticks.clear();
+  outcome.poses = make_pose_track();
+  // A thread of its own: real-time priority and processor must not stay with the caller.
+  std::thread([&] { run_loop(stop, outcome); }).join();
+  if (device_) {
+    device_->enable_forces(false);
+    outcome.device_track = device_->track();
+  }
+  if (const haptics::SafetyCounts* counts = renderer_->safety_counts()) outcome.safety = *counts;
+  outcome.failed_reads = renderer_->failed_reads();
+  outcome.rescued_steps = renderer_->rescued_steps();
+  outcome.contacts_left_out = renderer_->contacts_left_out();
+  return outcome;
+}
+
+}  // namespace odds::scene

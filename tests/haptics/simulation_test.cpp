@@ -1,0 +1,216 @@
+// A whole scene in simulated time: the same forces bit for bit, no memory taken, only the effects that were asked for.
+#include "odds/scene/simulation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <filesystem>
+
+#include "odds/scene/explain.hpp"
+#include "support/allocation_counter.hpp"
+#include "support/sanitizer.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace odds::scene {
+namespace {
+
+const std::string world = R"(
+[loop]
+seconds = 0.6
+[query]
+budget_us = 60
+[[mesh]]
+name = "terrain"
+file = "made:terrain:side=0.3,height=0.01,depth=0.03,cells=48"
+[[mesh]]
+name = "ball"
+file = "made:icosphere:radius=0.01"
+[[body]]
+name = "terrain"
+mesh = "terrain"
+[[body]]
+name = "ball"
+mesh = "ball"
+motion = "dynamic"
+mass_kg = 0.05
+device = "hand"
+)";
+const std::string scripted = R"(
+[device.hand]
+type = "scripted"
+position_m = [-0.03, 0, 0.03]
+[[device.hand.motion]]
+kind = "slide"
+duration_s = 0.2
+by_m = [0, 0, -0.03]
+[[device.hand.motion]]
+kind = "slide"
+duration_s = 0.4
+by_m = [0.06, 0.01, 0]
+turn_rad = 0.4
+)";
+const std::string effects = "[effects.contact]\n[effects.friction]\nmu = 0.3\n[effects.virtual_coupling]\n";
+
+std::uint64_t thread_allocations() noexcept;
+thread_local const support::AllocationCounter* counter_of_thread = nullptr;
+std::uint64_t thread_allocations() noexcept {
+  return counter_of_thread != nullptr ? counter_of_thread->allocations() : 0;
+}
+
+Scene scene(const std::string& text, const std::filesystem::path& base = ".") {
+  Result<Scene> parsed = parse_scene("format = \"odds.scene/1\"\n" + text, "test.toml", base);
+  EXPECT_TRUE(parsed.ok()) << parsed.error().message();
+  return std::move(parsed).value();
+}
+
+std::unique_ptr<Simulation> simulated(const std::string& text, const std::filesystem::path& base = ".") {
+  SimulationOptions options;
+  options.simulated_time = true;
+  auto made = Simulation::make(scene(text, base), options);
+  EXPECT_TRUE(made.ok()) << made.error().message();
+  return std::move(made).value();
+}
+
+bool same_forces(const std::vector<haptics::TickRecord>& a, const std::vector<haptics::TickRecord>& b) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (std::memcmp(a[i].force_n.data(), b[i].force_n.data(), 24) != 0) return false;
+    if (std::memcmp(a[i].torque_nm.data(), b[i].torque_nm.data(), 24) != 0) return false;
+    if (std::memcmp(a[i].tool_position_m.data(), b[i].tool_position_m.data(), 24) != 0) return false;
+    if (a[i].node_pairs != b[i].node_pairs || a[i].contacts != b[i].contacts) return false;
+  }
+  return true;
+}
+
+double largest_force(const RunOutcome& outcome) {
+  double largest = 0.0;
+  for (const haptics::TickRecord& tick : outcome.ticks) {
+    largest = std::max(largest, Vec3(tick.force_n[0], tick.force_n[1], tick.force_n[2]).norm());
+  }
+  return largest;
+}
+
+TEST(Simulation, GivesTheSameForcesBitForBitOnEveryRun) {
+  const RunOutcome first = simulated(world + scripted + effects)->run();
+  const RunOutcome second = simulated(world + scripted + effects)->run();
+  ASSERT_EQ(first.ticks.size(), 600U);
+  EXPECT_GT(largest_force(first), 0.2) << "the scene must touch, or it shows nothing";
+  EXPECT_TRUE(same_forces(first.ticks, second.ticks));
+}
+
+TEST(Simulation, ARecordedDeviceReplaysToTheSameForces) {
+  const testing::TemporaryFolder folder;
+  const RunOutcome original = simulated(world + scripted + effects)->run();
+  ASSERT_FALSE(haptics::write_track(folder / "device.csv", original.device_track).has_value());
+  const std::string replayed = "[device.hand]\ntype = \"replay\"\nfile = \"device.csv\"\n";
+  const RunOutcome again = simulated(world + replayed + effects, folder.path())->run();
+  EXPECT_TRUE(same_forces(original.ticks, again.ticks));
+}
+
+TEST(Simulation, TakesNoMemoryInATick) {
+  if (!support::counts_allocations) GTEST_SKIP() << "a sanitizer owns the allocator";
+  const auto simulation = simulated(world + scripted + effects);
+  ASSERT_TRUE(simulation->renderer().warm_up(8));
+  const support::AllocationCounter counter;
+  std::uint32_t contacts = 0;
+  for (std::int64_t i = 0; i < 600; ++i) {
+    haptics::TickRecord record;
+    simulation->renderer().tick(i * 1'000'000, record);
+    contacts += record.contacts;
+  }
+  EXPECT_EQ(counter.allocations(), 0U);
+  EXPECT_GT(contacts, 100U);
+}
+
+TEST(Simulation, CountsWhatATickTakesIfThereIsACounter) {
+  if (!support::counts_allocations) GTEST_SKIP() << "a sanitizer owns the allocator";
+  const support::AllocationCounter counter;
+  counter_of_thread = &counter;
+  SimulationOptions options;
+  options.simulated_time = true;
+  options.allocations = &thread_allocations;
+  auto counted = Simulation::make(scene(world + scripted + effects), options);
+  ASSERT_TRUE(counted.ok());
+  haptics::TickRecord record;
+  counted.value()->renderer().tick(0, record);
+  EXPECT_EQ(record.allocations, 0U);
+  haptics::TickRecord uncounted;
+  simulated(world + scripted + effects)->renderer().tick(0, uncounted);
+  EXPECT_EQ(uncounted.allocations, haptics::not_measured);
+  counter_of_thread = nullptr;
+}
+
+TEST(Simulation, WithoutTheContactTableNothingIsCollided) {
+  const RunOutcome outcome = simulated(world + scripted + "[effects.virtual_coupling]\n")->run();
+  for (const haptics::TickRecord& tick : outcome.ticks) {
+    ASSERT_EQ(tick.queries, 0U);
+    ASSERT_EQ(tick.contacts, 0U);
+    ASSERT_EQ(tick.node_pairs, 0U);
+  }
+  EXPECT_LT(outcome.ticks.back().tool_position_m[2], 0.001) << "the tool must pass through";
+}
+
+TEST(Simulation, ForcesStayWithinTheLimitsOfTheScene) {
+  const std::string limited = scripted.substr(0, scripted.find("[[")) +
+                              "max_force_n = 0.1\nmax_force_slew_n_per_s = 20\n" + scripted.substr(scripted.find("[["));
+  const RunOutcome outcome = simulated(world + limited + effects)->run();
+  EXPECT_LE(largest_force(outcome), 0.1 * (1 + 1e-12));
+  EXPECT_GT(outcome.safety.force_clamped, 10U);
+  for (std::size_t i = 1; i < outcome.ticks.size(); ++i) {
+    const auto& a = outcome.ticks[i - 1].force_n;
+    const auto& b = outcome.ticks[i].force_n;
+    EXPECT_LE((Vec3(a[0], a[1], a[2]) - Vec3(b[0], b[1], b[2])).norm(), 0.02 * (1 + 1e-9)) << i;
+  }
+}
+
+TEST(Simulation, FadesTheForceWhenTheTrackEnds) {
+  const testing::TemporaryFolder folder;
+  RunOutcome original = simulated(world + scripted + effects)->run();
+  original.device_track.states.resize(400);
+  ASSERT_FALSE(haptics::write_track(folder / "device.csv", original.device_track).has_value());
+  const RunOutcome cut =
+      simulated(world + "[device.hand]\ntype = \"replay\"\nfile = \"device.csv\"\n" + effects, folder.path())->run();
+  EXPECT_GT(cut.safety.stale, 100U);
+  const auto& last = cut.ticks.back().force_n;
+  EXPECT_EQ(Vec3(last[0], last[1], last[2]).norm(), 0.0);
+}
+
+TEST(Simulation, NamesTheMissingMeshThePlacesTriedAndThePackage) {
+  SimulationOptions options;
+  options.simulated_time = true;
+  const std::string text =
+      "search = [\"${ODDS_NO_SUCH_VARIABLE}/x\", \"meshes\"]\n[[mesh]]\nname = \"m\"\nfile = \"bike.obj\"\n"
+      "package = \"bikes\"\n[[body]]\nname = \"b\"\nmesh = \"m\"\n[effects.contact]\n";
+  const auto made = Simulation::make(scene(text, "dir"), options);
+  ASSERT_FALSE(made.ok());
+  EXPECT_EQ(made.error().place, "3:1");
+  for (const char* part : {"dir/bike.obj", "dir/meshes/bike.obj", "install the package 'bikes'"}) {
+    EXPECT_NE(made.error().message().find(part), std::string::npos) << made.error().message();
+  }
+}
+
+TEST(Simulation, KeepsThePosesOfMovingBodies) {
+  const RunOutcome outcome = simulated(world + scripted + effects)->run();
+  const auto rows = outcome.poses.rows();
+  ASSERT_EQ(rows.size(), 60U);  // 100 Hz
+  EXPECT_EQ(outcome.poses.names(), std::vector<std::string>{"ball"});
+  const auto& tick = outcome.ticks[rows[30].tick];
+  EXPECT_EQ(rows[30].position_m.x(), tick.tool_position_m[0]);
+}
+
+TEST(Explain, SaysWhichEffectsAreOnAndWhichLineAsked) {
+  const auto explanation = explain(scene(world + scripted + effects), 20);
+  ASSERT_TRUE(explanation.ok()) << explanation.error().message();
+  EXPECT_EQ(explanation.value().ticks, 600U);
+  std::size_t on = 0;
+  for (const EffectLine& effect : explanation.value().effects) {
+    on += effect.on ? 1 : 0;
+    EXPECT_EQ(effect.place.line > 0, effect.on) << effect.name;
+    EXPECT_EQ(effect.samples > 0, effect.on) << effect.name;
+    EXPECT_EQ(effect.work.empty(), !effect.on) << effect.name;
+  }
+  EXPECT_EQ(on, 3U);
+}
+
+}  // namespace
+}  // namespace odds::scene

@@ -1,0 +1,295 @@
+// The physics world: springs that hold what they promise, contacts that rest, memory taken once.
+#include "odds/ode/world.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "odds/mesh/made/by_name.hpp"
+#include "support/allocation_counter.hpp"
+
+namespace odds::ode {
+namespace {
+
+std::shared_ptr<const query::Shape> shape(const std::string& made) {
+  Result<mesh::TriangleMesh> mesh = mesh::made::make_shape(made);
+  EXPECT_TRUE(mesh.ok()) << mesh.error().message();
+  auto built = query::Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(mesh).value()));
+  EXPECT_TRUE(built.ok());
+  return std::move(built).value();
+}
+
+const std::shared_ptr<const query::Shape>& cube() {  // 0.1 m, 1 kg at 1000 kg/m3
+  static const auto made = shape("made:box:x=0.1,y=0.1,z=0.1");
+  return made;
+}
+const std::shared_ptr<const query::Shape>& floor_plate() {  // top at z = 0.05
+  static const auto made = shape("made:box:x=2,y=2,z=0.1,cells=8");
+  return made;
+}
+
+WorldOptions repeatable_options() {
+  WorldOptions options;
+  options.query.budget = query::Budget::work(100000);
+  return options;
+}
+
+World make(const WorldOptions& options) {
+  Result<World> world = World::make(options);
+  EXPECT_TRUE(world.ok());
+  return std::move(world).value();
+}
+
+math::Pose at(double x, double y, double z) { return {Mat3::Identity(), Vec3(x, y, z)}; }
+
+Coupling pull(const math::Pose& target, double k, double b, double k_r = 1.0, double b_r = 0.01) {
+  Coupling coupling;
+  coupling.target = target;
+  coupling.stiffness_n_per_m = k;
+  coupling.damping_ns_per_m = b;
+  coupling.angular_stiffness_nm_per_rad = k_r;
+  coupling.angular_damping_nms_per_rad = b_r;
+  return coupling;
+}
+
+TEST(WorldMass, OfAClosedMeshFollowsFromItsVolume) {
+  World world = make(repeatable_options());
+  const auto id = world.add_dynamic(cube(), at(0, 0, 0), {.mass_kg = 0.0, .density_kg_per_m3 = 1000.0}, "cube");
+  ASSERT_TRUE(id.ok()) << id.error().message();
+  const MassProperties& mass = world.mass(id.value());
+  EXPECT_TRUE(mass.from_closed_mesh);
+  EXPECT_NEAR(mass.mass_kg, 1.0, 1e-12);
+  EXPECT_LT((mass.inertia_kg_m2 - Mat3::Identity() * (1.0 * 0.01 / 6.0)).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST(WorldMass, OfAnOpenMeshNeedsKilogramsAndTakesTheBoundingBox) {
+  World world = make(repeatable_options());
+  const auto sheet = shape("made:terrain:cells=4,side=1,height=0.1");
+  const auto refused = world.add_dynamic(sheet, at(0, 0, 0), {}, "sheet");
+  ASSERT_FALSE(refused.ok());
+  EXPECT_NE(refused.error().remedy.find("kilograms"), std::string::npos);
+  const auto id = world.add_dynamic(sheet, at(0, 0, 0), {.mass_kg = 0.5}, "sheet");
+  ASSERT_TRUE(id.ok());
+  EXPECT_FALSE(world.mass(id.value()).from_closed_mesh);
+}
+
+TEST(WorldMass, CentreAwayFromTheOriginDoesNotMoveTheMesh) {
+  World world = make(repeatable_options());
+  const auto peg = shape("made:peg");  // its centre of mass lies far from its tip
+  const math::Pose pose = math::Pose::from_quaternion(Vec3(1, 2, 3), Quat(0.5, 0.5, -0.5, 0.5));
+  const auto id = world.add_dynamic(peg, pose, {.mass_kg = 0.1}, "peg");
+  ASSERT_TRUE(id.ok());
+  EXPECT_GT(world.mass(id.value()).center_m.z(), 0.02);
+  EXPECT_LT((world.state(id.value()).pose.translation - pose.translation).norm(), 1e-14);
+  EXPECT_LT((world.state(id.value()).pose.rotation - pose.rotation).cwiseAbs().maxCoeff(), 1e-14);
+}
+
+TEST(WorldCoupling, HoldsAWeightByItsStiffness) {
+  WorldOptions options = repeatable_options();
+  options.gravity_m_per_s2 = Vec3(0, 0, -9.81);
+  World world = make(options);
+  const BodyId body = world.add_dynamic(cube(), at(0, 0, 0), {.mass_kg = 0.2}, "cube").value();
+  world.add_coupling(body);
+  ASSERT_FALSE(world.prepare().has_value());
+  for (int i = 0; i < 5000; ++i) {
+    world.set_coupling(body, pull(at(0, 0, 0), 500, 10));
+    world.step();
+  }
+  EXPECT_NEAR(world.state(body).pose.translation.z(), -0.2 * 9.81 / 500, 1e-9);
+  EXPECT_LT((world.coupling_wrench(body).force_n - Vec3(0, 0, 0.2 * 9.81)).norm(), 1e-6);
+}
+
+TEST(WorldCoupling, TurnsABodyToItsTarget) {
+  World world = make(repeatable_options());
+  const BodyId body = world.add_dynamic(cube(), at(0, 0, 0), {.mass_kg = 0.2}, "cube").value();
+  world.add_coupling(body);
+  ASSERT_FALSE(world.prepare().has_value());
+  const Quat target(Eigen::AngleAxisd(2.0, Vec3(1, 2, -1).normalized()));
+  for (int i = 0; i < 5000; ++i) {
+    world.set_coupling(body, pull(math::Pose::from_quaternion(Vec3(0.1, 0, 0), target), 500, 10, 1.0, 0.05));
+    world.step();
+  }
+  EXPECT_LT(Quat(world.state(body).pose.rotation).angularDistance(target), 1e-6);
+  EXPECT_LT((world.state(body).pose.translation - Vec3(0.1, 0, 0)).norm(), 1e-6);
+}
+
+RC_GTEST_PROP(WorldCoupling, NeverGainsEnergyWhateverItsParameters, ()) {
+  const double k = std::pow(10.0, *rc::gen::inRange(0, 7));
+  const double b = std::pow(10.0, *rc::gen::inRange(-3, 4));
+  const double mass = std::pow(10.0, *rc::gen::inRange(-4, 3));
+  World world = make(repeatable_options());
+  const BodyId body = world.add_dynamic(cube(), at(0.02, -0.01, 0.005), {.mass_kg = mass}, "cube").value();
+  world.add_coupling(body);
+  RC_ASSERT(!world.prepare().has_value());
+  const auto energy = [&] {
+    const BodyState state = world.state(body);
+    return 0.5 * mass * state.velocity_m_per_s.squaredNorm() + 0.5 * k * state.pose.translation.squaredNorm();
+  };
+  double last = energy();
+  for (int i = 0; i < 300; ++i) {
+    world.set_coupling(body, pull(at(0, 0, 0), k, b));
+    world.step();
+    const double now = energy();
+    RC_ASSERT(now <= last * (1 + 1e-9) + 1e-15);
+    last = now;
+  }
+}
+
+TEST(WorldContact, ABoxRestsOnAPlateAsDeepAsTheStiffnessSays) {
+  WorldOptions options = repeatable_options();
+  options.gravity_m_per_s2 = Vec3(0, 0, -9.81);
+  options.contact.stiffness_n_per_m = 5000;
+  options.contact.damping_ns_per_m = 50;
+  options.contact.friction = 0.5;
+  World world = make(options);
+  ASSERT_TRUE(world.add_fixed(floor_plate(), at(0, 0, 0), "floor").ok());
+  const BodyId body = world.add_dynamic(cube(), at(0, 0, 0.1005), {.mass_kg = 0.5}, "cube").value();
+  ASSERT_FALSE(world.prepare().has_value());
+  StepSummary last;
+  for (int i = 0; i < 3000; ++i) last = world.step();
+  EXPECT_EQ(last.queries, 1U);
+  EXPECT_EQ(last.verdict, query::Verdict::hit);
+  EXPECT_GE(last.contacts, 1U);
+  EXPECT_NEAR(world.state(body).pose.translation.z(), 0.1 - 0.5 * 9.81 / 5000, 3e-4);
+  EXPECT_LT(world.state(body).velocity_m_per_s.norm(), 5e-3);
+  EXPECT_LT(world.state(body).pose.translation.head<2>().norm(), 5e-3);
+}
+
+double slid(double mu) {
+  WorldOptions options = repeatable_options();
+  options.gravity_m_per_s2 = Vec3(3.0, 0, -9.81);  // a slope of tan 0.306
+  options.contact.friction = mu;
+  World world = make(options);
+  EXPECT_TRUE(world.add_fixed(floor_plate(), at(0, 0, 0), "floor").ok());
+  const BodyId body = world.add_dynamic(cube(), at(0, 0, 0.0998), {.mass_kg = 0.5}, "cube").value();
+  EXPECT_FALSE(world.prepare().has_value());
+  for (int i = 0; i < 500; ++i) world.step();
+  return world.state(body).pose.translation.x();
+}
+
+TEST(WorldContact, FrictionHoldsOnASlopeThatIsFlatterThanItsAngle) {
+  EXPECT_LT(slid(0.6), 0.01);
+  EXPECT_NEAR(slid(0.0), 0.5 * 3.0 * 0.25, 0.02);
+  const double braked = slid(0.15);  // a = 3.0 - 0.15 * 9.81
+  EXPECT_NEAR(braked, 0.5 * (3.0 - 0.15 * 9.81) * 0.25, 0.03);
+}
+
+TEST(WorldContact, SwitchedOffNothingIsCollided) {
+  WorldOptions options = repeatable_options();
+  options.contact.enabled = false;
+  options.gravity_m_per_s2 = Vec3(0, 0, -9.81);
+  World world = make(options);
+  ASSERT_TRUE(world.add_fixed(floor_plate(), at(0, 0, 0), "floor").ok());
+  const BodyId body = world.add_dynamic(cube(), at(0, 0, 0.1), {.mass_kg = 0.5}, "cube").value();
+  ASSERT_FALSE(world.prepare().has_value());
+  std::uint32_t queries = 0;
+  for (int i = 0; i < 100; ++i) queries += world.step().queries;
+  EXPECT_EQ(queries, 0U);
+  EXPECT_LT(world.state(body).pose.translation.z(), 0.06);
+}
+
+TEST(WorldContact, ATwoWayPressBalancesAndStaysBounded) {
+  WorldOptions options = repeatable_options();
+  World world = make(options);
+  ASSERT_TRUE(world.add_fixed(floor_plate(), at(0, 0, 0), "floor").ok());
+  const BodyId body = world.add_dynamic(cube(), at(0, 0, 0.11), {.mass_kg = 0.1}, "cube").value();
+  world.add_coupling(body);
+  ASSERT_FALSE(world.prepare().has_value());
+  double fastest = 0.0;
+  for (int i = 0; i < 3000; ++i) {
+    world.set_coupling(body, pull(at(0, 0, 0.09), 500, 3));  // asks for 10 mm inside
+    world.step();
+    fastest = std::max(fastest, world.state(body).velocity_m_per_s.norm());
+  }
+  // Two springs in series: 500 N/m and the contact's 20000 N/m over 10 mm.
+  const double expected = 0.01 * 500.0 * 20000.0 / 20500.0;
+  EXPECT_NEAR(-world.coupling_wrench(body).force_n.z(), expected, 0.1 * expected);
+  EXPECT_LT(fastest, 1.0);
+}
+
+TEST(WorldContact, AToolThatBeginsInsideLeavesWithoutAnExplosion) {
+  World world = make(repeatable_options());
+  ASSERT_TRUE(world.add_fixed(floor_plate(), at(0, 0, 0), "floor").ok());
+  const BodyId body = world.add_dynamic(cube(), at(0.013, 0.007, 0.03), {.mass_kg = 0.01}, "cube").value();
+  world.add_coupling(body);
+  ASSERT_FALSE(world.prepare().has_value());
+  for (int i = 0; i < 2000; ++i) {
+    world.set_coupling(body, pull(at(0.013, 0.007, 0.03), 1000, 3));
+    const StepSummary step = world.step();
+    const BodyState state = world.state(body);
+    ASSERT_TRUE(state.pose.translation.allFinite());
+    ASSERT_LE(state.velocity_m_per_s.norm(), world.options().max_speed_m_per_s * (1 + 1e-12));
+    ASSERT_LT(state.pose.translation.norm(), 1.0);
+    ASSERT_LT(world.coupling_wrench(body).force_n.norm(), 500.0);
+    ASSERT_EQ(step.bodies_recovered, 0U);
+  }
+}
+
+TEST(World, TakesNoMemoryInAStepAfterPrepare) {
+  if (!support::counts_allocations) GTEST_SKIP() << "a sanitizer owns the allocator";
+  for (const Solver solver : {Solver::exact, Solver::iterative}) {
+    WorldOptions options = repeatable_options();
+    options.solver = solver;
+    options.contact.friction = 0.3;
+    options.gravity_m_per_s2 = Vec3(0, 0, -9.81);
+    World world = make(options);
+    ASSERT_TRUE(world.add_fixed(floor_plate(), at(0, 0, 0), "floor").ok());
+    std::vector<BodyId> bodies;
+    for (int i = 0; i < 3; ++i) {
+      bodies.push_back(world.add_dynamic(cube(), at(0.02 * i, 0, 0.12 + 0.11 * i), {.mass_kg = 0.2}, "cube").value());
+    }
+    world.add_coupling(bodies[0]);
+    ASSERT_FALSE(world.prepare().has_value());
+    const support::AllocationCounter counter;
+    std::uint32_t most = 0;
+    for (int i = 0; i < 1000; ++i) {
+      world.set_coupling(bodies[0], pull(at(0, 0, 0.095), 500, 3));
+      most = std::max(most, world.step().contacts);
+    }
+    EXPECT_EQ(counter.allocations(), 0U) << (solver == Solver::exact ? "exact" : "iterative");
+    EXPECT_GE(most, 8U);
+  }
+}
+
+TEST(World, IgnoresWrenchesAndCouplingsThatAreNotFinite) {
+  World world = make(repeatable_options());
+  const BodyId body = world.add_dynamic(cube(), at(0, 0, 0), {.mass_kg = 0.2}, "cube").value();
+  world.add_coupling(body);
+  ASSERT_FALSE(world.prepare().has_value());
+  const double nan = std::nan("");
+  world.apply(body, {Vec3(nan, 0, 0), Vec3::Zero()});
+  world.set_coupling(body, pull(at(nan, 0, 0), 500, 3));
+  world.set_state(body, {at(nan, 0, 0), Vec3::Zero(), Vec3::Zero()});
+  world.step();
+  EXPECT_EQ(world.state(body).pose.translation, Vec3::Zero());
+}
+
+TEST(World, HoldsBodiesToTheGreatestSpeed) {
+  WorldOptions options = repeatable_options();
+  options.max_speed_m_per_s = 3.0;
+  World world = make(options);
+  const BodyId body = world.add_dynamic(cube(), at(0, 0, 0), {.mass_kg = 0.001}, "cube").value();
+  ASSERT_FALSE(world.prepare().has_value());
+  world.apply(body, {Vec3(1e6, 0, 0), Vec3::Zero()});
+  EXPECT_EQ(world.step().bodies_slowed, 1U);
+  EXPECT_NEAR(world.state(body).velocity_m_per_s.norm(), 3.0, 1e-12);
+}
+
+TEST(World, RefusesUnlikeBoundingVolumesWithTheirNames) {
+  World world = make(repeatable_options());
+  query::ShapeOptions options;
+  options.volume = volume::Kind::sphere;
+  auto mesh = std::make_shared<const mesh::TriangleMesh>(std::move(mesh::made::make_shape("made:box")).value());
+  const auto spheres = query::Shape::build(mesh, options).value();
+  ASSERT_TRUE(world.add_fixed(floor_plate(), at(0, 0, 0), "floor").ok());
+  ASSERT_TRUE(world.add_dynamic(spheres, at(0, 0, 1), {.mass_kg = 1.0}, "ball").ok());
+  const auto error = world.prepare();
+  ASSERT_TRUE(error.has_value());
+  EXPECT_NE(error->what.find("'floor' and 'ball'"), std::string::npos) << error->what;
+}
+
+}  // namespace
+}  // namespace odds::ode
