@@ -21,6 +21,8 @@ int main(int argc, char** argv) {
   odds::tool::Action action;
   odds::tool::add_inspect(app, action);
   odds::tool::add_query(app, action);
+  odds::tool::add_run(app, action);
+  odds::tool::add_explain(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& parse_error) {

@@ -1,0 +1,64 @@
+// Writing the replay folder.
+#include "tool/replay_folder.hpp"
+
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "odds/haptics/device_track.hpp"
+
+namespace odds::tool {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json describe(const scene::Simulation& simulation, const report::RunInfo& info) {
+  const scene::Scene& scene = simulation.scene();
+  ordered_json json;
+  json["format"] = "odds.replay/1";
+  json["units"] = "SI: metres, seconds (t_ns: nanoseconds since the first tick), newton; quaternions w x y z";
+  json["scene"] = info.scene;
+  json["version"] = info.version;
+  json["period_ns"] = info.period_ns;
+  json["simulated_time"] = info.simulated_time;
+  constexpr std::uint64_t no_limit = std::numeric_limits<std::uint64_t>::max();
+  const query::Budget& budget = simulation.budget();
+  json["budget_us"] = std::isfinite(budget.microseconds) ? ordered_json(budget.microseconds) : ordered_json(nullptr);
+  json["work_units"] = budget.work_units == no_limit ? ordered_json(nullptr) : ordered_json(budget.work_units);
+  for (const scene::Mesh& mesh : scene.meshes) {
+    json["meshes"].push_back({{"name", mesh.name}, {"file", mesh.file}, {"scale", mesh.scale}});
+  }
+  for (const scene::Body& body : scene.bodies) {
+    const Vec3& p = body.pose.translation;
+    const Quat q(body.pose.rotation);
+    json["bodies"].push_back({{"name", body.name},
+                              {"mesh", scene.meshes[body.mesh].name},
+                              {"moves", body.dynamic},
+                              {"follows_device", body.follows_device},
+                              {"position_m", {p.x(), p.y(), p.z()}},
+                              {"orientation_wxyz", {q.w(), q.x(), q.y(), q.z()}}});
+  }
+  return json;
+}
+
+}  // namespace
+
+std::optional<Error> write_replay_folder(const std::filesystem::path& folder, const scene::Simulation& simulation,
+                                         const report::RunInfo& info, const scene::RunOutcome& outcome) {
+  std::error_code code;
+  std::filesystem::create_directories(folder, code);
+  if (code) return Error{folder.string(), "", "cannot be made: " + code.message(), "give another --out"};
+  if (!outcome.device_track.states.empty()) {
+    if (auto error = haptics::write_track(folder / "device.csv", outcome.device_track)) return error;
+  }
+  if (auto error = outcome.poses.write(folder / "poses.csv")) return error;
+  const std::filesystem::path side_car = folder / "replay.json";
+  std::ofstream file(side_car, std::ios::binary);
+  file << describe(simulation, info).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
+  file.flush();
+  if (!file)
+    return Error{side_car.string(), "", "cannot be written", "check the folder, its permissions and the free space"};
+  return std::nullopt;
+}
+
+}  // namespace odds::tool

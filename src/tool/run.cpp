@@ -1,0 +1,144 @@
+// odds run: the loop on a scene, and the files that it leaves behind.
+#include <fmt/core.h>
+#include <signal.h>
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "odds/realtime/fitness.hpp"
+#include "odds/realtime/host.hpp"
+#include "odds/report/run_report.hpp"
+#include "odds/scene/scene.hpp"
+#include "odds/scene/simulation.hpp"
+#include "tool/allocation_probe.hpp"
+#include "tool/build_progress.hpp"
+#include "tool/command.hpp"
+#include "tool/replay_folder.hpp"
+#include "tool/run_table.hpp"
+
+namespace odds::tool {
+namespace {
+
+struct RunArguments {
+  std::string scene;
+  std::optional<double> seconds;
+  std::string out = "odds_run";
+  bool fast = false;
+};
+
+// Ends the run early, but with its reports, on Ctrl-C; shows the time that has passed. SIGINT must be blocked before
+// any other thread starts.
+class Watcher {
+ public:
+  Watcher(double seconds, std::stop_source& stop)
+      : thread_([seconds, &stop](const std::stop_token& ended) {
+          sigset_t interrupt;
+          sigemptyset(&interrupt);
+          sigaddset(&interrupt, SIGINT);
+          const auto start = std::chrono::steady_clock::now();
+          ProgressLine line("loop");
+          while (!ended.stop_requested()) {
+            constexpr timespec look_every{0, 200'000'000};
+            if (sigtimedwait(&interrupt, nullptr, &look_every) == SIGINT) stop.request_stop();
+            const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
+            line.show(std::min(1.0, passed.count() / seconds));
+          }
+        }) {}
+
+  static void block_interrupt() {
+    sigset_t interrupt;
+    sigemptyset(&interrupt);
+    sigaddset(&interrupt, SIGINT);
+    pthread_sigmask(SIG_BLOCK, &interrupt, nullptr);
+  }
+
+ private:
+  std::jthread thread_;
+};
+
+std::vector<std::string> effect_names(const scene::Effects& effects) {
+  std::vector<std::string> names;
+  if (effects.contact) names.emplace_back("contact");
+  if (effects.friction) names.emplace_back("friction");
+  if (effects.gravity) names.emplace_back("gravity");
+  if (effects.virtual_coupling) names.emplace_back("virtual_coupling");
+  if (effects.damping) names.emplace_back("damping");
+  return names;
+}
+
+report::RunInfo describe(const scene::Simulation& simulation, const RunArguments& arguments, double started_epoch_s) {
+  const scene::Scene& scene = simulation.scene();
+  report::RunInfo info;
+  info.scene = scene.file;
+  info.version = ODDS_VERSION;
+  info.started_epoch_s = started_epoch_s;
+  for (const scene::LoadedMesh& mesh : simulation.meshes())
+    info.meshes.push_back({mesh.name, mesh.file, mesh.triangles});
+  info.bounding_volume = volume::name(scene.volume);
+  info.device = scene.device ? scene.device->name + " (" + scene.device->type + ")" : "none";
+  info.effects = effect_names(scene.effects);
+  info.period_ns = scene.loop.period_ns;
+  info.budget_us = simulation.budget().microseconds;
+  info.simulated_time = arguments.fast;
+  info.host = realtime::describe_host();
+  return info;
+}
+
+int run(const RunArguments& arguments) {
+  Result<scene::Scene> scene = scene::read_scene(arguments.scene);
+  if (!scene) return fail(scene.error());
+  scene::SimulationOptions options;
+  options.simulated_time = arguments.fast;
+  options.seconds = arguments.seconds;
+  if (allocations_are_counted()) options.allocations = &allocations_of_this_thread;
+  BuildProgress progress;
+  options.progress = [&](std::string_view what, double share) { progress.show(what, share); };
+  Watcher::block_interrupt();
+  auto made = scene::Simulation::make(std::move(scene).value(), options);
+  progress.done();
+  if (!made) return fail(made.error());
+  scene::Simulation& simulation = *made.value();
+  for (const std::string& warning : simulation.warnings()) fmt::print(stderr, "warning: {}\n", warning);
+
+  const std::chrono::duration<double> epoch = std::chrono::system_clock::now().time_since_epoch();
+  report::RunInfo info = describe(simulation, arguments, epoch.count());
+  if (!arguments.fast) info.fitness = realtime::probe_fitness();
+  std::stop_source stop;
+  scene::RunOutcome outcome;
+  {
+    const Watcher watcher(arguments.seconds.value_or(simulation.scene().loop.seconds), stop);
+    outcome = simulation.run(stop.get_token());
+  }
+  info.loop = outcome.loop;
+  info.thread = outcome.thread;
+  const report::RunSummary summary = report::summarize(info, outcome.ticks);
+  const auto files = report::write_run_report(arguments.out, info, summary, outcome.ticks);
+  if (!files) return fail(files.error());
+  if (auto error = write_replay_folder(std::filesystem::path(arguments.out) / "replay", simulation, info, outcome)) {
+    return fail(*error);
+  }
+  print_run_table(info, summary, outcome);
+  fmt::print("report: {}\n", files.value().page.string());
+  return exit_good;
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, Action& action) {
+  auto arguments = std::make_shared<RunArguments>();
+  CLI::App* command = app.add_subcommand("run", "run the haptic loop on a scene and report its latencies and forces");
+  command->add_option("scene", arguments->scene, "the scene, a TOML file")->required();
+  command->add_option("--seconds", arguments->seconds, "how long to run (default: as the scene says)")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--out", arguments->out, "directory for the report and the replay")->capture_default_str();
+  command->add_flag(
+      "--fast,--simulated", arguments->fast,
+      "simulated time: as fast as possible, budgets in work units, the same forces bit for bit every time");
+  command->callback([&action, arguments] { action = [arguments] { return run(*arguments); }; });
+}
+
+}  // namespace odds::tool

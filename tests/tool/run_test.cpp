@@ -1,0 +1,168 @@
+// The commands `odds run` and `odds explain`, run as a user runs them.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "support/run_tool.hpp"
+#include "support/sanitizer.hpp"
+
+namespace odds {
+namespace {
+
+using testing::contents_of;
+using testing::Ran;
+using testing::run_tool;
+using testing::TemporaryFolder;
+
+const std::string scene = R"(format = "odds.scene/1"
+[loop]
+seconds = 0.3
+[query]
+budget_us = 80
+[[mesh]]
+name = "block"
+file = "made:box:cells=8"
+[[body]]
+name = "floor"
+mesh = "block"
+[[body]]
+name = "tool"
+mesh = "block"
+motion = "dynamic"
+mass_kg = 0.1
+device = "hand"
+[device.hand]
+type = "scripted"
+position_m = [0.01, 0.02, 0.11]
+[[device.hand.motion]]
+kind = "press"
+duration_s = 0.3
+depth_m = 0.015
+[effects.contact]
+[effects.virtual_coupling]
+)";
+
+// The columns of ticks.csv that do not depend on time.
+std::string forces_of(const std::string& csv) {
+  std::istringstream lines(csv);
+  std::string line;
+  std::getline(lines, line);
+  std::vector<bool> wanted;
+  std::istringstream names(line);
+  for (std::string name; std::getline(names, name, ',');) {
+    wanted.push_back(name.starts_with("force_") || name.starts_with("torque_") || name.starts_with("tool_") ||
+                     name == "contacts" || name == "node_pairs");
+  }
+  std::string kept;
+  while (std::getline(lines, line)) {
+    std::istringstream cells(line);
+    std::size_t column = 0;
+    for (std::string cell; std::getline(cells, cell, ','); ++column) {
+      if (column < wanted.size() && wanted[column]) kept += cell + ",";
+    }
+    kept += "\n";
+  }
+  return kept;
+}
+
+TEST(Run, WritesEveryFileAndTheTable) {
+  const TemporaryFolder folder;
+  folder.write("scene.toml", scene);
+  const Ran ran = run_tool(folder, "run scene.toml --fast --out out");
+  ASSERT_EQ(ran.status, 0) << ran.errors;
+  for (const char* file : {"report.html", "latency.hgrm", "ticks.csv", "summary.json", "replay/device.csv",
+                           "replay/poses.csv", "replay/replay.json"}) {
+    EXPECT_GT(contents_of(folder / (std::string("out/") + file)).size(), 50U) << file;
+  }
+  for (const char* line : {"300 of 300 ran", "query, net", "answers (ticks)", "force ", "report: out/report.html"}) {
+    EXPECT_NE(ran.output.find(line), std::string::npos) << line << "\n" << ran.output;
+  }
+  const auto side_car = nlohmann::json::parse(contents_of(folder / "out/replay/replay.json"));
+  EXPECT_EQ(side_car["bodies"].size(), 2U);
+  EXPECT_EQ(side_car["work_units"], 1600);
+}
+
+TEST(Run, AllocatesNothingInATick) {
+  if (support::under_sanitizer) GTEST_SKIP() << "a sanitizer owns the allocator";
+  const TemporaryFolder folder;
+  folder.write("scene.toml", scene);
+  const Ran ran = run_tool(folder, "run scene.toml --fast --out out");
+  ASSERT_EQ(ran.status, 0) << ran.errors;
+  EXPECT_NE(ran.output.find("allocations in ticks   0\n"), std::string::npos) << ran.output;
+}
+
+TEST(Run, FastGivesTheSameForcesTwiceAndFromItsOwnReplay) {
+  const TemporaryFolder folder;
+  folder.write("scene.toml", scene);
+  ASSERT_EQ(run_tool(folder, "run scene.toml --fast --out a").status, 0);
+  ASSERT_EQ(run_tool(folder, "run scene.toml --fast --out b").status, 0);
+  const std::size_t begin = scene.find("[device.hand]");
+  const std::size_t end = scene.find("[effects.contact]");
+  folder.write("replay.toml", scene.substr(0, begin) +
+                                  "[device.hand]\ntype = \"replay\"\nfile = \"a/replay/device.csv\"\n" +
+                                  scene.substr(end));
+  const Ran replayed = run_tool(folder, "run replay.toml --fast --out c");
+  ASSERT_EQ(replayed.status, 0) << replayed.errors;
+  const std::string a = forces_of(contents_of(folder / "a/ticks.csv"));
+  EXPECT_GT(a.size(), 300U * 20U);
+  EXPECT_EQ(a, forces_of(contents_of(folder / "b/ticks.csv")));
+  EXPECT_EQ(a, forces_of(contents_of(folder / "c/ticks.csv")));
+}
+
+TEST(Run, RunsInRealTimeForTheTimeAsked) {
+  const TemporaryFolder folder;
+  folder.write("scene.toml", scene);
+  const Ran ran = run_tool(folder, "run scene.toml --seconds 0.1 --out out");
+  ASSERT_EQ(ran.status, 0) << ran.errors;
+  const auto summary = nlohmann::json::parse(contents_of(folder / "out/summary.json"));
+  EXPECT_NE(ran.output.find("of 100 ran"), std::string::npos) << ran.output;
+  EXPECT_TRUE(summary.is_object());
+}
+
+TEST(Run, RefusesABadSceneInOneLine) {
+  const TemporaryFolder folder;
+  folder.write("bad.toml", "format = \"odds.scene/1\"\n[loop]\nrate = 5\n");
+  const Ran ran = run_tool(folder, "run bad.toml");
+  EXPECT_EQ(ran.status, 1);
+  EXPECT_EQ(ran.errors, "error: bad.toml:3:1: unknown key 'rate' in [loop]; did you mean 'rate_hz'?\n");
+  EXPECT_EQ(run_tool(folder, "run missing.toml").status, 1);
+  EXPECT_EQ(run_tool(folder, "run").status, 2);
+  EXPECT_EQ(run_tool(folder, "run bad.toml --seconds -3").status, 2);
+}
+
+TEST(Run, SaysWhenTheFolderCannotBeWritten) {
+  const TemporaryFolder folder;
+  folder.write("scene.toml", scene);
+  folder.write("out", "a file is in the way");
+  const Ran ran = run_tool(folder, "run scene.toml --fast --out out");
+  EXPECT_EQ(ran.status, 1);
+  EXPECT_NE(ran.errors.find("error: "), std::string::npos) << ran.errors;
+}
+
+TEST(Run, DemoScenesThatNeedNoInstalledMeshesRun) {
+  const TemporaryFolder folder;
+  for (const char* name : {"peg_in_hole", "terrain"}) {
+    const std::string path = std::string(ODDS_SOURCE_DIR) + "/demos/scenes/" + name + ".toml";
+    const Ran ran = run_tool(folder, "run '" + path + "' --fast --seconds 1 --out " + name);
+    EXPECT_EQ(ran.status, 0) << ran.errors;
+    EXPECT_NE(ran.output.find("1000 of 1000 ran"), std::string::npos) << ran.output;
+  }
+}
+
+TEST(Explain, ListsEffectsWithTheLinesThatAsked) {
+  const TemporaryFolder folder;
+  folder.write("scene.toml", scene);
+  const Ran ran = run_tool(folder, "explain scene.toml --samples 5");
+  ASSERT_EQ(ran.status, 0) << ran.errors;
+  for (const char* expected : {"2 of 5 effects are on", "on   virtual_coupling   line 26",
+                               "on   contact            line 25", "off  friction", "no [effects.gravity]"}) {
+    EXPECT_NE(ran.output.find(expected), std::string::npos) << expected << "\n" << ran.output;
+  }
+  folder.write("bad.toml", "format = 1\n");
+  EXPECT_EQ(run_tool(folder, "explain bad.toml").status, 1);
+}
+
+}  // namespace
+}  // namespace odds
