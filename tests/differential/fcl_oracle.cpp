@@ -4,7 +4,7 @@
 #include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/distance.h>
 
-namespace odds::test {
+namespace odds::testing {
 
 struct FclModel::Data {
   fcl::BVHModel<fcl::OBBRSSd> model;
@@ -46,4 +46,4 @@ double fcl_distance(const FclModel& a, const FclModel& b, const math::Pose& pose
   return result.min_distance;
 }
 
-}  // namespace odds::test
+}  // namespace odds::testing

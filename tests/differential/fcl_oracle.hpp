@@ -6,7 +6,7 @@
 #include "odds/math/pose.hpp"
 #include "odds/mesh/triangle_mesh.hpp"
 
-namespace odds::test {
+namespace odds::testing {
 
 /// One mesh in FCL's hierarchy of OBBRSS volumes.
 class FclModel {
@@ -27,4 +27,4 @@ class FclModel {
 /// Surface distance in metres; 0 or negative where they meet.
 [[nodiscard]] double fcl_distance(const FclModel& a, const FclModel& b, const math::Pose& pose_b_in_a);
 
-}  // namespace odds::test
+}  // namespace odds::testing

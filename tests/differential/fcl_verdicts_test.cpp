@@ -19,21 +19,21 @@ TEST_P(AgainstFcl, EveryMethodGivesTheSameVerdicts) {
   auto made = mesh::made::make_shape(name);
   ASSERT_TRUE(made.ok()) << made.error().message();
   const auto mesh = std::make_shared<const mesh::TriangleMesh>(std::move(made).value());
-  const test::FclModel fcl(*mesh);
+  const testing::FclModel fcl(*mesh);
   const auto shape = Shape::build(mesh, {.volume = kind}).value();
   auto pair = std::move(Pair::make(shape, shape)).value();
   const Vec3 center = 0.5 * (mesh->lower() + mesh->upper());
-  std::mt19937_64 generator(2003);
+  math::Random random(2003);
   int hits = 0;
   int queries = 0;
   for (int i = 0; i < 25; ++i) {
-    const auto touching = test::touching_pose(generator, center, center, mesh->size(), [&](const math::Pose& pose) {
-      return test::fcl_collide(fcl, fcl, pose);
+    const auto touching = testing::touching_pose(random, center, center, mesh->size(), [&](const math::Pose& pose) {
+      return testing::fcl_collide(fcl, fcl, pose);
     });
     for (const double band : bands) {
       math::Pose pose = touching.pose;
       pose.translation += band * mesh->size() * touching.direction;
-      const bool expected = test::fcl_collide(fcl, fcl, pose);
+      const bool expected = testing::fcl_collide(fcl, fcl, pose);
       ++queries;
       hits += expected ? 1 : 0;
       for (const Method method : {Method::exact, Method::time_critical, Method::incremental}) {

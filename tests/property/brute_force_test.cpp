@@ -1,8 +1,6 @@
 // Searches against every triangle with every triangle: other places, scales, orders of arguments and of triangles.
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "odds/primitive/triangle_triangle.hpp"
 #include "odds/query/pair.hpp"
 #include "support/near_poses.hpp"
@@ -44,12 +42,12 @@ Pair pair_of(const Mesh& a, const Mesh& b, volume::Kind kind) {
 
 class AgainstBruteForce : public ::testing::TestWithParam<volume::Kind> {
  protected:
-  Mesh a_ = test::wavy_sphere(8, 0.3);
-  Mesh b_ = test::wavy_sphere(6, 0.2);
-  std::mt19937_64 generator_{42};
+  Mesh a_ = testing::wavy_sphere(8, 0.3);
+  Mesh b_ = testing::wavy_sphere(6, 0.2);
+  math::Random random_{42};
 
-  test::TouchingPose touching() {
-    return test::touching_pose(generator_, Vec3::Zero(), Vec3::Zero(), 3.0,
+  testing::TouchingPose touching() {
+    return testing::touching_pose(random_, Vec3::Zero(), Vec3::Zero(), 3.0,
                                [&](const math::Pose& pose) { return brute_force(*a_, *b_, pose); });
   }
 };

@@ -13,7 +13,7 @@ class Incremental : public ::testing::TestWithParam<std::tuple<volume::Kind, std
 
 TEST_P(Incremental, GivesTheVerdictsOfAFreshSearch) {
   const auto [kind, capacity] = GetParam();
-  const auto shape = Shape::build(test::wavy_sphere(20), {.volume = kind}).value();
+  const auto shape = Shape::build(testing::wavy_sphere(20), {.volume = kind}).value();
   auto kept = std::move(Pair::make(shape, shape, {.slice_capacity = capacity})).value();
   auto fresh = std::move(Pair::make(shape, shape)).value();
   std::mt19937 generator(11);
@@ -47,7 +47,7 @@ TEST_P(Incremental, GivesTheVerdictsOfAFreshSearch) {
 
 TEST_P(Incremental, SurvivesABudgetThatEndsItAnywhere) {
   const auto [kind, capacity] = GetParam();
-  const auto shape = Shape::build(test::wavy_sphere(16), {.volume = kind}).value();
+  const auto shape = Shape::build(testing::wavy_sphere(16), {.volume = kind}).value();
   auto kept = std::move(Pair::make(shape, shape, {.slice_capacity = capacity})).value();
   auto fresh = std::move(Pair::make(shape, shape)).value();
   for (std::uint64_t units = 1; units < 600; ++units) {

@@ -34,7 +34,7 @@ std::optional<double> brute_force(const mesh::TriangleMesh& mesh, const Vec3& or
 class Rays : public ::testing::TestWithParam<volume::Kind> {};
 
 TEST_P(Rays, MeetWhatBruteForceMeets) {
-  const auto mesh = test::wavy_sphere(16);
+  const auto mesh = testing::wavy_sphere(16);
   const auto shape = Shape::build(mesh, {.volume = GetParam()}).value();
   std::mt19937 generator(7);
   std::normal_distribution<double> normal;
@@ -55,7 +55,7 @@ TEST_P(Rays, MeetWhatBruteForceMeets) {
 }
 
 TEST_P(Rays, RefuseWhatIsNoRay) {
-  const auto shape = Shape::build(test::wavy_sphere(6), {.volume = GetParam()}).value();
+  const auto shape = Shape::build(testing::wavy_sphere(6), {.volume = GetParam()}).value();
   EXPECT_FALSE(cast_ray(*shape, {NAN, 0, 0}, Vec3::UnitX(), 10));
   EXPECT_FALSE(cast_ray(*shape, {0, 0, 0}, {2, 0, 0}, 10));
   EXPECT_FALSE(cast_ray(*shape, {0, 0, 0}, Vec3::UnitX(), NAN));

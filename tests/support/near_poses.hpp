@@ -4,28 +4,27 @@
 
 #include <cmath>
 #include <functional>
-#include <random>
 
 #include "odds/math/pose.hpp"
+#include "odds/math/random.hpp"
 
-namespace odds::test {
+namespace odds::testing {
 
 /// True if the surfaces meet in this pose of B in A.
 using Collides = std::function<bool(const math::Pose&)>;
 
 struct TouchingPose {
   math::Pose pose;  ///< B just clear of A (within the tolerance of the bisection)
-  Vec3 direction;   ///< unit; moving B along it parts them
+  Vec3 direction = Vec3::UnitX();  ///< unit; moving B along it parts them
 };
 
 /// B comes in from far away along a random line through the centres' neighbourhood; the line's first touch is found by
 /// steps of size/64 and then by bisection to size * 1e-12. `size`: about the larger diameter.
-inline TouchingPose touching_pose(std::mt19937_64& generator, const Vec3& center_a, const Vec3& center_b, double size,
+inline TouchingPose touching_pose(math::Random& random, const Vec3& center_a, const Vec3& center_b, double size,
                                   const Collides& collides) {
-  std::normal_distribution<double> normal;
   for (;;) {
-    const Quat rotation = Quat(normal(generator), normal(generator), normal(generator), normal(generator)).normalized();
-    const Vec3 direction = Vec3(normal(generator), normal(generator), normal(generator)).normalized();
+    const Quat rotation = random.rotation();
+    const Vec3 direction = random.direction();
     const auto at = [&](double distance) {
       math::Pose pose{rotation.toRotationMatrix(), Vec3::Zero()};
       pose.translation = center_a + distance * direction - pose.rotation * center_b;
@@ -46,4 +45,4 @@ inline TouchingPose touching_pose(std::mt19937_64& generator, const Vec3& center
   }
 }
 
-}  // namespace odds::test
+}  // namespace odds::testing

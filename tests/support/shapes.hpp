@@ -8,7 +8,7 @@
 
 #include "odds/mesh/triangle_mesh.hpp"
 
-namespace odds::test {
+namespace odds::testing {
 
 /// Closed unit sphere of `rings` rings with waves of relative height `waves`; outward; no degenerate triangle.
 inline std::shared_ptr<const mesh::TriangleMesh> wavy_sphere(std::uint32_t rings, double waves = 0.1) {
@@ -39,4 +39,4 @@ inline std::shared_ptr<const mesh::TriangleMesh> wavy_sphere(std::uint32_t rings
       std::move(mesh::TriangleMesh::make(std::move(vertices), std::move(triangles), "wavy sphere")).value());
 }
 
-}  // namespace odds::test
+}  // namespace odds::testing

@@ -14,7 +14,7 @@ namespace {
 class PairOfSpheres : public ::testing::TestWithParam<std::tuple<volume::Kind, Method>> {
  protected:
   void SetUp() override {
-    auto shape = Shape::build(test::wavy_sphere(24), {.volume = std::get<0>(GetParam())});
+    auto shape = Shape::build(testing::wavy_sphere(24), {.volume = std::get<0>(GetParam())});
     ASSERT_TRUE(shape.ok());
     auto pair = Pair::make(shape.value(), shape.value());
     ASSERT_TRUE(pair.ok());
@@ -112,15 +112,15 @@ INSTANTIATE_TEST_SUITE_P(AllVolumesAndMethods, PairOfSpheres,
                          });
 
 TEST(Pair, RefusesUnlikeVolumes) {
-  const auto a = Shape::build(test::wavy_sphere(6), {.volume = volume::Kind::aabb});
-  const auto b = Shape::build(test::wavy_sphere(6), {.volume = volume::Kind::obb});
+  const auto a = Shape::build(testing::wavy_sphere(6), {.volume = volume::Kind::aabb});
+  const auto b = Shape::build(testing::wavy_sphere(6), {.volume = volume::Kind::obb});
   const auto pair = Pair::make(a.value(), b.value());
   ASSERT_FALSE(pair.ok());
   EXPECT_NE(pair.error().message().find("same volume"), std::string::npos);
 }
 
 TEST(Shape, KnowsAClosedMeshFromASheet) {
-  const auto closed = test::wavy_sphere(6);
+  const auto closed = testing::wavy_sphere(6);
   EXPECT_TRUE(Shape::build(closed).value()->is_solid());
   const std::vector<Vec3> vertices(closed->vertices().begin(), closed->vertices().end());
   std::vector<mesh::Triangle> triangles(closed->triangles().begin(), closed->triangles().end());
@@ -136,7 +136,7 @@ TEST(Shape, KnowsAClosedMeshFromASheet) {
 }
 
 TEST(Pair, BothEstimatorsLeadToTheSameProofsByDifferentWays) {
-  const auto shape = Shape::build(test::wavy_sphere(24)).value();
+  const auto shape = Shape::build(testing::wavy_sphere(24)).value();
   auto pair = std::move(Pair::make(shape, shape)).value();
   bool differ = false;
   for (double x = 1.7; x < 2.2; x += 0.05) {
@@ -155,7 +155,7 @@ TEST(Pair, BothEstimatorsLeadToTheSameProofsByDifferentWays) {
 }
 
 TEST(Pair, SaysAQuickEstimatedHitOnlyIfAsked) {
-  const auto shape = Shape::build(test::wavy_sphere(24));
+  const auto shape = Shape::build(testing::wavy_sphere(24));
   auto pair = std::move(Pair::make(shape.value(), shape.value())).value();
   Request request;
   request.p_min = 0.5;
