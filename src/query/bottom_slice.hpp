@@ -82,7 +82,7 @@ class BottomSlice {
       if (left != Found::apart || right != Found::apart) return Found::kept;
       // Both children are apart: the slice moves up if their parent is, too.
       if (slice.nodes_[first].children != none || slice.nodes_[first + 1].children != none) return Found::kept;
-      if (!spending.allows(1)) return stop(index, Progressed::spent);
+      if (!spending.may_go_on() || !spending.allows(1)) return stop(index, Progressed::spent);
       spending.spend_node_pairs(1);
       if (encounter.volumes_overlap(slice.nodes_[index].a, slice.nodes_[index].b)) return Found::kept;
       slice.nodes_[index].children = none;

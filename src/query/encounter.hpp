@@ -115,24 +115,19 @@ class Encounter {
     const auto& leaf_b = b_.nodes()[j];
     for (std::uint32_t tb = leaf_b.first; tb < leaf_b.first + leaf_b.count; ++tb) {
       const tree::TriangleCorners moved = in_a(tb);
-      std::uint32_t tested = 0;
       for (std::uint32_t ta = leaf_a.first; ta < leaf_a.first + leaf_a.count; ++ta) {
-        if (!spending.allows(tested + 1)) {
-          spending.spend_triangle_pairs(tested);
-          return Progressed::spent;
-        }
-        ++tested;
+        if (!spending.allows(1)) return Progressed::spent;
+        spending.spend_triangle_pairs(1);
         if (primitive::triangles_intersect(a_.corners()[ta].data(), moved.data())) {
           if (hits.empty() && wanted > 1) spending.keep_time_for_contacts();
           hits.add({ta, tb});
-          if (hits.full(wanted)) {
-            spending.spend_triangle_pairs(tested);
-            return Progressed::enough;
-          }
+          if (hits.full(wanted)) return Progressed::enough;
+        }
+        const bool last = ta + 1 == leaf_a.first + leaf_a.count;
+        if ((last || (ta - leaf_a.first) % pairs_between_polls == pairs_between_polls - 1) && !spending.may_go_on()) {
+          if (!last || tb + 1 < leaf_b.first + leaf_b.count) return Progressed::spent;
         }
       }
-      spending.spend_triangle_pairs(tested);
-      if (!spending.may_go_on() && tb + 1 < leaf_b.first + leaf_b.count) return Progressed::spent;
     }
     return Progressed::finished;
   }
@@ -175,6 +170,9 @@ class Encounter {
   [[nodiscard]] const tree::Hierarchy<V>& b() const noexcept { return b_; }
 
  private:
+  /// A pair takes 20 to 60 ns, but 1.5 us where both triangles lie exactly in one plane.
+  static constexpr std::uint32_t pairs_between_polls = 2;
+
   static void prefetch_line(const void* address) noexcept { __builtin_prefetch(address); }
 
   /// The book's estimate: (4.15), (4.16) and the collision inside a shared cell of Zachmann 2007.

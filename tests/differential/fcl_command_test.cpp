@@ -38,8 +38,8 @@ class CarBodies : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = new testing::TemporaryFolder;
-    const std::string command = std::string("'") + ODDS_NEAR_POSES + "' " + car + " " + car + " " + std::to_string(count) +
-                                " 7 '" + (*folder_ / "poses.csv").string() + "'";
+    const std::string command = std::string("'") + ODDS_NEAR_POSES + "' " + car + " " + car + " " +
+                                std::to_string(count) + " 7 '" + (*folder_ / "poses.csv") + "'";
     ASSERT_EQ(std::system(command.c_str()), 0);
     poses_ = rows_of(testing::contents_of(*folder_ / "poses.csv"));
     ASSERT_EQ(poses_.size(), count);
@@ -47,7 +47,8 @@ class CarBodies : public ::testing::Test {
   static void TearDownTestSuite() { delete folder_; }
 
   static std::vector<Row> query(const std::string& options) {
-    const auto ran = testing::run_tool(*folder_, std::string("query ") + car + " " + car + " --poses poses.csv --out a.csv " + options);
+    const auto ran = testing::run_tool(
+        *folder_, std::string("query ") + car + " " + car + " --poses poses.csv --out a.csv " + options);
     EXPECT_EQ(ran.status, 0) << ran.errors;
     auto rows = rows_of(testing::contents_of(*folder_ / "a.csv"));
     EXPECT_EQ(rows.size(), count);
@@ -82,7 +83,8 @@ TEST_F(CarBodies, EveryPoseIsAnsweredWithin20Microseconds) {
     EXPECT_TRUE(row.at("verdict") == "hit" || row.at("verdict") == "clear");
     if (row.at("basis") != "proved") continue;
     ++proved;
-    EXPECT_EQ(row.at("verdict"), poses_[std::stoul(row.at("row"))].at("fcl") == "1" ? "hit" : "clear") << "a proof must be right";
+    EXPECT_EQ(row.at("verdict"), poses_[std::stoul(row.at("row"))].at("fcl") == "1" ? "hit" : "clear")
+        << "a proof must be right";
   }
   EXPECT_GT(proved, count / 4);
 }

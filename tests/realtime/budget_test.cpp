@@ -1,0 +1,138 @@
+// The hard budget: with an injected clock (repeatable), without allocations, and in a real 1 kHz loop judged by net
+// time.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <iostream>
+
+#include "odds/math/random.hpp"
+#include "odds/mesh/made/by_name.hpp"
+#include "odds/query/pair.hpp"
+#include "odds/realtime/fitness.hpp"
+#include "odds/realtime/periodic_loop.hpp"
+#include "odds/realtime/usage.hpp"
+#include "support/allocation_counter.hpp"
+
+namespace odds::query {
+namespace {
+
+constexpr volume::Kind kinds[] = {volume::Kind::aabb, volume::Kind::obb, volume::Kind::sphere};
+constexpr Method methods[] = {Method::exact, Method::incremental, Method::time_critical};
+
+std::shared_ptr<const Shape> car(std::uint32_t triangles, volume::Kind kind) {
+  auto mesh = mesh::made::make_shape("made:car_body:triangles=" + std::to_string(triangles));
+  return Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(mesh).value()), {.volume = kind}).value();
+}
+
+/// Overlapping to just apart.
+math::Pose random_pose(math::Random& random, double size) {
+  return math::Pose::from_quaternion(size * random.uniform(0.1, 0.7) * random.direction(), random.rotation());
+}
+
+TEST(Budget, EndsAtAnInjectedDeadlineWhateverIsAsked) {
+  // Each reading of this clock moves it by 0.5 us, as if every piece of work between two polls took that long.
+  constexpr std::int64_t step_ns = 500;
+  for (const volume::Kind kind : kinds) {
+    const auto shape = car(4000, kind);
+    auto pair = std::move(Pair::make(shape, shape)).value();
+    math::Random random(1);
+    for (int i = 0; i < 200; ++i) {
+      const auto pose = random_pose(random, shape->mesh().size());
+      for (const Method method : methods) {
+        for (const int contacts : {0, 1, 8}) {
+          realtime::ManualClock clock(step_ns);
+          Request request;
+          request.method = method;
+          request.max_contacts = contacts;
+          request.budget = Budget::time(1.0 + i % 60);
+          request.budget.clock = clock.clock();
+          const Answer& answer = pair.run(pose, request);
+          // One piece of work may be under way when the time ends, and closing reads the clock once more; contacts
+          // once.
+          const double allowed = (contacts > 0 ? 3.0 : 2.0) * step_ns * 1e-3;
+          EXPECT_LE(answer.cost.overshoot_us, allowed) << volume::name(kind) << " method " << static_cast<int>(method);
+          EXPECT_LE(answer.cost.longest_unpolled_units, 4u) << "little work may pass between two polls";
+          EXPECT_TRUE(answer.probability >= 0.0 && answer.probability <= 1.0);
+        }
+      }
+    }
+  }
+}
+
+TEST(Budget, NoQueryAllocates) {
+  if (!support::counts_allocations) GTEST_SKIP() << "the sanitizer's allocator is not counted";
+  for (const volume::Kind kind : kinds) {
+    const auto shape = car(4000, kind);
+    auto pair = std::move(Pair::make(shape, shape)).value();
+    math::Random random(2);
+    const Budget budgets[] = {Budget::unlimited(), Budget::time(1.0), Budget::time(20.0), Budget::work(1),
+                              Budget::work(300)};
+    for (int i = 0; i < 40; ++i) {
+      const auto pose = random_pose(random, shape->mesh().size());
+      for (const Method method : methods) {
+        for (const auto estimator : {EstimatorKind::cells, EstimatorKind::kinematic}) {
+          for (const Budget& budget : budgets) {
+            Request request;
+            request.method = method;
+            request.estimator = estimator;
+            request.budget = budget;
+            request.max_contacts = i % 9;
+            request.p_min = i % 2 == 0 ? 1.0 : 0.9;
+            request.polygon_free = i % 5 == 0;
+            const support::AllocationCounter counter;
+            static_cast<void>(pair.run(pose, request));
+            ASSERT_EQ(counter.allocations(), 0u) << volume::name(kind) << " method " << static_cast<int>(method);
+            ASSERT_EQ(counter.frees(), 0u);
+          }
+        }
+      }
+    }
+  }
+}
+
+/// Nearest rank.
+double quantile(std::vector<double> values, double share) {
+  std::sort(values.begin(), values.end());
+  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
+  return values[std::clamp<std::size_t>(rank, 1, values.size()) - 1];
+}
+
+TEST(Budget, HoldsInA1kHzLoopNetOfStalls) {
+  const auto fitness = realtime::probe_fitness();
+  if (!fitness.fit) GTEST_SKIP() << "INCONCLUSIVE: " << fitness.reason;
+  constexpr double budget_us = 100.0;
+  constexpr std::uint64_t ticks = 2000;
+  const auto shape = car(20000, volume::Kind::obb);
+  auto pair = std::move(Pair::make(shape, shape)).value();
+  std::vector<double> net;
+  net.reserve(ticks);
+  std::uint64_t answered = 0;
+  double stalls_us = 0.0;
+  double gross_us = 0.0;
+  math::Random random(3);
+  const Request request = {.budget = Budget::time(budget_us), .max_contacts = 8};
+  static_cast<void>(pair.run(random_pose(random, shape->mesh().size()), request));  // pages and caches
+  const auto before = realtime::thread_usage();
+  const auto loop =
+      realtime::run_periodic({.ticks = ticks}, realtime::real_time(), {}, [&](const realtime::Tick&) noexcept {
+        const Answer& answer = pair.run(random_pose(random, shape->mesh().size()), request);
+        answered += answer.probability >= 0.0 && answer.probability <= 1.0 ? 1 : 0;
+        net.push_back(answer.cost.net_us());
+        stalls_us += answer.cost.stall_us;
+        gross_us += answer.cost.gross_us;
+      });
+  const auto faults = realtime::thread_usage() - before;
+  EXPECT_EQ(answered, loop.ran) << "every tick is answered";
+  EXPECT_EQ(faults.minor_faults + faults.major_faults, 0u) << "a page fault would hide among the stalls";
+  const double p999 = quantile(net, 0.999);
+  RecordProperty("net_p999_us", std::to_string(p999));
+  std::cout << "net query time p50 " << quantile(net, 0.5) << ", p99 " << quantile(net, 0.99) << ", p99.9 " << p999
+            << ", max " << quantile(net, 1.0) << " us of " << net.size() << " ticks; skipped " << loop.skipped
+            << "; stalls " << 100.0 * stalls_us / gross_us << " % of the time\n";
+  if (stalls_us > 0.2 * gross_us)
+    GTEST_SKIP() << "INCONCLUSIVE: " << 100.0 * stalls_us / gross_us << " % of the time was stalls";
+  EXPECT_LE(p999, budget_us + 1.0);
+}
+
+}  // namespace
+}  // namespace odds::query
