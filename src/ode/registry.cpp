@@ -95,7 +95,7 @@ int oddsInitODE(unsigned flags) noexcept {
       set_last_error("oddsInitODE: dInitODE2 refused; check the flags");
       return 0;
     }
-    if (dAllocateODEDataForThread(dAllocateMaskAll) == 0) {
+    if (dAllocateODEDataForThread(static_cast<unsigned>(dAllocateMaskAll)) == 0) {
       dCloseODE();
       set_last_error("oddsInitODE: dAllocateODEDataForThread refused; free memory");
       return 0;
