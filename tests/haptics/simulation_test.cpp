@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 
@@ -196,6 +197,20 @@ TEST(Simulation, KeepsThePosesOfMovingBodies) {
   EXPECT_EQ(outcome.poses.names(), std::vector<std::string>{"ball"});
   const auto& tick = outcome.ticks[rows[30].tick];
   EXPECT_EQ(rows[30].position_m.x(), tick.tool_position_m[0]);
+}
+
+TEST(Simulation, ThePegOfTheDemoFindsItsHole) {
+  Result<Scene> peg = read_scene(std::string(ODDS_SOURCE_DIR) + "/demos/scenes/peg_in_hole.toml");
+  ASSERT_TRUE(peg.ok()) << peg.error().message();
+  SimulationOptions options;
+  options.simulated_time = true;
+  options.seconds = 1.9;
+  auto made = Simulation::make(std::move(peg).value(), options);
+  ASSERT_TRUE(made.ok()) << made.error().message();
+  const RunOutcome outcome = made.value()->run();
+  EXPECT_LT(outcome.ticks.back().tool_position_m[2], -0.0115);  // the hand is at -0.012
+  EXPECT_LT(std::abs(outcome.ticks.back().tool_position_m[0]), 0.0003);
+  EXPECT_LT(largest_force(outcome), 3.0);
 }
 
 TEST(Explain, SaysWhichEffectsAreOnAndWhichLineAsked) {

@@ -151,6 +151,19 @@ TEST(Run, DemoScenesThatNeedNoInstalledMeshesRun) {
   }
 }
 
+TEST(Run, TheMainDemoTouchesTheMotorbike) {
+  if (!std::filesystem::exists("/usr/share/doc/openfoam-examples/examples/resources/geometry/motorBike.obj.gz")) {
+    GTEST_SKIP() << "the package openfoam-examples is not installed";
+  }
+  const TemporaryFolder folder;
+  const std::string path = std::string(ODDS_SOURCE_DIR) + "/demos/scenes/motorbike_probe.toml";
+  const Ran ran = run_tool(folder, "run '" + path + "' --fast --seconds 1.4 --out out");
+  ASSERT_EQ(ran.status, 0) << ran.errors;
+  EXPECT_NE(ran.output.find("1400 of 1400 ran"), std::string::npos) << ran.output;
+  EXPECT_EQ(ran.output.find("; 0 hits"), std::string::npos) << ran.output;
+  EXPECT_NE(ran.output.find("no tick changed"), std::string::npos) << "a safety stage had to act\n" << ran.output;
+}
+
 TEST(Explain, ListsEffectsWithTheLinesThatAsked) {
   const TemporaryFolder folder;
   folder.write("scene.toml", scene);
