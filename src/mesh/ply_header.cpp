@@ -54,7 +54,7 @@ class HeaderReader {
     }
     end(lone_returns);
     check();
-    ++input_.line;
+    if (input_.fill(1)) ++input_.line;  // the last line keeps its number
     return std::move(header_);
   }
 

@@ -150,7 +150,8 @@ std::vector<Malformed> ply_header_table() {
       {"count beyond integers", file, "ply\nformat ascii 1.0\nelement vertex 99999999999999999999\n", "3", "beyond"},
       {"length of a list as float", file, "ply\nformat ascii 1.0\nelement face 1\nproperty list float int v\n", "4",
        "length"},
-      {"four thousand million faces", file, ply_header("3", "4000000000") + "0 0 0\n1 0 0\n0 1 0\n", "9", "claims 4000000000"},
+      {"four thousand million faces", file, ply_header("3", "4000000000") + "0 0 0\n1 0 0\n0 1 0\n", "9",
+       "claims 4000000000"},
       {"more vertices than bytes", file, ply_header("100", "1") + "0 0 0\n", "9", "claims 100 elements 'vertex'"},
       {"counts that overflow together", file,
        "ply\nformat binary_little_endian 1.0\nelement vertex 9223372036854775807\n" + xyz +
@@ -199,6 +200,8 @@ std::vector<Malformed> ply_data_table() {
   const std::string zero = bytes_of(0);
   return {
       {"no face", file, ply_header("3", "0") + points, "12", "no face"},
+      {"header of nothing", file, ply_header("0", "0"), "9", "no face"},
+      {"header of nothing without line end", file, ply_header("0", "0").substr(0, header.size() - 1), "9", "no face"},
       {"letters for a coordinate", file, header + "0 0 0\n1 z 0\n0 1 0\n3 0 1 2\n", "11", "'z'"},
       {"NaN", file, header + "0 0 0\n1 0 nan\n0 1 0\n3 0 1 2\n", "11", "not finite"},
       {"two coordinates", file, header + "0 0 0\n1 0\n0 1 0\n3 0 1 2\n", "11", "missing"},

@@ -48,7 +48,7 @@ TEST(ReaderMemory, ClaimsOfHeadersAllocateNothing) {
                                 "ply\nformat binary_little_endian 1.0\nelement vertex 200000000\nproperty float "
                                 "x\nproperty float y\nproperty float z\n"
                                 "element face 1\nproperty list uchar int vertex_indices\nend_header\n0123456789",
-                                "OFF\n200000000 200000000 0\n0 0 0\n"};
+                                "OFF\n200000000 200000000 0\n0 0 0\n", "OFF\n1000000 1000000 0\n0 0 0\n"};
   for (const std::string& content : claims) {
     for (const std::string& file : {content, test::packed(content)}) {
       const Outcome outcome = measured(file, "claims.stl");
