@@ -54,7 +54,6 @@ class HeaderReader {
     }
     end(lone_returns);
     check();
-    if (input_.fill(1)) ++input_.line;  // the last line keeps its number
     return std::move(header_);
   }
 

@@ -38,7 +38,8 @@ struct Header {
   [[nodiscard]] const Element* find(const std::string& element) const noexcept;
 };
 
-/// Reads from "ply" through the end of the line "end_header"; the input then stands at the first byte of the data.
+/// Reads from "ply" through the end of the line "end_header"; the input then stands at the first byte of the data,
+/// while its line is still that of "end_header", where errors about the header as a whole belong.
 /// Refuses headers that a mesh cannot have, and counts that the bytes behind it cannot hold.
 Header read_header(Input& input);
 

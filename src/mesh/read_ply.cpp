@@ -231,6 +231,7 @@ TriangleMesh read_ply(Input& input, MeshBuilder builder) {
   const ply::Header header = ply::read_header(input);
   const Layout layout = find_layout(input, header);
   builder.reserve(layout.vertices, layout.faces);
+  if (input.fill(1)) ++input.line;  // where no data follows, the last line keeps its number
   if (header.encoding == Encoding::ascii) {
     PlyReader(input, builder, layout, AsciiValues(input)).read(header);
   } else {
