@@ -160,9 +160,11 @@ class Encounter {
       direction = b_in_a_.rotation * sb.slab_normal.cast<double>();  // closed on all sides
     const double length = direction.norm();
     contact.normal = length > 0.0 && std::isfinite(length) ? Vec3(direction / length) : Vec3::UnitZ();
-    // A's surface lies beyond B's by this much, at most the smaller node's diameter.
+    // A's surface lies beyond B's by this much. Two patches that nobody has looked into cannot be told to overlap deeper than
+    // the thinner of them is thick; and as they may not meet at all, it is the expected depth that counts.
     const double passed = contact.normal.dot(centroid_b - centroid_a);
-    contact.depth = std::clamp(passed, 0.0, 2.0 * static_cast<double>(std::min(radius_a, radius_b)));
+    const double thickness = 2.0 * static_cast<double>(std::min(sa.slab_half, sb.slab_half));
+    contact.depth = static_cast<double>(probability(i, j)) * std::clamp(passed, 0.0, thickness);
     return contact;
   }
 

@@ -1,5 +1,7 @@
 #include "odds/query/pair.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <type_traits>
 
@@ -35,8 +37,14 @@ struct Pair::Implementation {
 
 namespace {
 
-/// Hits that are wanted: one proves; a patch needs as many as are kept.
-std::uint32_t wanted_hits(const Request& request) noexcept { return request.max_contacts <= 1 ? 1 : no_feature; }
+constexpr double hits_per_microsecond = 0.4;
+
+/// Hits that are wanted: one proves; a patch takes as many as its making has time for, about 1 us each.
+std::uint32_t wanted_hits(const Request& request) noexcept {
+  if (request.max_contacts <= 1) return 1;
+  if (!std::isfinite(request.budget.microseconds)) return no_feature;
+  return static_cast<std::uint32_t>(std::clamp(hits_per_microsecond * request.budget.microseconds, 12.0, 65536.0));
+}
 
 /// A pose or request that no query can be run with: answered as undecided, never as a NaN.
 Answer refused() noexcept {
@@ -109,7 +117,7 @@ void judge(const SearchResult& result, const Request& request, bool any_hit, Ans
 /// Casts a ray for the depth inside a rim. A few node visits' worth: a probe that finds nothing in them is left out.
 bool probe_depth(const void* shape, const Vec3& origin, const Vec3& direction, double max_distance, double* distance,
                  std::uint32_t* triangle) noexcept {
-  constexpr std::uint64_t most_nodes = 256;
+  constexpr std::uint64_t most_nodes = 96;
   const auto hit = cast_ray(*static_cast<const Shape*>(shape), origin, direction, max_distance, most_nodes);
   if (!hit) return false;
   *distance = hit->distance;

@@ -26,6 +26,7 @@ class Spending {
       const double ns = std::clamp(budget.microseconds * 1e3, 0.0, 1e15);
       deadline_ns_ = start_ns_ + static_cast<std::int64_t>(ns);
       search_deadline_ns_ = deadline_ns_;
+      contacts_deadline_ns_ = deadline_ns_ - std::min(contacts_reserve_ns, allowance_ns() / 8);
     }
   }
 
@@ -51,7 +52,7 @@ class Spending {
   /// Polls the clock if there is a deadline. False once the search should stop.
   [[nodiscard]] bool may_go_on() noexcept { return poll() < search_deadline_ns_ - writing_reserve_ns; }
   /// The same for the making of contacts, which may use all of the time.
-  [[nodiscard]] bool may_make_contacts() noexcept { return poll() < deadline_ns_ - contacts_reserve_ns; }
+  [[nodiscard]] bool may_make_contacts() noexcept { return poll() < contacts_deadline_ns_; }
 
   /// Closes the accounts; the last thing a query does.
   [[nodiscard]] Cost close() noexcept {
@@ -73,10 +74,10 @@ class Spending {
 
   /// What the writing of the answer takes at most, after the search has stopped.
   static constexpr std::int64_t writing_reserve_ns = 150;
-  /// What a patch takes at most from the moment that it hears of the deadline.
-  static constexpr std::int64_t contacts_reserve_ns = 2000;
+  /// What a patch takes at most from the moment that it hears of the deadline: a ray or two, and the choice of contacts.
+  static constexpr std::int64_t contacts_reserve_ns = 8000;
   /// Of the time, for the search, once a hit was found and contacts are wanted.
-  static constexpr double search_share = 0.6;
+  static constexpr double search_share = 0.5;
 
  private:
   [[nodiscard]] std::int64_t allowance_ns() const noexcept { return deadline_ns_ - start_ns_; }
@@ -101,6 +102,7 @@ class Spending {
   std::int64_t start_ns_;
   std::int64_t deadline_ns_ = std::numeric_limits<std::int64_t>::max();
   std::int64_t search_deadline_ns_ = std::numeric_limits<std::int64_t>::max();
+  std::int64_t contacts_deadline_ns_ = std::numeric_limits<std::int64_t>::max();
   realtime::StallLedger ledger_;
   std::uint64_t units_left_;
   std::uint32_t unpolled_units_ = 0;
