@@ -120,7 +120,7 @@ class BottomSlice {
       result.ended = how;
       if (how == Progressed::spent) {
         NodePair pair{slice.nodes_[index].a, slice.nodes_[index].b, 0.0F};
-        pair.probability = encounter.probability(pair.a, pair.b);
+        pair.rank = encounter.rank(pair.a, pair.b);
         consider(result, pair);
       }
       return Found::stopped;

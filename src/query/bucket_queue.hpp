@@ -12,7 +12,7 @@ namespace odds::query {
 struct NodePair {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
-  float probability = 0.0F;
+  float rank = 0.0F;  ///< log2 of the expected number of crossings; see Encounter::rank
 };
 
 /// Push and pop in constant time: a bucket is a linked stack in one array, and a bit mask knows which are not empty.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "odds/math/elementary.hpp"
 #include "odds/primitive/triangle_triangle.hpp"
 #include "odds/probability/balls_into_bins.hpp"
 #include "odds/probability/kinematic.hpp"
@@ -89,6 +90,17 @@ class Encounter {
     prefetch_line(&b_.statistics()[pair.b]);
   }
 
+  /// What orders the search: log2 of lambda, where 1 - exp(-lambda) is the probability that the surfaces below i and j
+  /// meet, given that their volumes overlap. Cheaper than the probability itself.
+  [[nodiscard]] float rank(std::uint32_t i, std::uint32_t j) const noexcept {
+    if (estimator_ == EstimatorKind::cells) {
+      const float p = std::min(probability(i, j), 1.0F - 1e-7F);
+      return math::rough_log2(-std::log1p(-static_cast<double>(p)));
+    }
+    const double common = overlap_volume(a_.nodes()[i].volume, b_.nodes()[j].volume, relative_);
+    return probability::log_kinematic_rate(a_.statistics()[i], b_.statistics()[j], relative_.rotation, common);
+  }
+
   /// Estimated probability that surfaces below i and j meet, given that their volumes overlap.
   [[nodiscard]] float probability(std::uint32_t i, std::uint32_t j) const noexcept {
     const V& volume_a = a_.nodes()[i].volume;
@@ -160,8 +172,8 @@ class Encounter {
       direction = b_in_a_.rotation * sb.slab_normal.cast<double>();  // closed on all sides
     const double length = direction.norm();
     contact.normal = length > 0.0 && std::isfinite(length) ? Vec3(direction / length) : Vec3::UnitZ();
-    // A's surface lies beyond B's by this much. Two patches that nobody has looked into cannot be told to overlap deeper than
-    // the thinner of them is thick; and as they may not meet at all, it is the expected depth that counts.
+    // A's surface lies beyond B's by this much. Two patches that nobody has looked into cannot be told to overlap
+    // deeper than the thinner of them is thick; and as they may not meet at all, it is the expected depth that counts.
     const double passed = contact.normal.dot(centroid_b - centroid_a);
     const double thickness = 2.0 * static_cast<double>(std::min(sa.slab_half, sb.slab_half));
     contact.depth = static_cast<double>(probability(i, j)) * std::clamp(passed, 0.0, thickness);

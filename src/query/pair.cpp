@@ -8,6 +8,7 @@
 #include "odds/math/tolerances.hpp"
 #include "odds/query/ray.hpp"
 #include "query/bottom_slice.hpp"
+#include "query/first_contact.hpp"
 #include "query/search.hpp"
 #include "query/shape_data.hpp"
 
@@ -32,12 +33,17 @@ struct Pair::Implementation {
   TrianglePair witness;  ///< the pair of triangles, in leaf order, that proved the last incremental hit
   PatchBuilder patches;
   Vec3 previous_normal = Vec3::Zero();  ///< of the last run's first contact, in A's frame; zero: none
+  Contact quick_contact;
   Answer answer;
 };
 
 namespace {
 
 constexpr double hits_per_microsecond = 0.4;
+// What a patch takes from hearing of the deadline to its end: a ray or two and the choice of contacts; a single
+// contact.
+constexpr std::int64_t patch_finish_ns = 7000;
+constexpr std::int64_t single_finish_ns = 3000;
 
 /// Hits that are wanted: one proves; a patch takes as many as its making has time for, about 1 us each.
 std::uint32_t wanted_hits(const Request& request) noexcept {
@@ -91,7 +97,8 @@ SearchResult search(const Encounter<V>& encounter, const Request& request, Pair:
 }
 
 /// Verdict, basis and probability from what the search found.
-void judge(const SearchResult& result, const Request& request, bool any_hit, Answer& answer) noexcept {
+void judge(const SearchResult& result, double candidate_probability, const Request& request, bool any_hit,
+           Answer& answer) noexcept {
   if (any_hit) {
     answer.verdict = Verdict::hit;
     answer.basis = Basis::proved;
@@ -101,7 +108,7 @@ void judge(const SearchResult& result, const Request& request, bool any_hit, Ans
     answer.probability = static_cast<double>(result.estimate);
   } else if (result.ended == Progressed::spent) {
     answer.basis = Basis::budget;
-    answer.probability = static_cast<double>(result.candidate.probability);
+    answer.probability = candidate_probability;
   } else {
     answer.basis = Basis::proved;
     answer.probability = 0.0;
@@ -128,6 +135,15 @@ bool probe_depth(const void* shape, const Vec3& origin, const Vec3& direction, d
 template <volume::BoundingVolume V>
 void make_contacts(const Encounter<V>& encounter, const math::Pose& pose_b_in_a, const Request& request,
                    Pair::Implementation& pair, Spending& spending) noexcept {
+  const Vec3 centre_b = pose_b_in_a * encounter.b().origin();
+  if (!spending.begin_contacts(request.max_contacts > 1 ? patch_finish_ns : single_finish_ns)) {
+    const Vec3 towards_a =
+        pair.previous_normal.isZero() ? Vec3(encounter.a().origin() - centre_b) : pair.previous_normal;
+    pair.quick_contact =
+        first_contact(encounter, pair.hits.pairs().front(), pair.a->is_solid() && pair.b->is_solid(), towards_a);
+    pair.answer.contacts = {&pair.quick_contact, 1};
+    return;
+  }
   for (TrianglePair& hit : pair.hits.pairs()) hit = {encounter.a().order()[hit.a], encounter.b().order()[hit.b]};
   PatchInput input;
   input.hits = pair.hits.pairs();
@@ -139,7 +155,7 @@ void make_contacts(const Encounter<V>& encounter, const math::Pose& pose_b_in_a,
   input.solid_a = pair.a->is_solid();
   input.solid_b = pair.b->is_solid();
   input.reference_a = encounter.a().origin();
-  input.reference_b = pose_b_in_a * encounter.b().origin();
+  input.reference_b = centre_b;
   if (!pair.previous_normal.isZero()) input.previous_normal = &pair.previous_normal;
   input.max_contacts = request.max_contacts;
   if (request.max_contacts > 1) {  // a single contact is asked for its speed
@@ -161,11 +177,15 @@ void run_on(const tree::Hierarchy<V>& a, const tree::Hierarchy<V>& b, const math
   pair.hits.clear();
   const Encounter<V> encounter(a, b, pose_b_in_a, request.estimator);
   const SearchResult result = search(encounter, request, pair, spending);
-  judge(result, request, !pair.hits.empty(), answer);
+  const double candidate_probability =
+      result.has_candidate && pair.hits.empty()
+          ? static_cast<double>(encounter.probability(result.candidate.a, result.candidate.b))
+          : 0.0;
+  judge(result, candidate_probability, request, !pair.hits.empty(), answer);
   if (result.has_candidate && answer.basis != Basis::proved) {
     answer.has_cell_pair = true;
     answer.cell_pair = encounter.cell_contact(result.candidate.a, result.candidate.b);
-    answer.cell_pair_probability = static_cast<double>(result.candidate.probability);
+    answer.cell_pair_probability = candidate_probability;
   }
   if (!pair.hits.empty() && request.max_contacts > 0) {
     make_contacts(encounter, pose_b_in_a, request, pair, spending);

@@ -21,7 +21,7 @@ struct SearchResult {
 
 /// The likeliest undecided pair seen.
 inline void consider(SearchResult& result, const NodePair& pair) noexcept {
-  if (result.has_candidate && result.candidate.probability >= pair.probability) return;
+  if (result.has_candidate && result.candidate.rank >= pair.rank) return;
   result.has_candidate = true;
   result.candidate = pair;
 }
@@ -40,7 +40,7 @@ void search_depth_first(const Encounter<V>& encounter, NodePair start, std::uint
     constexpr std::size_t estimated_at_most = 4;  // each estimate costs about as much as a node pair
     for (std::size_t n = 0; n < estimated_at_most && n < size; ++n) {
       NodePair& pair = stack[size - 1 - n];
-      pair.probability = encounter.probability(pair.a, pair.b);
+      pair.rank = encounter.rank(pair.a, pair.b);
       consider(result, pair);
     }
   };
@@ -62,14 +62,12 @@ void search_depth_first(const Encounter<V>& encounter, NodePair start, std::uint
   }
 }
 
-/// The bucket of a pair: log2 of its probability per remaining cost, in quarters. The odds are capped, so that among
-/// nearly certain pairs the newest and deepest come first instead of all coarse ones.
-[[nodiscard]] inline std::uint32_t bucket_of(float probability, int levels_left) noexcept {
-  const float odds = std::min(probability / std::max(1.0F - probability, 1e-6F), 2.0F);
-  const float value = std::max(odds, 1e-6F) / static_cast<float>(levels_left + 2);
-  // Exponent and the two highest bits of the mantissa are log2 in steps of a quarter octave (piecewise linear).
-  const auto quarters = static_cast<int>(std::bit_cast<std::uint32_t>(value) >> 21U) - (127 << 2);  // value <= 1: <= 0
-  return static_cast<std::uint32_t>(std::clamp(quarters + 63, 0, 63));
+/// The bucket of a pair: log2 of its expected crossings per remaining cost, in quarters. The expectation is capped, so
+/// that among nearly certain pairs the newest and deepest come first instead of all coarse ones.
+[[nodiscard]] inline std::uint32_t bucket_of(float rank, int levels_left) noexcept {
+  constexpr float highest = 0.5F;
+  const float value = std::min(rank, highest) - math::rough_log2(static_cast<double>(levels_left + 2));
+  return static_cast<std::uint32_t>(std::clamp(60.0F + 4.0F * value, 0.0F, 63.0F));
 }
 
 /// Algorithm 4.3. Ends on proof (`wanted` hits, or nothing left), on k_min pairs with p >= p_min, or with the budget.
@@ -82,8 +80,8 @@ class TimeCriticalSearch {
 
   [[nodiscard]] SearchResult run(NodePair root) noexcept {
     queue_.clear();
-    root.probability = encounter_.probability(root.a, root.b);
-    queue_.push(bucket_of(root.probability, encounter_.levels_left(root.a, root.b)), root);
+    root.rank = encounter_.rank(root.a, root.b);
+    queue_.push(bucket_of(root.rank, encounter_.levels_left(root.a, root.b)), root);
     while (!queue_.empty() && !finished_) {
       if (!spending_.may_go_on()) {
         finish(Progressed::spent);
@@ -117,8 +115,9 @@ class TimeCriticalSearch {
 
   void visit_leaves(const NodePair& pair) noexcept {
     if (request_.polygon_free) {
-      result_.estimate = std::max(result_.estimate, pair.probability);
-      if (pair.probability >= 0.5F) {
+      const float p = encounter_.probability(pair.a, pair.b);
+      result_.estimate = std::max(result_.estimate, p);
+      if (p >= 0.5F) {
         result_.estimated_hit = true;
         consider(result_, pair);
         finish(Progressed::enough);
@@ -133,16 +132,15 @@ class TimeCriticalSearch {
 
   void meet(NodePair pair) noexcept {
     if (!encounter_.volumes_overlap(pair.a, pair.b)) return;
-    pair.probability = encounter_.probability(pair.a, pair.b);
-    if (request_.p_min < 1.0 && static_cast<double>(pair.probability) >= request_.p_min) {
-      result_.estimate = std::max(result_.estimate, pair.probability);
+    pair.rank = encounter_.rank(pair.a, pair.b);
+    if (request_.p_min < 1.0 && passes_threshold(pair)) {
       if (++sure_pairs_ >= request_.k_min) {
         result_.estimated_hit = true;
         consider(result_, pair);
         return finish(Progressed::enough);
       }
     }
-    if (!queue_.full()) return queue_.push(bucket_of(pair.probability, encounter_.levels_left(pair.a, pair.b)), pair);
+    if (!queue_.full()) return queue_.push(bucket_of(pair.rank, encounter_.levels_left(pair.a, pair.b)), pair);
     // Nothing is dropped: what finds no room is searched to its end at once.
     spending_.note_full_queue();
     if (request_.polygon_free) return visit_leaves_below(pair);
@@ -150,9 +148,16 @@ class TimeCriticalSearch {
     if (result_.ended != Progressed::finished) finished_ = true;
   }
 
+  bool passes_threshold(const NodePair& pair) noexcept {
+    const float p = encounter_.probability(pair.a, pair.b);
+    if (static_cast<double>(p) < request_.p_min) return false;
+    result_.estimate = std::max(result_.estimate, p);
+    return true;
+  }
+
   // The polygon-free search has no triangles to fall back on: the pair itself is judged.
   void visit_leaves_below(const NodePair& pair) noexcept {
-    result_.estimate = std::max(result_.estimate, pair.probability);
+    result_.estimate = std::max(result_.estimate, encounter_.probability(pair.a, pair.b));
     consider(result_, pair);
   }
 

@@ -26,7 +26,6 @@ class Spending {
       const double ns = std::clamp(budget.microseconds * 1e3, 0.0, 1e15);
       deadline_ns_ = start_ns_ + static_cast<std::int64_t>(ns);
       search_deadline_ns_ = deadline_ns_;
-      contacts_deadline_ns_ = deadline_ns_ - std::min(contacts_reserve_ns, allowance_ns() / 8);
     }
   }
 
@@ -51,7 +50,13 @@ class Spending {
 
   /// Polls the clock if there is a deadline. False once the search should stop.
   [[nodiscard]] bool may_go_on() noexcept { return poll() < search_deadline_ns_ - writing_reserve_ns; }
-  /// The same for the making of contacts, which may use all of the time.
+  /// Whether there is time for a patch of contacts that takes up to `finishing_ns` from the moment that it hears that
+  /// the time is up; if so, `may_make_contacts` says when that is.
+  [[nodiscard]] bool begin_contacts(std::int64_t finishing_ns) noexcept {
+    if (!timed_) return true;
+    contacts_deadline_ns_ = deadline_ns_ - finishing_ns;
+    return poll() < contacts_deadline_ns_;
+  }
   [[nodiscard]] bool may_make_contacts() noexcept { return poll() < contacts_deadline_ns_; }
 
   /// Closes the accounts; the last thing a query does.
@@ -73,9 +78,7 @@ class Spending {
   }
 
   /// What the writing of the answer takes at most, after the search has stopped.
-  static constexpr std::int64_t writing_reserve_ns = 150;
-  /// What a patch takes at most from the moment that it hears of the deadline: a ray or two, and the choice of contacts.
-  static constexpr std::int64_t contacts_reserve_ns = 8000;
+  static constexpr std::int64_t writing_reserve_ns = 300;
   /// Of the time, for the search, once a hit was found and contacts are wanted.
   static constexpr double search_share = 0.5;
 

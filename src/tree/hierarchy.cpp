@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <thread>
+
+#include "odds/math/elementary.hpp"
 
 namespace odds::tree {
 namespace {
@@ -108,6 +111,13 @@ void fill_statistics(NodeStatistics& node, volume::PrincipalAxes& axes, const Mo
 }
 
 }  // namespace
+
+void relate_area(NodeStatistics& node, double volume) noexcept {
+  const double relative = static_cast<double>(node.area) / std::pow(volume, 2.0 / 3.0);
+  node.relative_area = static_cast<float>(relative);
+  node.log_relative_area = math::rough_log2(relative);
+  node.log_volume = math::rough_log2(volume);
+}
 
 std::vector<TriangleCorners> corners_about(const mesh::TriangleMesh& mesh, const Vec3& origin) {
   std::vector<TriangleCorners> corners(mesh.triangles().size());

@@ -17,6 +17,14 @@ TEST(CubeRoot, IsCloseOverTheWholeRange) {
   EXPECT_EQ(cube_root(NAN), 0.0F);
 }
 
+TEST(RoughLog2, IsCloseOverTheWholeRange) {
+  for (double x = 1e-300; x < 1e300; x *= 1.013)
+    EXPECT_NEAR(static_cast<double>(rough_log2(x)), std::log2(x), 0.01) << x;
+  EXPECT_LT(rough_log2(0.0), -1000.0F);
+  EXPECT_LT(rough_log2(-1.0), -1000.0F);
+  EXPECT_LT(rough_log2(NAN), -1000.0F);
+}
+
 TEST(ProbabilityOfRate, IsCloseAndMonotone) {
   float last = 0.0F;
   for (double x = 1e-8; x < 40.0; x *= 1.01) {

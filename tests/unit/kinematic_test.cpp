@@ -1,6 +1,8 @@
 // The kinematic estimator: limits, symmetry, and the formula itself.
 #include "odds/probability/kinematic.hpp"
 
+#include "odds/tree/hierarchy.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,10 +11,11 @@
 namespace odds::probability {
 namespace {
 
+// As a hierarchy's build does it.
 tree::NodeStatistics plate(const Vec3f& normal, float area, double volume) {
   tree::NodeStatistics node;
   node.area = area;
-  node.relative_area = static_cast<float>(static_cast<double>(area) / std::pow(volume, 2.0 / 3.0));
+  tree::relate_area(node, volume);
   const float packed[6] = {normal[0] * normal[0], normal[1] * normal[1], normal[2] * normal[2],
                            normal[0] * normal[1], normal[0] * normal[2], normal[1] * normal[2]};
   std::copy(packed, packed + 6, node.normal_moment);
@@ -62,6 +65,22 @@ TEST(Kinematic, GrowsWithTheCommonVolumeAndKeepsItsLimits) {
     last = p;
   }
   EXPECT_GT(last, 0.99F);
+}
+
+TEST(Kinematic, ItsLogarithmicRateIsTheSameFormula) {
+  std::mt19937 generator(9);
+  std::uniform_real_distribution<double> uniform;
+  for (int i = 0; i < 2000; ++i) {
+    const double volume_a = std::pow(10.0, 8.0 * uniform(generator) - 6.0);
+    const double volume_b = std::pow(10.0, 8.0 * uniform(generator) - 6.0);
+    const double common = std::min(volume_a, volume_b) * uniform(generator);
+    const auto a =
+        plate(Vec3f::UnitX(), static_cast<float>(std::pow(volume_a, 2.0 / 3.0) * uniform(generator)), volume_a);
+    const auto b = plate(Vec3f(0.6F, 0.8F, 0.0F), static_cast<float>(std::pow(volume_b, 2.0 / 3.0)), volume_b);
+    const double p = static_cast<double>(kinematic(a, b, Mat3f::Identity(), volume_a, volume_b, common));
+    const double rate = std::exp2(static_cast<double>(log_kinematic_rate(a, b, Mat3f::Identity(), common)));
+    EXPECT_NEAR(-std::expm1(-rate), p, 0.02) << i;
+  }
 }
 
 TEST(Kinematic, ParallelSheetsAreUnlikely) {

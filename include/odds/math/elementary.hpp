@@ -19,6 +19,17 @@ namespace odds::math {
   return y;
 }
 
+/// log2 of a positive normal number; absolute error < 0.01. Anything else gives about -1023 or less.
+[[nodiscard]] inline float rough_log2(double x) noexcept {
+  if (!(x > 0.0)) return -1e4F;
+  const auto bits = std::bit_cast<std::uint64_t>(x);
+  const auto exponent = static_cast<int>((bits >> 52U) & 0x7FFU) - 1023;
+  // log2(1 + f) by the parabola through its ends and its middle.
+  const auto f =
+      static_cast<float>(std::bit_cast<double>((bits & 0x000FFFFFFFFFFFFFULL) | 0x3FF0000000000000ULL) - 1.0);
+  return static_cast<float>(exponent) + f * (1.33985F - 0.33985F * f);
+}
+
 /// 1 - exp(-x) for x >= 0, in [0, 1]; error < 3e-7. NaN and negative numbers give 0.
 [[nodiscard]] inline float probability_of_rate(float x) noexcept {
   if (!(x > 0.0F)) return 0.0F;

@@ -29,6 +29,9 @@ struct NodeSurface {
 /// Area, centroid, normals, slab of every node of `topology`. `corners` in the order of the leaves.
 [[nodiscard]] NodeSurface measure_surface(const Topology& topology, std::span<const TriangleCorners> corners);
 
+/// Fills in what relates the node's area to its bounding volume (m^3).
+void relate_area(NodeStatistics& node, double volume) noexcept;
+
 /// Corners of the mesh's triangles relative to `origin`, in the mesh's order.
 [[nodiscard]] std::vector<TriangleCorners> corners_about(const mesh::TriangleMesh& mesh, const Vec3& origin);
 
@@ -106,8 +109,7 @@ Hierarchy<V> Hierarchy<V>::build(const mesh::TriangleMesh& mesh, const BuildOpti
       const std::span<const Vec3> points(triangles.front().data(), triangles.size() * 3);
       const V volume = V::fit(points, surface.axes[i]);
       hierarchy.nodes_[i] = {volume, node.first, node.count, volume.radius()};
-      surface.statistics[i].relative_area =
-          static_cast<float>(static_cast<double>(surface.statistics[i].area) / std::pow(volume.volume(), 2.0 / 3.0));
+      relate_area(surface.statistics[i], volume.volume());
       const volume::OrientedBox box = hierarchy.nodes_[i].volume.cell_box();
       counter.begin(box.center, box.axes, box.half_extents);
       for (const TriangleCorners& triangle : triangles) counter.add(triangle[0], triangle[1], triangle[2]);

@@ -7,10 +7,12 @@
 
 namespace odds::tree {
 
-/// Statistics of all triangles below one node, in the hierarchy's frame. Metres, square metres. 80 bytes.
+/// Statistics of all triangles below one node, in the hierarchy's frame. Metres, square metres. 88 bytes.
 struct NodeStatistics {
   float area = 0.0F;                  ///< total area of the triangles
   float relative_area = 0.0F;         ///< area / (bounding volume)^(2/3), no unit
+  float log_relative_area = -1e4F;    ///< log2 of it
+  float log_volume = 0.0F;            ///< log2 of the bounding volume in m^3
   Vec3f centroid = Vec3f::Zero();     ///< area-weighted
   Vec3f mean_normal = Vec3f::Zero();  ///< area-weighted mean of unit normals; its length (0 .. 1) says how flat
   float normal_moment[6] = {1.F / 3, 1.F / 3, 1.F / 3, 0, 0, 0};  ///< E[n n^T]: xx yy zz xy xz yz; trace 1
