@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "ode/closest_point.hpp"
+#include "ode/triangle_corners.hpp"
 
 namespace odds::ode {
 namespace {

@@ -4,13 +4,13 @@
 #include <limits>
 
 #include "ode/box_patch.hpp"
-#include "ode/closest_point.hpp"
 #include "ode/colliders.hpp"
 #include "ode/contact_writer.hpp"
 #include "ode/limit.hpp"
 #include "ode/manifold.hpp"
 #include "ode/nearest_surface.hpp"
 #include "ode/statistics.hpp"
+#include "ode/triangle_corners.hpp"
 
 namespace odds::ode {
 namespace {

@@ -3,12 +3,12 @@
 #include <array>
 #include <limits>
 
-#include "ode/closest_point.hpp"
 #include "ode/colliders.hpp"
 #include "ode/contact_writer.hpp"
 #include "ode/limit.hpp"
 #include "ode/nearest_surface.hpp"
 #include "ode/statistics.hpp"
+#include "ode/triangle_corners.hpp"
 
 namespace odds::ode {
 namespace {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "ode/closest_point.hpp"
+#include "ode/triangle_corners.hpp"
 
 namespace odds::ode {
 namespace {

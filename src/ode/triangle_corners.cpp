@@ -1,9 +1,8 @@
-// Closest point, normal and angle of one triangle.
-#include "ode/closest_point.hpp"
+// Normal and angle of one triangle.
+#include "ode/triangle_corners.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace odds::ode {
@@ -17,27 +16,6 @@ Vec3 closest_on_segment(const Vec3& a, const Vec3& b, const Vec3& point) noexcep
 }
 
 }  // namespace
-
-Vec3 closest_point(const Corners& triangle, const Vec3& point) noexcept {
-  const Vec3 normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
-  const double square = normal.squaredNorm();
-  bool inside = square > 0.0;
-  Vec3 nearest = triangle[0];
-  double nearest_square = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Vec3& a = triangle[i];
-    const Vec3& b = triangle[(i + 1) % 3];
-    inside = inside && normal.cross(b - a).dot(point - a) >= 0.0;
-    const Vec3 candidate = closest_on_segment(a, b, point);
-    const double distance = (candidate - point).squaredNorm();
-    if (distance < nearest_square) {
-      nearest_square = distance;
-      nearest = candidate;
-    }
-  }
-  if (!inside) return nearest;
-  return point - (normal.dot(point - triangle[0]) / square) * normal;
-}
 
 Vec3 unit_normal(const Corners& triangle) noexcept {
   const Vec3 normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);

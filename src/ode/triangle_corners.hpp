@@ -1,16 +1,19 @@
-// Geometry of one triangle that collisions with spheres and boxes need: closest point, normal, angle at a point.
+// One triangle as collisions with spheres and boxes see it: closest point, normal, angle at a point.
 #pragma once
 
 #include <array>
 
 #include "odds/math/types.hpp"
+#include "odds/primitive/triangle_distance.hpp"
 
 namespace odds::ode {
 
 using Corners = std::array<Vec3, 3>;
 
-/// The point of the triangle nearest to `point`. Degenerate triangles are their longest edge, or their point.
-[[nodiscard]] Vec3 closest_point(const Corners& triangle, const Vec3& point) noexcept;
+/// The point of the triangle nearest to `point`.
+[[nodiscard]] inline Vec3 closest_point(const Corners& triangle, const Vec3& point) noexcept {
+  return primitive::closest_point_on_triangle(point, triangle.data());
+}
 
 /// Unit normal by the right-hand rule, or zero if the triangle has no area.
 [[nodiscard]] Vec3 unit_normal(const Corners& triangle) noexcept;
