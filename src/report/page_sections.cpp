@@ -25,7 +25,7 @@ std::string time_line(const char* id, const char* title, const char* reading, co
 std::string percentile_row(const char* label, const Histogram& histogram) {
   std::string html = fmt::format("<tr><td>{}</td><td>{}</td>", label, grouped(histogram.count()));
   for (const double percentile : {50.0, 90.0, 99.0, 99.9, 99.99}) {
-    const bool thin = static_cast<double>(histogram.count()) * (100.0 - percentile) < 1000.0;  // < 10 samples beyond
+    const bool thin = static_cast<double>(histogram.count()) * (100.0 - percentile) < 999.5;  // < 10 samples beyond
     html += histogram.count() == 0
                 ? "<td>–</td>"
                 : fmt::format("<td{}>{}</td>", thin ? " class=\"thin\"" : "",
@@ -57,8 +57,8 @@ struct AnswerKind {
 
 std::string page_latency(const RunSummary& s, bool charts) {
   std::string html =
-      "<h2 id=\"latency\">Latency</h2>\n<p>Every planned period counts, skipped ones too, and all times are "
-      "taken from the planned start.</p>\n" +
+      "<h2 id=\"latency\">Latency</h2>\n<p>Tick and wake-up count from the planned start, and every planned period is "
+      "in them, skipped ones too. The other rows are the durations of parts of a tick.</p>\n" +
       percentile_table(s);
   if (!charts) return html;
   html += "<div class=\"pair\">\n";

@@ -34,7 +34,11 @@
         else { ctx.moveTo(area.left, at); ctx.lineTo(area.right, at); }
         ctx.stroke();
         ctx.font = '11px system-ui, sans-serif';
-        if (vertical) ctx.fillText(line.label, at + 4, area.top + 11);
+        if (vertical) {
+          const beyond = at + 4 + ctx.measureText(line.label).width > area.right;  // no room on the right of the line
+          ctx.textAlign = beyond ? 'right' : 'left';
+          ctx.fillText(line.label, at + (beyond ? -4 : 4), area.top + (beyond ? 24 : 11));
+        }
         else { ctx.textAlign = 'right'; ctx.fillText(line.label, area.right - 4, at - 4); }
         ctx.restore();
       }
@@ -112,7 +116,10 @@
     type: 'linear', min: 0, max: data.end_s, offset: false, grid: {color: colour('grid'), drawBorder: false, offset: false},
     ticks: {callback: (value) => trim(value, 5)}
   });
-  const sameWidth = (scale) => { scale.width = 72; };  // so that the time lines stand exactly below each other
+  // So that the time lines stand exactly below each other, whether they have an axis on the right or not.
+  const sameWidth = (scale) => { scale.width = 72; };
+  const rightEdge = 52;
+  const sameRightWidth = (scale) => { scale.width = rightEdge; };
 
   function draw(id, config, readable) {
     const canvas = document.getElementById(id);
@@ -181,6 +188,7 @@
   function drawTimeLine(id, yAxis, datasets, lines = [], label = asMicro, more = {}) {
     draw(id, {
       datasets, type: more.type, options: {
+        layout: {padding: {right: more.scales ? 0 : rightEdge}},
         scales: {x: timeAxis(), y: {...yAxis, afterFit: sameWidth}, ...(more.scales || {})}, plugins: {limits: {lines}}
       }
     }, {title: atTime, label});
@@ -228,7 +236,9 @@
       series('deepest contact', 'blue', points(time.t, time.depth)),
       series('contact points', 'orange', points(time.t, time.contacts), {yAxisID: 'count', stepped: true, borderWidth: 0.8})], [],
       (item) => item.dataset.label + ': ' + trim(item.parsed.y, 3) + (item.datasetIndex === 0 ? ' mm' : ''),
-      {scales: {count: axis('contact points', {position: 'right', beginAtZero: true, grid: {display: false}, ticks: {precision: 0}})}});
+      {scales: {count: axis('contact points', {
+        position: 'right', beginAtZero: true, grid: {display: false}, ticks: {precision: 0}, afterFit: sameRightWidth
+      })}});
   }
 
   function drawAll() {
