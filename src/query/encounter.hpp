@@ -173,10 +173,13 @@ class Encounter {
     const double length = direction.norm();
     contact.normal = length > 0.0 && std::isfinite(length) ? Vec3(direction / length) : Vec3::UnitZ();
     // A's surface lies beyond B's by this much. Two patches that nobody has looked into cannot be told to overlap
-    // deeper than the thinner of them is thick; and as they may not meet at all, it is the expected depth that counts.
+    // deeper than the thinner of them is thick. They may not meet at all, and a patch that faces all ways has no side
+    // to be beyond: so it is the expected depth that counts, weighted by how flat both patches are (a whole closed
+    // body: not at all).
     const double passed = contact.normal.dot(centroid_b - centroid_a);
     const double thickness = 2.0 * static_cast<double>(std::min(sa.slab_half, sb.slab_half));
-    contact.depth = static_cast<double>(probability(i, j)) * std::clamp(passed, 0.0, thickness);
+    const double flatness = static_cast<double>(std::min(sa.mean_normal.norm() * sb.mean_normal.norm(), 1.0F));
+    contact.depth = static_cast<double>(probability(i, j)) * flatness * std::clamp(passed, 0.0, thickness);
     return contact;
   }
 

@@ -39,13 +39,14 @@ struct Pair::Implementation {
 
 namespace {
 
-constexpr double hits_per_microsecond = 0.4;
+constexpr double hits_per_microsecond = 0.25;
 // What a patch takes from hearing of the deadline to its end: a ray or two and the choice of contacts; a single
 // contact.
 constexpr std::int64_t patch_finish_ns = 7000;
 constexpr std::int64_t single_finish_ns = 3000;
 
-/// Hits that are wanted: one proves; a patch takes as many as its making has time for, about 1 us each.
+/// Hits that are wanted: one proves; a patch takes as many as its making has time for: 1 to 2 us each, and some 30 us
+/// for rays.
 std::uint32_t wanted_hits(const Request& request) noexcept {
   if (request.max_contacts <= 1) return 1;
   if (!std::isfinite(request.budget.microseconds)) return no_feature;

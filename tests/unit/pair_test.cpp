@@ -154,6 +154,18 @@ TEST(Pair, BothEstimatorsLeadToTheSameProofsByDifferentWays) {
   EXPECT_TRUE(differ) << "the order of the search must depend on the estimator";
 }
 
+TEST(Pair, AGlanceAtTheRootsNeverPushesDeep) {
+  // With hardly any work the candidate is a pair of whole bodies: where they are is known, how deep they overlap is
+  // not.
+  const auto shape = Shape::build(testing::wavy_sphere(24)).value();
+  auto pair = std::move(Pair::make(shape, shape)).value();
+  for (std::uint64_t units = 1; units < 8; ++units) {
+    const Answer& answer = pair.run({Mat3::Identity(), {1.2, 0.3, 0.1}}, {.budget = Budget::work(units)});
+    ASSERT_TRUE(answer.has_cell_pair);
+    EXPECT_LT(answer.cell_pair.depth, 0.05) << units << " units";
+  }
+}
+
 TEST(Pair, SaysAQuickEstimatedHitOnlyIfAsked) {
   const auto shape = Shape::build(testing::wavy_sphere(24));
   auto pair = std::move(Pair::make(shape.value(), shape.value())).value();
