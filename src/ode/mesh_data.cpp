@@ -15,8 +15,8 @@ namespace odds::ode {
 namespace {
 
 std::optional<Error> check(const oddsBuildParams& params, const std::string& name) {
-  if (params.volume < ODDS_VOLUME_AABB || params.volume > ODDS_VOLUME_SPHERE) {
-    return Error{name, "", "oddsBuildParams.volume is unknown", "use one of ODDS_VOLUME_AABB, _OBB, _SPHERE"};
+  if (params.volume < 0 || params.volume >= static_cast<int>(volume::kind_names.size())) {
+    return Error{name, "", "oddsBuildParams.volume is unknown", "use one of ODDS_VOLUME_AABB ... ODDS_VOLUME_HULL"};
   }
   if (params.leaf_triangles < 1 || params.leaf_triangles > 16) {
     return Error{name, "", "oddsBuildParams.leaf_triangles is out of range", "use 1 .. 16 (default 4)"};
@@ -27,16 +27,8 @@ std::optional<Error> check(const oddsBuildParams& params, const std::string& nam
   return std::nullopt;
 }
 
-volume::Kind kind_of(int volume) noexcept {
-  switch (volume) {
-    case ODDS_VOLUME_AABB:
-      return volume::Kind::aabb;
-    case ODDS_VOLUME_SPHERE:
-      return volume::Kind::sphere;
-    default:
-      return volume::Kind::obb;
-  }
-}
+/// The C interface numbers volumes as volume::Kind does; tests/architecture holds them together.
+volume::Kind kind_of(int volume) noexcept { return static_cast<volume::Kind>(volume); }
 
 template <class Scalar>
 int build_from_arrays(oddsMeshDataID data, const Scalar* vertices, int vertex_stride, int vertex_count,

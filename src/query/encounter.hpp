@@ -53,7 +53,7 @@ class Encounter {
     b_in_a_.rotation = pose_b_in_a.rotation;
     b_in_a_.translation = pose_b_in_a.rotation * b.origin() + (pose_b_in_a.translation - a.origin());
     reach_ = a.reach() + b.reach();
-    relative_ = volume::RelativePose::make(b_in_a_, 2.0 * reach_);
+    relative_ = V::PreparedPose::make(b_in_a_, 2.0 * reach_);
   }
 
   /// True if the enclosing balls about both origins are apart; then nothing below may be asked (the margins assume
@@ -205,7 +205,7 @@ class Encounter {
   const tree::Hierarchy<V>& a_;
   const tree::Hierarchy<V>& b_;
   math::Pose b_in_a_;
-  volume::RelativePose relative_;
+  typename V::PreparedPose relative_;
   double reach_ = 0.0;
   EstimatorKind estimator_;
 };

@@ -82,7 +82,7 @@ std::size_t collect(const tree::Hierarchy<V>& hierarchy, const Box& box, std::sp
   const std::array<Vec3, 8> corners = box.corners();
   const V enclosing = V::fit(corners, box.axes);
   const double reach = hierarchy.reach() + box.center.norm() + box.half_extents.norm();
-  const volume::RelativePose same_frame = volume::RelativePose::make({}, 2.0 * reach);
+  const auto same_frame = V::PreparedPose::make({}, 2.0 * reach);
   std::array<std::uint32_t, stack_capacity> stack;
   std::size_t size = 0;
   stack[size++] = 0;

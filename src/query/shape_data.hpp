@@ -7,6 +7,8 @@
 #include "odds/query/shape.hpp"
 #include "odds/tree/hierarchy.hpp"
 #include "odds/volume/aabb.hpp"
+#include "odds/volume/hull.hpp"
+#include "odds/volume/kdop.hpp"
 #include "odds/volume/obb.hpp"
 #include "odds/volume/sphere.hpp"
 
@@ -14,7 +16,9 @@ namespace odds::query {
 
 /// In the order of volume::Kind.
 using AnyHierarchy =
-    std::variant<tree::Hierarchy<volume::Aabb>, tree::Hierarchy<volume::Obb>, tree::Hierarchy<volume::Sphere>>;
+    std::variant<tree::Hierarchy<volume::Aabb>, tree::Hierarchy<volume::Obb>, tree::Hierarchy<volume::Sphere>,
+                 tree::Hierarchy<volume::Kdop14>, tree::Hierarchy<volume::Kdop18>, tree::Hierarchy<volume::Kdop26>,
+                 tree::Hierarchy<volume::Hull>>;
 static_assert(std::variant_size_v<AnyHierarchy> == volume::kind_names.size());
 
 struct Shape::Data {

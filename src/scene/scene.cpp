@@ -52,7 +52,9 @@ std::optional<Error> read_query(const Settings& settings, Scene& scene) {
   }
   if (reader.choice("method", method_names, index)) request.method = static_cast<query::Method>(index);
   if (reader.choice("estimator", estimator_names, index)) request.estimator = static_cast<query::EstimatorKind>(index);
-  if (reader.choice("bv", volume::kind_names, index)) scene.volume = static_cast<volume::Kind>(index);
+  if (reader.choice("bv", volume::kind_words, index)) {
+    scene.volume = *volume::kind_from_name(volume::kind_words[index]);
+  }
   reader.number("p_min", {0.0, 1.0, true}, request.p_min);
   if (reader.integer("k_min", 1, 1'000'000, number)) request.k_min = static_cast<std::uint32_t>(number);
   if (reader.integer("max_contacts", 0, 8, number)) request.max_contacts = static_cast<int>(number);

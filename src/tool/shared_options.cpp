@@ -22,9 +22,11 @@ std::optional<Number> number_in(const std::string& text) {
 void add_shape_options(CLI::App& command, query::ShapeOptions& options) {
   std::map<std::string, volume::Kind> kinds;
   std::string names;
-  for (const std::string_view kind : volume::kind_names) {
-    kinds.emplace(kind, *volume::kind_from_name(kind));
-    names += (names.empty() ? "" : ", ") + std::string(kind);
+  for (const std::string_view word : volume::kind_words) {
+    const volume::Kind kind = *volume::kind_from_name(word);
+    kinds.emplace(word, kind);
+    names += (names.empty() ? "" : ", ") + std::string(word);
+    if (volume::name(kind) != word) names += " for " + std::string(volume::name(kind));
   }
   add_choice(command, "--bv", options.volume, kinds, "bounding volume: " + names + " (default obb)");
   command.add_option("--tau", options.tau, "share of the greatest area from which on a cell is well filled, (0, 1]")

@@ -4,6 +4,7 @@
 #include "differential/fcl_oracle.hpp"
 #include "odds/mesh/made/by_name.hpp"
 #include "odds/query/pair.hpp"
+#include "support/all_kinds.hpp"
 #include "support/near_poses.hpp"
 
 namespace odds::query {
@@ -48,16 +49,16 @@ TEST_P(AgainstFcl, EveryMethodGivesTheSameVerdicts) {
   EXPECT_LT(hits, queries * 3 / 4);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Shapes, AgainstFcl,
-    ::testing::Combine(::testing::Values(volume::Kind::aabb, volume::Kind::obb, volume::Kind::sphere),
-                       ::testing::Values("made:car_body:triangles=6000", "made:torus_knot", "made:bumpy_sphere",
-                                         "made:gear", "made:plates", "made:terrain")),
-    [](const auto& tested) {
-      std::string text(std::get<1>(tested.param));
-      text = text.substr(5, text.find(':', 5) - 5);
-      return text + "_" + std::string(volume::name(std::get<0>(tested.param)));
-    });
+INSTANTIATE_TEST_SUITE_P(Shapes, AgainstFcl,
+                         ::testing::Combine(::testing::ValuesIn(testing::all_kinds()),
+                                            ::testing::Values("made:car_body:triangles=6000", "made:torus_knot",
+                                                              "made:bumpy_sphere", "made:gear", "made:plates",
+                                                              "made:terrain")),
+                         [](const auto& tested) {
+                           std::string text(std::get<1>(tested.param));
+                           text = text.substr(5, text.find(':', 5) - 5);
+                           return text + "_" + std::string(volume::name(std::get<0>(tested.param)));
+                         });
 
 }  // namespace
 }  // namespace odds::query

@@ -3,6 +3,7 @@
 
 #include "odds/primitive/triangle_triangle.hpp"
 #include "odds/query/pair.hpp"
+#include "support/all_kinds.hpp"
 #include "support/near_poses.hpp"
 #include "support/shapes.hpp"
 
@@ -48,7 +49,7 @@ class AgainstBruteForce : public ::testing::TestWithParam<volume::Kind> {
 
   testing::TouchingPose touching() {
     return testing::touching_pose(random_, Vec3::Zero(), Vec3::Zero(), 3.0,
-                               [&](const math::Pose& pose) { return brute_force(*a_, *b_, pose); });
+                                  [&](const math::Pose& pose) { return brute_force(*a_, *b_, pose); });
   }
 };
 
@@ -134,8 +135,7 @@ TEST_P(AgainstBruteForce, MoreBudgetNeverUndoesAProof) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(AllVolumes, AgainstBruteForce,
-                         ::testing::Values(volume::Kind::aabb, volume::Kind::obb, volume::Kind::sphere),
+INSTANTIATE_TEST_SUITE_P(AllVolumes, AgainstBruteForce, ::testing::ValuesIn(testing::all_kinds()),
                          [](const auto& tested) { return std::string(volume::name(tested.param)); });
 
 }  // namespace

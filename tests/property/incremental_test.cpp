@@ -4,6 +4,7 @@
 #include <random>
 
 #include "odds/query/pair.hpp"
+#include "support/all_kinds.hpp"
 #include "support/shapes.hpp"
 
 namespace odds::query {
@@ -63,9 +64,7 @@ TEST_P(Incremental, SurvivesABudgetThatEndsItAnywhere) {
 }
 
 INSTANTIATE_TEST_SUITE_P(AllVolumes, Incremental,
-                         ::testing::Combine(::testing::Values(volume::Kind::aabb, volume::Kind::obb,
-                                                              volume::Kind::sphere),
-                                            ::testing::Values(64U, 16384U)),
+                         ::testing::Combine(::testing::ValuesIn(testing::all_kinds()), ::testing::Values(64U, 16384U)),
                          [](const auto& tested) {
                            return std::string(volume::name(std::get<0>(tested.param))) + "_" +
                                   std::to_string(std::get<1>(tested.param));

@@ -5,6 +5,7 @@
 
 #include <random>
 
+#include "support/all_kinds.hpp"
 #include "support/shapes.hpp"
 
 namespace odds::query {
@@ -63,8 +64,7 @@ TEST_P(Rays, RefuseWhatIsNoRay) {
   EXPECT_FALSE(cast_ray(*shape, {0, 0, 0}, Vec3::UnitX(), 10, 0));
 }
 
-INSTANTIATE_TEST_SUITE_P(AllVolumes, Rays,
-                         ::testing::Values(volume::Kind::aabb, volume::Kind::obb, volume::Kind::sphere),
+INSTANTIATE_TEST_SUITE_P(AllVolumes, Rays, ::testing::ValuesIn(testing::all_kinds()),
                          [](const auto& tested) { return std::string(volume::name(tested.param)); });
 
 }  // namespace

@@ -11,12 +11,13 @@
 #include "odds/realtime/fitness.hpp"
 #include "odds/realtime/periodic_loop.hpp"
 #include "odds/realtime/usage.hpp"
+#include "support/all_kinds.hpp"
 #include "support/allocation_counter.hpp"
 
 namespace odds::query {
 namespace {
 
-constexpr volume::Kind kinds[] = {volume::Kind::aabb, volume::Kind::obb, volume::Kind::sphere};
+constexpr auto kinds = testing::all_kinds();
 constexpr Method methods[] = {Method::exact, Method::incremental, Method::time_critical};
 
 std::shared_ptr<const Shape> car(std::uint32_t triangles, volume::Kind kind) {

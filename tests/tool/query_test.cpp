@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "odds/math/random.hpp"
+#include "odds/volume/kind.hpp"
 #include "support/run_tool.hpp"
 
 namespace odds {
@@ -102,7 +103,8 @@ TEST(Query, AllMethodsAndVolumesProveTheSameVerdicts) {
   folder.write("poses.csv", random_poses(150, 0.12));
   std::vector<std::string> expected;
   std::size_t hits = 0;
-  for (const std::string volume : {"aabb", "obb", "sphere"}) {
+  for (const std::string_view word : volume::kind_words) {
+    const std::string volume(word);
     for (const std::string method : {"exact", "incremental", "time-critical"}) {
       const Ran ran =
           run_tool(folder, "query made:torus_knot:along=200,across=8 made:gear --poses poses.csv --out a.csv --bv " +

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "support/all_kinds.hpp"
 #include "support/shapes.hpp"
 
 namespace odds::query {
@@ -103,8 +104,7 @@ TEST_P(PairOfSpheres, StopsAtAnInjectedDeadline) {
 }
 
 INSTANTIATE_TEST_SUITE_P(AllVolumesAndMethods, PairOfSpheres,
-                         ::testing::Combine(::testing::Values(volume::Kind::aabb, volume::Kind::obb,
-                                                              volume::Kind::sphere),
+                         ::testing::Combine(::testing::ValuesIn(testing::all_kinds()),
                                             ::testing::Values(Method::exact, Method::time_critical)),
                          [](const auto& tested) {
                            return std::string(volume::name(std::get<0>(tested.param))) +

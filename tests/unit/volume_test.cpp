@@ -3,10 +3,8 @@
 
 #include <random>
 
-#include "odds/volume/aabb.hpp"
 #include "odds/volume/kind.hpp"
-#include "odds/volume/obb.hpp"
-#include "odds/volume/sphere.hpp"
+#include "support/all_kinds.hpp"
 
 namespace odds::volume {
 namespace {
@@ -29,8 +27,14 @@ class Volumes : public ::testing::Test {
     return points;
   }
 };
-using AllVolumes = ::testing::Types<Aabb, Obb, Sphere>;
-TYPED_TEST_SUITE(Volumes, AllVolumes);
+
+struct VolumeNames {
+  template <class>
+  static std::string GetName(int i) {
+    return testing::name_of(static_cast<Kind>(i));
+  }
+};
+TYPED_TEST_SUITE(Volumes, testing::AllVolumes, VolumeNames);
 
 TYPED_TEST(Volumes, SharedPointsAlwaysOverlap) {
   for (int i = 0; i < 3000; ++i) {
@@ -46,7 +50,7 @@ TYPED_TEST(Volumes, SharedPointsAlwaysOverlap) {
     double reach = b_in_a.translation.norm();
     for (const Vec3& p : a) reach = std::max(reach, p.norm());
     for (const Vec3& p : b) reach = std::max(reach, p.norm());
-    ASSERT_TRUE(overlap(va, vb, RelativePose::make(b_in_a, 2.0 * reach))) << i;
+    ASSERT_TRUE(overlap(va, vb, TypeParam::PreparedPose::make(b_in_a, 2.0 * reach))) << i;
   }
 }
 
@@ -54,7 +58,8 @@ TYPED_TEST(Volumes, FarThingsAreApart) {
   for (int i = 0; i < 200; ++i) {
     const TypeParam va = TypeParam::fit(this->cloud(Vec3::Zero(), Vec3::Ones(), 20), this->rotation());
     const TypeParam vb = TypeParam::fit(this->cloud(Vec3::Zero(), Vec3::Ones(), 20), this->rotation());
-    EXPECT_FALSE(overlap(va, vb, RelativePose::make({this->rotation(), 40.0 * this->vector().normalized()}, 100.0)));
+    EXPECT_FALSE(
+        overlap(va, vb, TypeParam::PreparedPose::make({this->rotation(), 40.0 * this->vector().normalized()}, 100.0)));
   }
 }
 
@@ -63,7 +68,7 @@ TYPED_TEST(Volumes, CommonVolumeIsWithinBoth) {
     const Vec3 flat(1.0, 0.5, i % 3 == 0 ? 0.0 : 0.2);
     const TypeParam va = TypeParam::fit(this->cloud(Vec3::Zero(), flat, 20), Mat3::Identity());
     const TypeParam vb = TypeParam::fit(this->cloud(Vec3::Zero(), flat, 20), this->rotation());
-    const RelativePose pose = RelativePose::make({this->rotation(), this->vector()}, 20.0);
+    const auto pose = TypeParam::PreparedPose::make({this->rotation(), this->vector()}, 20.0);
     const double common = overlap_volume(va, vb, pose);
     EXPECT_GE(common, 0.0);
     EXPECT_GT(va.volume(), 0.0);
@@ -74,7 +79,7 @@ TYPED_TEST(Volumes, CommonVolumeIsWithinBoth) {
 
 TYPED_TEST(Volumes, CommonVolumeOfOneVolumeWithItselfIsWhole) {
   const TypeParam v = TypeParam::fit(this->cloud(Vec3::Zero(), Vec3(1, 0.5, 0.2), 50), Mat3::Identity());
-  EXPECT_NEAR(overlap_volume(v, v, RelativePose::make({}, 10.0)) / v.volume(), 1.0, 1e-3);
+  EXPECT_NEAR(overlap_volume(v, v, TypeParam::PreparedPose::make({}, 10.0)) / v.volume(), 1.0, 1e-3);
 }
 
 TYPED_TEST(Volumes, SegmentsThroughTheirPointsMeetThem) {
@@ -96,7 +101,7 @@ TYPED_TEST(Volumes, APointIsAVolumeToo) {
   const TypeParam v = TypeParam::fit(point, Mat3::Identity());
   EXPECT_TRUE(std::isfinite(v.volume()));
   EXPECT_GT(v.volume(), 0.0);
-  EXPECT_TRUE(overlap(v, v, RelativePose::make({}, 10.0)));
+  EXPECT_TRUE(overlap(v, v, TypeParam::PreparedPose::make({}, 10.0)));
 }
 
 TEST(Sphere, LensVolumeIsExact) {
@@ -115,6 +120,7 @@ TEST(Kind, NamesAndKindsAgree) {
   for (std::size_t i = 0; i < kind_names.size(); ++i) {
     EXPECT_EQ(kind_from_name(kind_names[i]), static_cast<Kind>(i));
   }
+  for (const auto& [alias, kind] : kind_aliases) EXPECT_EQ(kind_from_name(alias), kind);
   EXPECT_FALSE(kind_from_name("box"));
 }
 

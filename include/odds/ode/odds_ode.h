@@ -46,7 +46,11 @@ typedef struct oddsMeshData* oddsMeshDataID;
 enum {
   ODDS_VOLUME_AABB = 0, /* axis-aligned boxes */
   ODDS_VOLUME_OBB = 1,  /* oriented boxes (default) */
-  ODDS_VOLUME_SPHERE = 2
+  ODDS_VOLUME_SPHERE = 2,
+  ODDS_VOLUME_KDOP14 = 3, /* slabs along 7 fixed directions */
+  ODDS_VOLUME_KDOP18 = 4, /* 9 */
+  ODDS_VOLUME_KDOP26 = 5, /* 13 */
+  ODDS_VOLUME_HULL = 6    /* convex hulls of at most 32 corners: least pairs, most time and memory for each */
 };
 
 typedef struct oddsBuildParams {

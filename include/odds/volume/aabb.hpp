@@ -10,6 +10,8 @@ namespace odds::volume {
 /// 24 bytes. Overlap by the six face axes: the nine edge axes cost more than they exclude (measured on near-contact
 /// poses).
 struct Aabb {
+  using PreparedPose = RelativePose;
+
   Vec3f center_ = Vec3f::Zero();
   Vec3f half_ = Vec3f::Zero();
 

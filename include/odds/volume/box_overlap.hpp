@@ -87,26 +87,35 @@ struct BoxPairView {
       {product_a * (volume_b / enclosure_b), product_b * (volume_a / enclosure_a), 8.0 * volume_a, 8.0 * volume_b});
 }
 
-/// Slab test of a segment given in the box's own axes, from its centre. A direction
-/// within the slab is judged by where the segment stands.
+/// Part [enter, leave] of a segment that may lie within |x| <= half of one slab, with `origin` and `direction` along
+/// the slab's normal. False: none does. A direction within the slab is judged by where the segment stands.
+[[nodiscard]] inline bool clip_to_slab(float half, float origin, float direction, float length, float& enter,
+                                       float& leave) noexcept {
+  if (std::abs(direction) < 1e-6F) {  // moves less than the margin over any length that the margin was made for
+    return std::abs(origin) <= half + std::abs(direction) * length;
+  }
+  const float inverse = 1.0F / direction;
+  const float t0 = (-half - origin) * inverse;
+  const float t1 = (half - origin) * inverse;
+  enter = std::max(enter, std::min(t0, t1));
+  leave = std::min(leave, std::max(t0, t1));
+  return true;
+}
+
+/// Whether something is left of a segment that was clipped: each end is wrong by a few roundings of its own size.
+[[nodiscard]] inline bool anything_left(float enter, float leave) noexcept {
+  return enter <= leave + 4e-7F * (std::abs(enter) + std::abs(leave));
+}
+
+/// A segment given in the box's own axes, from its centre.
 [[nodiscard]] inline bool segment_meets_box(const Vec3f& half_extents, const Vec3f& origin, const Vec3f& direction,
                                             const RaySegment& ray) noexcept {
   float enter = 0.0F;
   float leave = ray.length;
   for (int i = 0; i < 3; ++i) {
-    const float half = half_extents[i] + ray.margin;
-    if (std::abs(direction[i]) < 1e-6F) {  // moves less than the margin over any length that the margin was made for
-      if (std::abs(origin[i]) > half + std::abs(direction[i]) * ray.length) return false;
-      continue;
-    }
-    const float inverse = 1.0F / direction[i];
-    const float t0 = (-half - origin[i]) * inverse;
-    const float t1 = (half - origin[i]) * inverse;
-    enter = std::max(enter, std::min(t0, t1));
-    leave = std::min(leave, std::max(t0, t1));
+    if (!clip_to_slab(half_extents[i] + ray.margin, origin[i], direction[i], ray.length, enter, leave)) return false;
   }
-  // Each t is wrong by a few roundings of its own size.
-  return enter <= leave + 4e-7F * (std::abs(enter) + std::abs(leave));
+  return anything_left(enter, leave);
 }
 
 /// Half extents in float that enclose double points about a float centre: rounded outwards.

@@ -35,18 +35,29 @@ struct RaySegment {
 /// Surface moments that a fit may use: principal axes of the area-weighted covariance, thinnest first (columns).
 using PrincipalAxes = Mat3;
 
+/// What a volume prepares once per query: a RelativePose, or a type derived from it that holds more (tables of turned
+/// directions, say). Made by `make(b_in_a, reach)`; no allocation.
+template <class P>
+concept PoseForVolumes = std::derived_from<P, RelativePose> && requires(const math::Pose& b_in_a, double reach) {
+  { P::make(b_in_a, reach) }
+  noexcept->std::same_as<P>;
+};
+
 /// `overlap` and `met_by` may say true wrongly, never false (points exactly shared count as overlap). `volume` and
 /// `overlap_volume` are estimates for probabilities: positive and finite for every volume, flat ones included (a flat
 /// extent counts as `thickness_floor` of the largest), overlap_volume <= both volumes. All lengths in metres, frames of
 /// hierarchy A for A and `pose` mapping B to A.
 template <class V>
-concept BoundingVolume = requires(const V& a, const V& b, const RelativePose& pose, std::span<const Vec3> points,
-                                  const PrincipalAxes& axes, const RaySegment& ray) {
+concept BoundingVolume = PoseForVolumes<typename V::PreparedPose> &&
+    requires(const V& a, const V& b, const typename V::PreparedPose& pose, std::span<const Vec3> points,
+             const PrincipalAxes& axes, const RaySegment& ray) {
   { V::fit(points, axes) } -> std::same_as<V>;
   { overlap(a, b, pose) }
   noexcept->std::same_as<bool>;
   { overlap_volume(a, b, pose) }
   noexcept->std::same_as<double>;
+  { met_by(a, ray) }
+  noexcept->std::same_as<bool>;
   { a.volume() }
   noexcept->std::same_as<double>;
   { a.radius() }

@@ -9,6 +9,8 @@ namespace odds::volume {
 /// 60 bytes. Overlap by all 15 axes. The axes are kept in float; extents are measured along those rounded axes, so the
 /// box encloses its points although the axes are orthonormal only to 1e-7: that error is in the margin of RelativePose.
 struct Obb {
+  using PreparedPose = RelativePose;
+
   Vec3f center_ = Vec3f::Zero();
   Mat3f axes_ = Mat3f::Identity();
   Vec3f half_ = Vec3f::Zero();

@@ -12,6 +12,8 @@ namespace odds::volume {
 
 /// 16 bytes. Fitted by Ritter's two passes (1990) over the corners: at most about 5 % larger than the least sphere.
 struct Sphere {
+  using PreparedPose = RelativePose;
+
   Vec3f center_ = Vec3f::Zero();
   float radius_ = 0.0F;
 
