@@ -38,8 +38,21 @@ class Vertices {
 void add_extremes(std::span<const Vec3> points, const Mat3& axes, Vertices& vertices) {
   for (const SlabNormal& slab : slab_normals<26>()) {
     const Vec3 normal = axes * Vec3(slab[0], slab[1], slab[2]);
-    const auto [least, greatest] = std::minmax_element(
-        points.begin(), points.end(), [&](const Vec3& p, const Vec3& q) { return normal.dot(p) < normal.dot(q); });
+    const Vec3* least = &points[0];
+    const Vec3* greatest = &points[0];
+    double lower = INFINITY;
+    double upper = -INFINITY;
+    for (const Vec3& point : points) {
+      const double offset = normal.dot(point);
+      if (offset < lower) {
+        lower = offset;
+        least = &point;
+      }
+      if (offset > upper) {
+        upper = offset;
+        greatest = &point;
+      }
+    }
     vertices.add(*least);
     vertices.add(*greatest);
   }
