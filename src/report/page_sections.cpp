@@ -189,7 +189,6 @@ std::string page_run(const RunInfo& info) {
   row("effects", info.effects.empty() ? "none" : fmt::format("{}", fmt::join(info.effects, ", ")));
   row("period", duration(static_cast<double>(info.period_ns)));
   row("budget of a query", duration(info.budget_us * 1e3));
-  row("seed", std::to_string(info.seed));
   row("version", info.version);
   return html + "</table></div>\n";
 }

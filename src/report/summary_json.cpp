@@ -37,7 +37,6 @@ Json run(const RunInfo& info) {
           {"bounding_volume", info.bounding_volume},
           {"device", info.device},
           {"effects", info.effects},
-          {"seed", info.seed},
           {"period_us", static_cast<double>(info.period_ns) * 1e-3},
           {"budget_us", number_or_null(info.budget_us)},
           {"allowed_overshoot_us", number_or_null(info.allowed_overshoot_us)},

@@ -100,7 +100,6 @@ inline MadeRecording made_recording(double seconds = 10.0) {
   made.info.bounding_volume = "obb";
   made.info.device = "scripted: press, slide, tap";
   made.info.effects = {"virtual coupling", "friction"};
-  made.info.seed = 42;
   made.info.budget_us = 100.0;
   using Outcome = realtime::SetupLine::Outcome;
   made.info.thread = {

@@ -29,7 +29,6 @@ struct RunInfo {
   std::string bounding_volume;  ///< "obb"
   std::string device;           ///< "scripted: press"
   std::vector<std::string> effects;
-  std::uint64_t seed = 0;
 
   std::int64_t period_ns = 1'000'000;
   double budget_us = std::numeric_limits<double>::infinity();  ///< of one query; infinity: none
