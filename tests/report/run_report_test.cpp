@@ -113,6 +113,17 @@ TEST(RunSummary, what_nobody_counted_is_not_called_kept) {
   EXPECT_EQ(state(summarize(made.info, made.ticks), "budget"), State::not_measured);
 }
 
+TEST(RunSummary, page_faults_of_simulated_time_are_shown_but_not_judged) {
+  MadeRecording made = calm_recording();
+  made.info.simulated_time = true;
+  made.ticks[5].minor_faults = 1;
+  const RunSummary summary = summarize(made.info, made.ticks);
+  EXPECT_EQ(state(summary, "memory"), State::met) << "nothing is locked into memory then";
+  EXPECT_EQ(summary.minor_faults, 1U);
+  made.ticks[5].allocations = 1;
+  EXPECT_EQ(state(summarize(made.info, made.ticks), "memory"), State::missed);
+}
+
 TEST(RunSummary, skipped_periods_count_with_the_time_until_the_next_force) {
   MadeRecording made;
   made.info.loop = {2, 3, false};
