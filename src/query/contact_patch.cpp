@@ -39,7 +39,8 @@ struct Patch {
   Vec3 normal = Vec3::UnitZ();
   Vec3 lower = Vec3::Zero();  ///< box of the rim
   Vec3 upper = Vec3::Zero();
-  double low = 0.0;  ///< of the rim, and depth below it, along `normal`
+  Vec3 centre = Vec3::Zero();  ///< of the surface that the rim spans
+  double low = 0.0;            ///< of the rim, and depth below it, along `normal`
   double high = 0.0;
   double depth = 0.0;
   patch::Chosen chosen;
@@ -88,7 +89,7 @@ struct PatchBuilder::Scratch {
         witnesses(witnesses_per_pair * hit_capacity + 64),
         components(pieces.size(), hit_capacity) {}
 
-  using Measured = std::array<Witness, most_contacts + 1>;
+  using Measured = std::array<Witness, most_contacts + 3>;  ///< those that span the patch, its centre, its summits
   using Indices = std::span<const std::uint32_t>;
 
   void place_pairs(const PatchInput& input, Watch& watch) noexcept;
@@ -233,7 +234,15 @@ std::size_t PatchBuilder::Scratch::probe(const PatchInput& input, const Vec3& ce
     }
     measured[count++] = w;
   }
-  const Witness deepest = patch::deepest_of({measured.data(), count}, frame, centre, 0.25 * reach);
+  Witness deepest = patch::deepest_of({measured.data(), count}, frame, centre, 0.25 * reach);
+  // The last run's summit is near this one's; starting from it, the climb follows one summit and does not flicker.
+  if (input.previous_position != nullptr && (*input.previous_position - centre).norm() < 0.5 * reach &&
+      measure(*input.previous_position, inside) && inside.depth > deepest.depth) {
+    deepest = inside;
+    measured[count++] = inside;
+  }
+  const Witness higher = patch::climb(input, deepest, frame.normal, 0.25 * reach, reach, watch);
+  if (higher.depth > (1.0 + tolerances::level_overlap) * deepest.depth) measured[count++] = deepest = higher;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const Witness& w = measured[i];
@@ -259,6 +268,7 @@ Patch PatchBuilder::Scratch::make_patch(const PatchInput& input, const patch::Ri
   patch::Extremes extremes(frame, fan, centre, deepest);
   for (std::size_t i = 0; i < witness_count && !(watch.late(i) && i >= least_pairs); ++i) extremes.add(witnesses[i]);
 
+  made.centre = centre;
   const double lever = (input.reference_a - centre).norm();
   made.depth = deepest.depth;
   made.chosen = patch::choose(extremes.all(), frame, most_contacts, spacing(made.depth, lever));
@@ -324,7 +334,8 @@ void PatchBuilder::Scratch::write(const PatchInput& input) noexcept {
   if (count >= wanted) {
     count = wanted;  // one contact a patch: at its middle, so that it bears without tipping
     for (std::size_t i = 0; i < count; ++i) {
-      if (order[i]->chosen.count > 1) order[i]->chosen.witnesses[0] = patch::merged(order[i]->chosen, order[i]->normal);
+      if (order[i]->chosen.count > 1)
+        order[i]->chosen.witnesses[0] = patch::merged(order[i]->chosen, order[i]->normal, order[i]->centre);
       order[i]->chosen.count = 1;
     }
   }

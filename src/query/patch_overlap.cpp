@@ -49,6 +49,20 @@ bool exit_along(const Probed& body, const Vec3& point, const Vec3& outwards, dou
   return found_behind;
 }
 
+/// How the height of a surface along `up` changes across it.
+Vec3 slope_of(const Vec3& surface_normal, const Vec3& up) noexcept {
+  const double facing = surface_normal.dot(up);
+  if (std::abs(facing) <= tolerances::steep * surface_normal.norm()) return Vec3::Zero();  // a wall tells nothing
+  return up - surface_normal / facing;
+}
+
+/// How the overlap changes across the normal at a witness.
+Vec3 slope_of_overlap(const PatchInput& input, const Witness& w, const Vec3& normal) noexcept {
+  const Vec3 normal_a = normal_of({input.probe_a, input.vertices_a, input.triangles_a, input.solid_a}, w.triangle_a);
+  const Vec3 normal_b = normal_of({input.probe_b, input.vertices_b, input.triangles_b, input.solid_b}, w.triangle_b);
+  return slope_of(input.pose_b_in_a.rotation * normal_b, normal) - slope_of(normal_a, normal);
+}
+
 }  // namespace
 
 double pair_depth(const PlacedPair& placed, const Frame& frame, const Vec3& shift) noexcept {
@@ -78,6 +92,31 @@ bool probe_overlap(const PatchInput& input, const Vec3& point, const Vec3& norma
   found.on_b = point + up * normal;
   witness = found;
   return true;
+}
+
+Witness climb(const PatchInput& input, const Witness& start, const Vec3& normal, double radius, double reach,
+              Watch& watch) noexcept {
+  constexpr int most_probes = 6;
+  Witness best = start;
+  Vec3 slope = slope_of_overlap(input, best, normal);
+  double step = -1.0;
+  for (int i = 0; i < most_probes && !watch.late(); ++i) {
+    const double steepness = slope.norm();
+    if (!(steepness * radius > tolerances::level_overlap * best.depth) || !std::isfinite(steepness)) break;
+    if (step < 0.0) step = std::clamp(best.depth / steepness, 0.05 * radius, 0.5 * radius);
+    const Vec3 uphill = slope / steepness;
+    Witness next;
+    if (!probe_overlap(input, best.middle() + step * uphill, normal, reach, watch, next) || next.depth <= best.depth) {
+      step *= 0.35;  // over the ridge, or out of the overlap
+      continue;
+    }
+    const Vec3 next_slope = slope_of_overlap(input, next, normal);
+    const double still_uphill = next_slope.dot(uphill);
+    step *= still_uphill > 0.0 ? 1.6 : steepness / (steepness - still_uphill);
+    best = next;
+    slope = next_slope;
+  }
+  return best;
 }
 
 }  // namespace odds::query::patch

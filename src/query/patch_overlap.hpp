@@ -112,4 +112,10 @@ void overlap_corners(const PlacedPair& placed, const Frame& frame, const Vec3& s
 [[nodiscard]] bool probe_overlap(const PatchInput& input, const Vec3& point, const Vec3& normal, double reach,
                                  Watch& watch, Witness& witness) noexcept;
 
+/// Walks from a witness of probe_overlap uphill to where the overlap is deepest, by the slopes of the two triangles and
+/// a few more probes, no step longer than `radius`. The overlap of a ring or a crescent is deepest along a ridge that
+/// its centre misses. Returns the deepest found, at least `start`.
+[[nodiscard]] Witness climb(const PatchInput& input, const Witness& start, const Vec3& normal, double radius,
+                            double reach, Watch& watch) noexcept;
+
 }  // namespace odds::query::patch

@@ -200,17 +200,14 @@ Witness pulled_in(const Witness& witness, const Witness& deepest) noexcept {
   return pulled;
 }
 
-Witness merged(const Chosen& chosen, const Vec3& normal) noexcept {
+Witness merged(const Chosen& chosen, const Vec3& normal, const Vec3& centre) noexcept {
   Witness one = chosen.witnesses[0];
-  Vec3 sum = Vec3::Zero();
-  double weight = 0.0;
-  for (std::size_t i = 0; i < chosen.count; ++i) one.depth = std::max(one.depth, chosen.witnesses[i].depth);
+  double height = 0.0;
   for (std::size_t i = 0; i < chosen.count; ++i) {
-    const double w = one.depth > 0.0 ? chosen.witnesses[i].depth : 1.0;
-    sum += w * chosen.witnesses[i].middle();
-    weight += w;
+    one.depth = std::max(one.depth, chosen.witnesses[i].depth);
+    height += normal.dot(chosen.witnesses[i].middle() - centre) / static_cast<double>(chosen.count);
   }
-  const Vec3 middle = weight > 0.0 ? Vec3(sum / weight) : one.middle();
+  const Vec3 middle = centre + height * normal;
   one.on_a = middle - 0.5 * one.depth * normal;
   one.on_b = middle + 0.5 * one.depth * normal;
   return one;

@@ -60,7 +60,8 @@ struct Chosen {
 /// threshold. On flat overlaps that is exact; inside convex ones the true depth is greater.
 [[nodiscard]] Witness pulled_in(const Witness& witness, const Witness& deepest) noexcept;
 
-/// All chosen ones as one: their mean place, weighted by depth, with the greatest depth.
-[[nodiscard]] Witness merged(const Chosen& chosen, const Vec3& normal) noexcept;
+/// All chosen ones as one with the greatest depth: over `centre`, which moves smoothly whichever were chosen, at their
+/// mean height.
+[[nodiscard]] Witness merged(const Chosen& chosen, const Vec3& normal, const Vec3& centre) noexcept;
 
 }  // namespace odds::query::patch

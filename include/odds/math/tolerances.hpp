@@ -13,17 +13,17 @@ inline constexpr double least_uncertainty = 1e-9;
 
 // Contact patches (src/query/patch_*). Without a unit unless said otherwise.
 
-/// A triangle whose area is less than this part of its longest side squared has no normal: rounding of 1e-16 a coordinate
-/// would turn it by more than 1e-4. Test: ContactPatchHard.DegenerateTrianglesGiveFiniteContacts.
+/// A triangle whose area is less than this part of its longest side squared has no normal: rounding of 1e-16 a
+/// coordinate would turn it by more than 1e-4. Test: ContactPatchHard.DegenerateTrianglesGiveFiniteContacts.
 inline constexpr double degenerate_triangle = 1e-12;
 /// Heights above a plane, and differences of points, below this part of the coordinates are rounding.
 /// Test: ContactPatch.CoplanarTouchingFacesHaveDepthZero.
 inline constexpr double on_plane = 1e-15;
-/// Sine of the angle below which two triangles count as parallel and their common polygon replaces the line in which their
-/// planes cross (which could be anywhere in it). Test: ContactPatch.CoplanarTouchingFacesHaveDepthZero.
+/// Sine of the angle below which two triangles count as parallel and their common polygon replaces the line in which
+/// their planes cross (which could be anywhere in it). Test: ContactPatch.CoplanarTouchingFacesHaveDepthZero.
 inline constexpr double parallel_planes = 1e-9;
-/// Ends of rim pieces nearer than this part of the rim's size are one point. Neighbouring triangles compute a common end to
-/// some 1e-15. Test: ContactPatch.FourLegsGiveFourPatches.
+/// Ends of rim pieces nearer than this part of the rim's size are one point. Neighbouring triangles compute a common
+/// end to some 1e-15. Test: ContactPatch.FourLegsGiveFourPatches.
 inline constexpr double same_joint = 1e-9;
 /// A rim whose vector area points against the normals along it by more than this part is the inner rim of a ring.
 /// Test: ContactPatch.PipeStandsOnItsEnd.
@@ -32,8 +32,8 @@ inline constexpr double hole_rim = 0.2;
 inline constexpr double neighbour_share = 0.05;
 /// Cosine of the angle (1.8 degrees) below which their directions are one. Test: ContactPatch.FlushBoxesMakeOnePatch.
 inline constexpr double same_normal = 0.9995;
-/// Seen along a direction, a triangle or a side at less than this sine is seen edge-on: its corners and crossings say all.
-/// Test: ContactPatch.BoxOnBoxInManyRotations.
+/// Seen along a direction, a triangle or a side at less than this sine is seen edge-on: its corners and crossings say
+/// all. Test: ContactPatch.BoxOnBoxInManyRotations.
 inline constexpr double edge_on = 1e-6;
 /// Sine below which two sides seen along a direction are parallel and have no crossing of their own.
 inline constexpr double parallel_sides = 1e-9;
@@ -53,8 +53,8 @@ inline constexpr double snap_to = 0.95;  ///< see snap_from
 inline constexpr double previous_side = 0.3;
 /// Below this cosine against the side of the bodies a direction is on the wrong side of a sheet.
 inline constexpr double weak_side = 0.1;
-/// Bodies are pressed together by this part of a triangle's side before directions are compared: it decides only where the
-/// overlap is smaller than that. Test: ContactPatch.EdgeTouchingAFaceHasTheFaceNormal.
+/// Bodies are pressed together by this part of a triangle's side before directions are compared: it decides only where
+/// the overlap is smaller than that. Test: ContactPatch.EdgeTouchingAFaceHasTheFaceNormal.
 inline constexpr double pressing_share = 1e-4;
 /// Cosine (25 degrees) from which a direction counts as the last run's, and by how much it is preferred.
 /// Test: ContactPatch.PreviousNormalBreaksTies.
@@ -64,21 +64,26 @@ inline constexpr double hysteresis = 0.8;  ///< see same_as_before
 inline constexpr double area_preferred = 0.5;
 /// Vector area below this part of (coordinates x length of the rim) is rounding.
 inline constexpr double rim_noise = 1e-12;
-/// Isoperimetric quotient from which a rim's vector area is its direction without a comparison; an open rim, of which some is
-/// missing, must be rounder. Tests: ContactPatch.CrossedPlatesPartTheShortWay, ContactPatch.FewHitsStillGiveTheNormal.
+/// Isoperimetric quotient from which a rim's vector area is its direction without a comparison; an open rim, of which
+/// some is missing, must be rounder. Tests: ContactPatch.CrossedPlatesPartTheShortWay,
+/// ContactPatch.FewHitsStillGiveTheNormal.
 inline constexpr double round_closed_rim = 0.05;
 inline constexpr double round_open_rim = 0.2;  ///< see round_closed_rim
 /// Contacts are where the overlap has at least this part of the patch's depth: at the rim itself it has none.
 /// Test: ContactPatch.TessellationDoesNotMoveTheContacts.
 inline constexpr double shallow_share = 0.2;
-/// Half-way to the deepest point, a flat overlap has the mean depth, a ball's a quarter of the depth more: from this much on it
-/// is round, and bears at its deepest point only (contacts around it would brake a ball that rolls).
-/// Test: ContactPatch.SphereOnPlaneHasOneDeepContact.
+/// Half-way to the deepest point, a flat overlap has the mean depth, a ball's a quarter of the depth more: from this
+/// much on it is round, and bears at its deepest point only (contacts around it would brake a ball that rolls). Test:
+/// ContactPatch.SphereOnPlaneHasOneDeepContact.
 inline constexpr double round_overlap = 0.12;
 /// Cosine below which two patches push against each other. Test: ContactPatch.CrossedPlatesPartTheShortWay.
 inline constexpr double opposed = -0.3;
 /// By how much the patch with the last run's normal is preferred as the first, so that the order does not flicker.
 inline constexpr double keep_first = 1.05;
+/// Cosine below which a surface is a wall, whose slope tells nothing of where an overlap gets deeper.
+inline constexpr double steep = 0.05;
+/// An overlap that changes by less than this part of itself across the patch is level.
+inline constexpr double level_overlap = 0.01;
 /// Contacts of a patch nearer to each other than this part of the depth, or of the lever arm, are one.
 inline constexpr double spacing_by_depth = 0.5;
 inline constexpr double spacing_by_lever = 1e-3;  ///< see spacing_by_depth

@@ -56,6 +56,7 @@ struct PatchInput {
   Vec3 reference_a = Vec3::Zero();        ///< centre of A's body; says on which side of a sheet the bodies are
   Vec3 reference_b = Vec3::Zero();        ///< centre of B's body, in A's frame
   const Vec3* previous_normal = nullptr;  ///< unit; the first contact's normal of the last run, in A's frame, or null
+  const Vec3* previous_position = nullptr;  ///< where that contact was, in A's frame, or null
   int max_contacts = 4;                   ///< 1 .. most_contacts (clamped)
   DepthProbe probe_a;                     ///< optional
   DepthProbe probe_b;                     ///< optional
