@@ -32,7 +32,8 @@ struct Pair::Implementation {
   bool has_witness = false;
   TrianglePair witness;  ///< the pair of triangles, in leaf order, that proved the last incremental hit
   PatchBuilder patches;
-  Vec3 previous_normal = Vec3::Zero();  ///< of the last run's first contact, in A's frame; zero: none
+  Vec3 previous_normal = Vec3::Zero();    ///< of the last run's first contact, in A's frame; zero: none
+  Vec3 previous_position = Vec3::Zero();  ///< of that contact
   Contact quick_contact;
   Answer answer;
 };
@@ -157,7 +158,10 @@ void make_contacts(const Encounter<V>& encounter, const math::Pose& pose_b_in_a,
   input.solid_b = pair.b->is_solid();
   input.reference_a = encounter.a().origin();
   input.reference_b = centre_b;
-  if (!pair.previous_normal.isZero()) input.previous_normal = &pair.previous_normal;
+  if (!pair.previous_normal.isZero()) {
+    input.previous_normal = &pair.previous_normal;
+    input.previous_position = &pair.previous_position;
+  }
   input.max_contacts = request.max_contacts;
   if (request.max_contacts > 1) {  // a single contact is asked for its speed
     input.probe_a = {&probe_depth, pair.a.get()};
@@ -166,7 +170,9 @@ void make_contacts(const Encounter<V>& encounter, const math::Pose& pose_b_in_a,
   const Deadline deadline{[](void* state) noexcept { return !static_cast<Spending*>(state)->may_make_contacts(); },
                           &spending};
   pair.answer.contacts = pair.patches.build(input, deadline);
-  if (!pair.answer.contacts.empty()) pair.previous_normal = pair.answer.contacts.front().normal;
+  if (pair.answer.contacts.empty()) return;
+  pair.previous_normal = pair.answer.contacts.front().normal;
+  pair.previous_position = pair.answer.contacts.front().position;
 }
 
 template <volume::BoundingVolume V>

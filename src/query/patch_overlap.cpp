@@ -96,25 +96,35 @@ bool probe_overlap(const PatchInput& input, const Vec3& point, const Vec3& norma
 
 Witness climb(const PatchInput& input, const Witness& start, const Vec3& normal, double radius, double reach,
               Watch& watch) noexcept {
-  constexpr int most_probes = 6;
+  constexpr int most_probes = 10;
   Witness best = start;
   Vec3 slope = slope_of_overlap(input, best, normal);
+  Vec3 across = Vec3::Zero();  // unit, across the ridge that has been reached; zero: none yet
   double step = -1.0;
   for (int i = 0; i < most_probes && !watch.late(); ++i) {
-    const double steepness = slope.norm();
+    const Vec3 along = slope - across * across.dot(slope);
+    const double steepness = along.norm();
     if (!(steepness * radius > tolerances::level_overlap * best.depth) || !std::isfinite(steepness)) break;
     if (step < 0.0) step = std::clamp(best.depth / steepness, 0.05 * radius, 0.5 * radius);
-    const Vec3 uphill = slope / steepness;
+    const Vec3 uphill = along / steepness;
     Witness next;
-    if (!probe_overlap(input, best.middle() + step * uphill, normal, reach, watch, next) || next.depth <= best.depth) {
-      step *= 0.35;  // over the ridge, or out of the overlap
+    if (!probe_overlap(input, best.middle() + step * uphill, normal, reach, watch, next)) {
+      step *= 0.35;  // out of the overlap
       continue;
     }
     const Vec3 next_slope = slope_of_overlap(input, next, normal);
     const double still_uphill = next_slope.dot(uphill);
-    step *= still_uphill > 0.0 ? 1.6 : steepness / (steepness - still_uphill);
-    best = next;
-    slope = next_slope;
+    if (next.depth > best.depth) {
+      step *= still_uphill > 0.0 ? 1.6 : steepness / (steepness - still_uphill);
+      best = next;
+      slope = next_slope;
+    } else if (still_uphill < 0.0 && across == Vec3::Zero()) {
+      // Over the ridge: the two slopes differ across it, and agree along it.
+      across = (slope - next_slope).normalized();
+      step = 0.5 * radius;
+    } else {
+      step *= 0.35;
+    }
   }
   return best;
 }

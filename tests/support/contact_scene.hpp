@@ -89,7 +89,8 @@ struct ContactScene {
   math::Pose pose_b_in_a;
   int max_contacts = 8;
   bool probes = true;
-  std::optional<Vec3> previous = {};
+  std::optional<Vec3> previous = {};  ///< normal
+  std::optional<Vec3> previous_position = {};
   std::vector<query::TrianglePair> hits = {};
   std::shared_ptr<query::PatchBuilder> builder = std::make_shared<query::PatchBuilder>(4096);
 
@@ -128,6 +129,7 @@ struct ContactScene {
     in.reference_a = a.centre;
     in.reference_b = pose_b_in_a * b.centre;
     in.previous_normal = previous ? &*previous : nullptr;
+    in.previous_position = previous_position ? &*previous_position : nullptr;
     in.max_contacts = max_contacts;
     if (probes) {
       in.probe_a = {body_ray, &a};

@@ -315,6 +315,33 @@ TEST(ContactPatch, DeepBoxIsMeasuredByProbes) {
   }
 }
 
+TEST(ContactPatch, RingIsMeasuredAtItsSummit) {
+  // A tilted torus dips into the ground along a crescent, which is deepest on a line that the centre of its rim misses.
+  const Body torus = Body::made("torus:ring=0.1,tube=0.03,around=96,across=48");
+  const Body ground = Body::box(1.0, 1.0, 0.2, 16);
+  const math::Pose tilted = turn(Vec3(1, 2, 0), 0.03);
+  double lowest = 0.0;
+  for (const Vec3& v : torus.vertices) lowest = std::min(lowest, (tilted * v).z());
+  for (const double depth : {1e-3, 3e-3, 6e-3}) {
+    const math::Pose pose = shift(0.01, 0.02, -lowest - depth) * tilted;
+    ContactScene scene{torus, ground, pose.inverse() * shift(0, 0, -0.1)};
+    scene.find_hits();
+    SCOPED_TRACE(depth);
+    double before = 0.0;
+    for (int run = 0; run < 6; ++run) {  // each run goes on from the last one's summit
+      const auto contacts = scene.builder->build(scene.input());
+      ASSERT_FALSE(contacts.empty());
+      EXPECT_LE(degrees_between(pose.rotation * contacts[0].normal, up), 0.1);
+      EXPECT_GE(contacts[0].depth, (run == 0 ? 0.65 : 0.999) * (run == 0 ? depth : before));
+      EXPECT_LE(contacts[0].depth, depth + 1e-9);
+      before = contacts[0].depth;
+      scene.previous = contacts[0].normal;
+      scene.previous_position = contacts[0].position;
+    }
+    EXPECT_NEAR(before, depth, 0.05 * depth);
+  }
+}
+
 TEST(ContactPatch, FewHitsStillGiveTheNormal) {
   ContactScene scene{Body::box(0.2, 0.5, 0.248, 8), Body::box(1.0, 1.2, 0.3, 8), shift(-0.03, 0.02, -0.274 + 1e-4)};
   scene.find_hits();
