@@ -47,6 +47,18 @@ Violations judge_shipped(Violations (*rule)(const SourceFile&), Which which) {
   return found;
 }
 
+TEST(TheHouse, TheTopHoldsWhatThePlanNames) {
+  const std::vector<std::string> planned = {"CMakeLists.txt", "CMakePresets.json", "CHANGELOG.md", "CONTRIBUTING.md",
+                                            "LICENSE",        "README.md",         "demos",        "docs",
+                                            "include",        "src",               "tests"};
+  const std::vector<std::string> left_behind = {"build", "out", "compile_commands.json", "CMakeUserPresets.json"};
+  for (const auto& entry : std::filesystem::directory_iterator(ODDS_SOURCE_DIR)) {
+    const std::string name = entry.path().filename().string();
+    const auto among = [&](const auto& names) { return std::find(names.begin(), names.end(), name) != names.end(); };
+    EXPECT_TRUE(name.starts_with('.') || among(planned) || among(left_behind)) << name << " is in no plan of the tree";
+  }
+}
+
 TEST(TheHouse, FilesAreShort) {
   const Violations found = judge_shipped(&judge_size, Which::code);
   EXPECT_TRUE(found.empty()) << join(found);
