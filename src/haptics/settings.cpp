@@ -31,6 +31,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
+constexpr double greatest_number = 1e12;  // no quantity of a scene needs more; squares of more overflow in the solver
+
 bool before(Place a, Place b) { return a.line != b.line ? a.line < b.line : a.column < b.column; }
 
 }  // namespace
@@ -143,6 +145,11 @@ bool SettingsReader::real(std::string_view key, const Value& value, double& targ
   }
   if (!std::isfinite(number)) {
     reject(value.place, fmt::format("'{}' is {}, which is not a finite number", key, number), "give a finite number");
+    return false;
+  }
+  if (std::abs(number) > greatest_number) {
+    reject(value.place, fmt::format("'{}' is {}, beyond 1e12", key, number),
+           "give a smaller number, in the unit named");
     return false;
   }
   target = number;

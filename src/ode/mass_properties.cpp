@@ -8,6 +8,11 @@
 namespace odds::ode {
 namespace {
 
+// Beyond these ODE's products and quotients of masses, inertias and forces overflow, and it ends the program.
+constexpr double least_mass_kg = 1e-9;
+constexpr double greatest_mass_kg = 1e12;
+constexpr double least_size_m = 1e-9;
+
 // A thin or flat body: no side of its box counts as less than this share of its diagonal, lest it spin without inertia.
 constexpr double thinnest_side = 0.02;
 // Below this share of the bounding box the enclosed volume is rounding error or the mesh cancels itself out.
@@ -62,8 +67,9 @@ MassProperties of_box(const mesh::TriangleMesh& mesh, double mass_kg) {
 
 Result<MassProperties> mass_properties(const mesh::TriangleMesh& mesh, bool closed, const MassSpec& spec,
                                        const std::string& name) {
-  if (!(mesh.size() > 0.0))
+  if (!(mesh.size() > least_size_m)) {
     return Error{name, "", "the mesh has no extent, so no inertia", "use another mesh for a moving body"};
+  }
   const Vec3 middle = 0.5 * (mesh.lower() + mesh.upper());
   const Integrals integrals = integrate(mesh, middle);
   const double box_volume = (mesh.upper() - mesh.lower()).prod();
@@ -73,8 +79,9 @@ Result<MassProperties> mass_properties(const mesh::TriangleMesh& mesh, bool clos
     return Error{name, "", "the mesh encloses no volume, so a density gives it no mass", "give the mass in kilograms"};
   }
   const double mass_kg = by_density ? spec.density_kg_per_m3 * integrals.volume : spec.mass_kg;
-  if (!std::isfinite(mass_kg) || !(mass_kg > 0.0)) {
-    return Error{name, "", "the mass is not a positive finite number", "give a mass or a density above zero"};
+  if (!(mass_kg >= least_mass_kg && mass_kg <= greatest_mass_kg)) {
+    return Error{name, "", "the mass is not a number from 1e-9 kg to 1e12 kg",
+                 "give another mass or density, and check the mesh's unit of length"};
   }
   if (solid) {
     MassProperties result;

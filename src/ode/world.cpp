@@ -21,6 +21,8 @@ constexpr unsigned long dynamic_bit = 2;
 constexpr int most_contacts_per_pair = 8;  // the geom's own limit
 // Slip slower than this is sticking: its direction is noise and says nothing about the direction of friction.
 constexpr double least_slip_m_per_s = 1e-3;
+// Depths and lever arms beyond this overflow in ODE's solver, which then ends the program.
+constexpr double farthest_m = 1e6;
 constexpr double rigid_within = 1e-6;  // of a pose given from outside: R^T R - I
 
 std::atomic<std::uint64_t> solver_messages{0};
@@ -112,6 +114,11 @@ Result<Body*> World::Implementation::add(std::shared_ptr<const query::Shape> sha
                                          const std::string& name) {
   if (!pose.is_rigid(rigid_within))
     return Error{name, "", "its pose is not a finite rigid pose", "correct position and orientation"};
+  const double reach_m = shape->mesh().lower().cwiseAbs().cwiseMax(shape->mesh().upper().cwiseAbs()).norm();
+  if (!(pose.translation.norm() + reach_m <= farthest_m)) {
+    return Error{name, "", "it reaches farther than 1000 km from the origin",
+                 "correct its position, and check the mesh's unit of length"};
+  }
   Result<Geom> geom = Geom::make(space, std::move(shape));
   if (!geom) return geom.error();
   bodies.push_back(std::make_unique<Body>(Body{name, std::move(geom).value(), nullptr, {}, nullptr, {pose, {}, {}}}));

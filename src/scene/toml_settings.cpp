@@ -60,9 +60,30 @@ struct Converter {
   }
 };
 
+// Each dot of a key opens a table inside a table, and reading tables recurses, in the library and here; the library
+// bounds the depth of values only. Found before it reads: a line that could go deeper than any stack is sure to hold.
+std::optional<Place> line_with_too_many_dots(std::string_view text) {
+  constexpr std::size_t most_dots = 250;
+  std::uint32_t line = 1;
+  std::size_t dots = 0;
+  for (const char c : text) {
+    if (c == '\n') {
+      ++line;
+      dots = 0;
+    } else if (c == '.' && ++dots > most_dots) {
+      return Place{line, 1};
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 Result<Settings> parse_toml(std::string_view text, const std::string& name) {
+  if (const auto place = line_with_too_many_dots(text)) {
+    return Error{name, place->text(), "more than 250 dots stand on one line",
+                 "this is no scene, or its keys nest too deeply; write it on several lines"};
+  }
   try {
     const toml::table document = toml::parse(text, name);
     Converter converter{name, std::nullopt};

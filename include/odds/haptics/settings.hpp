@@ -70,8 +70,9 @@ struct Range {
 [[nodiscard]] std::string list_names(std::span<const std::string_view> names);
 
 /// Reads one table strictly. Each call names a key, so that the reader knows what was allowed: finish() reports keys
-/// that nobody asked for, with the nearest one that was. A value of a wrong type, out of range or not finite is an
-/// error. All calls go on after an error (and leave `target` alone); the error that stands first in the file is kept.
+/// that nobody asked for, with the nearest one that was. A value of a wrong type, out of range, not finite or
+/// of a magnitude beyond 1e12 is an error. All calls go on after an error (and leave `target` alone); the error that
+/// stands first in the file is kept.
 ///
 ///     SettingsReader reader(table);
 ///     reader.number("mu", Range::not_negative(), friction.mu);

@@ -66,7 +66,7 @@ struct BodyId {
 
 /// How a dynamic body gets its mass. The inertia follows from the mesh if that is closed, else from its bounding box.
 struct MassSpec {
-  double mass_kg = 0.0;               ///< > 0, or 0: from the density
+  double mass_kg = 0.0;               ///< 1e-9 to 1e12, or 0: from the density
   double density_kg_per_m3 = 1000.0;  ///< used if mass_kg is 0; needs a closed mesh
 };
 
@@ -136,7 +136,7 @@ class World {
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;
 
-  /// A body that never moves. `name` stands in error messages.
+  /// A body that never moves. `name` stands in error messages. It may reach 1000 km from the origin, no farther.
   Result<BodyId> add_fixed(std::shared_ptr<const query::Shape> shape, const math::Pose& pose, const std::string& name);
   /// A body that moves.
   Result<BodyId> add_dynamic(std::shared_ptr<const query::Shape> shape, const math::Pose& pose, const MassSpec& mass,
