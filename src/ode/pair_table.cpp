@@ -151,7 +151,11 @@ int oddsGetLastAnswer(dGeomID g1, dGeomID g2, oddsAnswer* answer) noexcept {
   using namespace odds::ode;
   const GeomData* x = find_data(g1, "oddsGetLastAnswer");
   const GeomData* y = x != nullptr ? find_data(g2, "oddsGetLastAnswer") : nullptr;
-  if (x == nullptr || y == nullptr || answer == nullptr) return 0;
+  if (x == nullptr || y == nullptr) return 0;
+  if (answer == nullptr) {
+    set_last_error("oddsGetLastAnswer: the place for the answer is null; give one");
+    return 0;
+  }
   const PairEntry* entry = pair_table().find(*x, *y);
   if (entry == nullptr || !entry->answered) {
     set_last_error("oddsGetLastAnswer: these two geoms never collided");
