@@ -144,7 +144,7 @@ std::string units_hint(const TriangleMesh& mesh) {
   // A part that a hand or a robot holds is 1 mm to 10 m; numbers beyond are more often millimetres than buildings.
   const double size = mesh.size();
   const double away = (0.5 * (mesh.lower() + mesh.upper())).norm();
-  if (away > 1e4 * size) {
+  if (size > 0.0 && away > 1e4 * size) {  // a point has no size to compare with
     return "lies " + short_text(away / size) + " times its size from the origin; moving it there keeps more digits";
   }
   if (size > 10.0) {
