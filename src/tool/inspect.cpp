@@ -16,6 +16,7 @@
 #include "odds/query/shape.hpp"
 #include "tool/command.hpp"
 #include "tool/mesh_argument.hpp"
+#include "tool/output_file.hpp"
 #include "tool/progress_line.hpp"
 #include "tool/shared_options.hpp"
 
@@ -172,6 +173,7 @@ nlohmann::ordered_json to_json(const Inspection& found) {
 }
 
 int run(const InspectOptions& options) {
+  if (const auto error = refuse_overwriting(options.repair_to, {options.mesh})) return fail(*error);
   Result<mesh::TriangleMesh> mesh = load_mesh(options.mesh, options.scale);
   if (!mesh.ok()) return fail(mesh.error());
   std::optional<mesh::RepairLog> log;

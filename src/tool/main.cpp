@@ -5,17 +5,29 @@
 #include <exception>
 
 #include "tool/command.hpp"
+#include "tool/one_line.hpp"
+#include "tool/standard_streams.hpp"
 
 namespace odds::tool {
 
 int fail(const Error& error) {
-  fmt::print(stderr, "error: {}\n", error.message());
+  fmt::print(stderr, "error: {}\n", on_one_line(error.message()));
   return exit_error;
 }
 
+namespace {
+
+/// What the action said counts only once it has left this program.
+int with_output_written(int status) {
+  const auto error = flush_standard_output();
+  return status == exit_good && error ? fail(*error) : status;
+}
+
+}  // namespace
 }  // namespace odds::tool
 
 int main(int argc, char** argv) {
+  odds::tool::occupy_closed_streams();
   CLI::App app{"odds: mesh collision inside a hard microsecond budget, with a probability where proof did not fit"};
   app.require_subcommand(1);
   odds::tool::Action action;
@@ -26,11 +38,13 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& parse_error) {
-    return app.exit(parse_error) == 0 ? odds::tool::exit_good : odds::tool::exit_usage;
+    if (app.exit(parse_error) != 0) return odds::tool::exit_usage;
+    return odds::tool::with_output_written(odds::tool::exit_good);
   }
   try {
-    return action ? action() : odds::tool::exit_usage;
+    return action ? odds::tool::with_output_written(action()) : odds::tool::exit_usage;
   } catch (const std::exception& failure) {  // out of memory and the like: bad input never throws
+    if (const auto error = odds::tool::flush_standard_output()) return odds::tool::fail(*error);
     return odds::tool::fail({"", "", failure.what(), "this is a limit of the machine or a bug; please report it"});
   }
 }

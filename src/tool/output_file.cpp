@@ -32,6 +32,8 @@ OutputFile::~OutputFile() {
 }
 
 Result<OutputFile> OutputFile::open(const std::string& path) {
+  if (path.empty())
+    return Error{"", "", "the name of the output file is empty", "name a file, or - for standard output"};
   if (path == "-") return OutputFile({}, {}, stdout);
   std::error_code unknown;
   if (std::filesystem::is_directory(path, unknown)) {
@@ -43,13 +45,27 @@ Result<OutputFile> OutputFile::open(const std::string& path) {
     if (stream == nullptr) return Error{path, "", "cannot be written: " + reason(errno), "check the permissions"};
     return OutputFile(path, {}, stream);
   }
-  const std::string temporary = path + ".part" + std::to_string(getpid());
+  // A link stays a link: what it points to is replaced.
+  const bool link = std::filesystem::is_symlink(path, unknown);
+  const std::filesystem::path given(path);
+  const std::filesystem::path resolved = link ? std::filesystem::weakly_canonical(given, unknown) : given;
+  const std::filesystem::path& target = resolved.empty() ? given : resolved;
+  const std::string temporary = target.string() + ".part" + std::to_string(getpid());
   const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   std::FILE* stream = descriptor < 0 ? nullptr : fdopen(descriptor, "w");
   if (stream == nullptr) {
     return Error{path, "", "cannot be written: " + reason(errno), "check that the folder exists and may be written to"};
   }
-  return OutputFile(path, temporary, stream);
+  return OutputFile(target, temporary, stream);
+}
+
+std::optional<Error> refuse_overwriting(const std::string& output, std::initializer_list<std::string> inputs) {
+  for (const std::string& input : inputs) {
+    std::error_code unknown;
+    if (!std::filesystem::equivalent(output, input, unknown) || unknown) continue;
+    return Error{output, "", "is also an input, which would be overwritten", "name another file for the output"};
+  }
+  return std::nullopt;
 }
 
 void OutputFile::write(std::string_view text) {

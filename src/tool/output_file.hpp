@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -32,5 +33,8 @@ class OutputFile {
   std::FILE* stream_;
   int failure_ = 0;  ///< the first errno of a write
 };
+
+/// An error if `output` is, by whatever name, one of the files to read.
+std::optional<Error> refuse_overwriting(const std::string& output, std::initializer_list<std::string> inputs);
 
 }  // namespace odds::tool

@@ -9,11 +9,14 @@
 #include <optional>
 #include <string_view>
 
+#include "tool/one_line.hpp"
+
 namespace odds::tool {
 namespace {
 
 constexpr std::array<std::string_view, 7> columns = {"x", "y", "z", "qw", "qx", "qy", "qz"};
-constexpr double largest_position = 1e15;  // metres; as for meshes
+constexpr std::size_t longest_line = std::size_t{1} << 20;  // so that no file, however made, fills the memory
+constexpr double largest_position = 1e15;                   // metres; as for meshes
 
 std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t");
@@ -44,10 +47,15 @@ class Reader {
   explicit Reader(std::string name) : name_(std::move(name)) {}
 
   Result<std::vector<math::Pose>> read(std::istream& stream) {
-    std::string line;
-    while (std::getline(stream, line)) {
+    std::vector<char> buffer(longest_line + 2);  // a delimiter is read, too, and a terminator written
+    while (stream.getline(buffer.data(), static_cast<std::streamsize>(buffer.size())) || stream.gcount() > 0) {
       ++line_number_;
-      std::string_view text = line;
+      if (stream.fail()) {
+        return fault("the line is longer than " + std::to_string(longest_line) + " bytes",
+                     "give a CSV file with one row for each pose");
+      }
+      const auto taken = static_cast<std::size_t>(stream.gcount());
+      std::string_view text(buffer.data(), stream.eof() ? taken : taken - 1);
       if (line_number_ == 1 && text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte-order mark
       if (text.ends_with('\r')) text.remove_suffix(1);
       if (trimmed(text).empty() || text.starts_with('#')) continue;
@@ -97,7 +105,7 @@ class Reader {
       const auto end = std::from_chars(field.data(), field.data() + field.size(), values[k]);
       const bool read = end.ec == std::errc{} && end.ptr == field.data() + field.size() && std::isfinite(values[k]);
       if (!read || std::abs(values[k]) > largest_position) {
-        return fault(std::string(columns[k]) + " = \"" + std::string(field) + "\" is not a number that can be used",
+        return fault(std::string(columns[k]) + " = " + quoted(field) + " is not a number that can be used",
                      "give a plain decimal number of magnitude up to 1e15");
       }
     }

@@ -99,6 +99,9 @@ class Session {
 int run(const QueryOptions& options) {
   const Result<std::vector<math::Pose>> poses = read_poses(options.poses);
   if (!poses.ok()) return fail(poses.error());
+  if (const auto error = refuse_overwriting(options.out, {options.poses, options.mesh_a, options.mesh_b})) {
+    return fail(*error);
+  }
   Result<OutputFile> out = OutputFile::open(options.out);
   if (!out.ok()) return fail(out.error());
   Result<query::Pair> pair = prepare(options);

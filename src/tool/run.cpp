@@ -17,8 +17,10 @@
 #include "tool/allocation_probe.hpp"
 #include "tool/build_progress.hpp"
 #include "tool/command.hpp"
+#include "tool/output_file.hpp"
 #include "tool/replay_folder.hpp"
 #include "tool/run_table.hpp"
+#include "tool/shared_options.hpp"
 
 namespace odds::tool {
 namespace {
@@ -88,9 +90,23 @@ report::RunInfo describe(const scene::Simulation& simulation, const RunArguments
   return info;
 }
 
+// Said before the run, not after it: whether its files will have a place.
+std::optional<Error> prepare_folder(const std::filesystem::path& folder) {
+  if (folder.empty()) return Error{"", "", "the name of the output folder is empty", "name a folder after --out"};
+  std::error_code code;
+  std::filesystem::create_directories(folder / "replay", code);
+  if (code) return Error{folder.string(), "", "cannot be made: " + code.message(), "give another --out"};
+  for (const std::filesystem::path& inside : {folder, folder / "replay"}) {
+    const Result<OutputFile> trial = OutputFile::open((inside / "writable").string());
+    if (!trial) return Error{inside.string(), "", trial.error().what, "check its permissions, or give another --out"};
+  }
+  return std::nullopt;
+}
+
 int run(const RunArguments& arguments) {
   Result<scene::Scene> scene = scene::read_scene(arguments.scene);
   if (!scene) return fail(scene.error());
+  if (const auto error = prepare_folder(arguments.out)) return fail(*error);
   scene::SimulationOptions options;
   options.simulated_time = arguments.fast;
   options.seconds = arguments.seconds;
@@ -133,7 +149,7 @@ void add_run(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("run", "run the haptic loop on a scene and report its latencies and forces");
   command->add_option("scene", arguments->scene, "the scene, a TOML file")->required();
   command->add_option("--seconds", arguments->seconds, "how long to run (default: as the scene says)")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_and_finite());
   command->add_option("--out", arguments->out, "directory for the report and the replay")->capture_default_str();
   command->add_flag(
       "--fast,--simulated", arguments->fast,

@@ -1,0 +1,175 @@
+// The command `odds` in careless and hostile hands: one line of error, the right status, nothing lost or overwritten.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "support/run_tool.hpp"
+
+namespace odds {
+namespace {
+
+using testing::contents_of;
+using testing::Ran;
+using testing::run_tool;
+using testing::TemporaryFolder;
+
+const std::string poses = "x,y,z,qw,qx,qy,qz\n0.05,0.01,0,1,0,0,0\n";
+const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+class HostileUse : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder.write("poses.csv", poses);
+    folder.write("triangle.obj", triangle);
+  }
+  Ran query(const std::string& arguments) const { return run_tool(folder, "query triangle.obj made:box " + arguments); }
+  std::size_t files() const {
+    const std::filesystem::directory_iterator all(folder.path());
+    return static_cast<std::size_t>(std::distance(begin(all), end(all)));
+  }
+
+  TemporaryFolder folder;
+};
+
+void expect_one_line_with(const Ran& ran, const std::string& text) {
+  EXPECT_EQ(ran.status, 1) << ran.errors;
+  EXPECT_TRUE(ran.errors.starts_with("error: ")) << ran.errors;
+  EXPECT_EQ(ran.errors.find('\n') + 1, ran.errors.size()) << ran.errors;
+  EXPECT_NE(ran.errors.find(text), std::string::npos) << ran.errors;
+  EXPECT_LT(ran.errors.size(), 2000u);
+}
+
+TEST_F(HostileUse, AnInputIsNeverOverwrittenByWhateverName) {
+  std::filesystem::create_symlink("poses.csv", folder / "link.csv");
+  std::filesystem::create_hard_link(folder / "triangle.obj", folder / "twin.obj");
+  for (const char* out : {"poses.csv", "./poses.csv", "link.csv", "triangle.obj", "twin.obj"}) {
+    expect_one_line_with(query(std::string("--poses poses.csv --out ") + out), "is also an input");
+  }
+  expect_one_line_with(run_tool(folder, "inspect triangle.obj --repair twin.obj"), "is also an input");
+  EXPECT_EQ(contents_of(folder / "poses.csv"), poses);
+  EXPECT_EQ(contents_of(folder / "triangle.obj"), triangle);
+}
+
+TEST_F(HostileUse, ALinkGivenAsOutputStaysALink) {
+  folder.write("real.csv", "old");
+  std::filesystem::create_symlink("real.csv", folder / "link.csv");
+  const Ran ran = query("--poses poses.csv --out link.csv");
+  ASSERT_EQ(ran.status, 0) << ran.errors;
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.csv"));
+  EXPECT_TRUE(contents_of(folder / "real.csv").starts_with("row,verdict"));
+}
+
+TEST_F(HostileUse, AnEmptyNameOfAnOutputIsRefusedAndLeavesNothing) {
+  (void)query("--poses poses.csv --out answers.csv");
+  const std::size_t before = files();
+  expect_one_line_with(query("--poses poses.csv --out ''"), "empty");
+  EXPECT_EQ(files(), before);
+}
+
+TEST_F(HostileUse, AFullOrClosedStandardOutputIsAnError) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full";
+  // The tool's own redirections come before those that the test appends, so that each stands in a shell of its own.
+  const std::string tool = std::string("\"") + ODDS_TOOL + "\" ";
+  for (const char* command : {"inspect triangle.obj", "inspect triangle.obj --json", "--help",
+                              "query triangle.obj made:box --poses poses.csv --out answers.csv"}) {
+    for (const char* where : {" >/dev/full", " >&-"}) {
+      const Ran ran = run_tool(folder, "--help >/dev/null && (" + tool + command + where + ")");
+      expect_one_line_with(ran, "standard output: cannot be written");
+    }
+  }
+}
+
+TEST_F(HostileUse, MessagesNeverGetIntoAnOutputFileForWantOfStandardStreams) {
+  const std::string tool = std::string("\"") + ODDS_TOOL + "\" ";
+  (void)run_tool(folder, "--help >/dev/null && (" + tool +
+                             "query triangle.obj made:box --poses poses.csv --out answers.csv <&- >&- 2>&-)");
+  const std::string answers = contents_of(folder / "answers.csv");
+  EXPECT_TRUE(answers.starts_with("row,verdict")) << answers;
+  EXPECT_EQ(std::count(answers.begin(), answers.end(), '\n'), 2) << answers;
+}
+
+TEST_F(HostileUse, WhatIsQuotedStaysOnOneLineAndCannotSteerTheTerminal) {
+  const std::string header = poses.substr(0, poses.find('\n') + 1);
+  folder.write("escape.csv", header + "\x1b[31m\x07,0,0,1,0,0,0\n");
+  const Ran ran = query("--poses escape.csv --out answers.csv");
+  expect_one_line_with(ran, "escape.csv:2: ");
+  EXPECT_EQ(ran.errors.find('\x1b'), std::string::npos);
+  expect_one_line_with(run_tool(folder, "inspect 'miss\ning.obj'"), "miss\\ning.obj");
+}
+
+TEST_F(HostileUse, AnEndlessOrVeryLongLineOfPosesEndsInAShortError) {
+  expect_one_line_with(query("--poses /dev/zero --out answers.csv"), "/dev/zero:1: the line is longer than");
+  const std::string header = poses.substr(0, poses.find('\n') + 1);
+  folder.write("long.csv", header + std::string(900'000, '1') + ",0,0,1,0,0,0\n");
+  expect_one_line_with(query("--poses long.csv --out answers.csv"), "long.csv:2: x = ");
+  folder.write("ends.csv", poses.substr(0, poses.size() - 1));
+  EXPECT_EQ(query("--poses ends.csv --out answers.csv").status, 0) << "a last line without its end";
+}
+
+TEST_F(HostileUse, APointHasNoHintAboutItsDistance) {
+  folder.write("point.obj", "v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n");
+  const Ran ran = run_tool(folder, "inspect point.obj");
+  EXPECT_EQ(ran.status, 0) << ran.errors;
+  EXPECT_EQ(ran.output.find("inf"), std::string::npos) << ran.output;
+}
+
+const std::string scene = R"(format = "odds.scene/1"
+[[mesh]]
+name = "block"
+file = "made:box"
+[[body]]
+name = "floor"
+mesh = "block"
+[[body]]
+name = "tool"
+mesh = "block"
+motion = "dynamic"
+mass_kg = 0.1
+position_m = [0.0, 0.0, 0.11]
+[effects.contact]
+stiffness_n_per_m = 1000.0
+damping_ns_per_m = 10.0
+)";
+
+std::string with(const std::string& old_text, const std::string& new_text) {
+  std::string text = scene;
+  return text.replace(text.find(old_text), old_text.size(), new_text);
+}
+
+TEST_F(HostileUse, ARunSaysBeforeItBeginsThatItsFolderCannotBeWritten) {
+  folder.write("scene.toml", scene);
+  for (const char* out : {"triangle.obj", "triangle.obj/inside", "''", "/dev/null", "/proc/no_such_folder"}) {
+    const Ran ran = run_tool(folder, std::string("run --fast --seconds 0.01 scene.toml --out ") + out);
+    EXPECT_EQ(ran.status, 1) << out;
+    EXPECT_EQ(ran.errors.find("warning"), std::string::npos) << "the scene was already set up: " << ran.errors;
+    expect_one_line_with(ran, "error: ");
+  }
+  for (const char* seconds : {"0", "-1", "nan", "inf", "1e400"}) {
+    EXPECT_EQ(run_tool(folder, std::string("run scene.toml --seconds ") + seconds).status, 2) << seconds;
+  }
+}
+
+TEST_F(HostileUse, ScenesOfAbsurdSizesAreRefusedWhereOdeWouldEndTheProgram) {
+  folder.write("huge.obj", "v 0 0 0\nv 1e15 0 0\nv 0 1e15 0\nv 0 0 1e15\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  for (const std::string& text :
+       {with("mass_kg = 0.1", "density_kg_per_m3 = 1e-308"), with("mass_kg = 0.1", "mass_kg = 1e-300"),
+        with("mass_kg = 0.1", "mass_kg = 1e308"), with("made:box", "huge.obj"),
+        with("0.0, 0.0, 0.11", "0.0, 0.0, 1e30"), with("0.0, 0.0, 0.11", "0.0, 0.0, 1e7"), with("= 1000.0", "= 1e300"),
+        with("= 10.0", "= 1e300")}) {
+    folder.write("scene.toml", text);
+    expect_one_line_with(run_tool(folder, "run --fast --seconds 0.05 scene.toml --out out"), "scene.toml:");
+  }
+}
+
+TEST_F(HostileUse, ASceneWithKeysNestedWithoutEndIsRefused) {
+  std::string deep = "[a";
+  for (int i = 0; i < 100'000; ++i) deep += ".a";
+  folder.write("scene.toml", deep + "]\n");
+  for (const char* command : {"run scene.toml --out out", "explain scene.toml"}) {
+    expect_one_line_with(run_tool(folder, command), "scene.toml:1:1: ");
+  }
+}
+
+}  // namespace
+}  // namespace odds
