@@ -40,9 +40,9 @@ int main(void) {
   dMassSetBox(&mass, 400.0, 1.0, 1.0, 1.0);
   dBodySetMass(body, &mass);
   dGeomSetBody(above, body);
-  dBodySetPosition(body, 0.1, 0.0, 1.2);
+  dBodySetPosition(body, 0.1, 0.05, 1.2);
 
-  dGeomOddsMeshSetBudget(above, 50.0); /* microseconds one collision may take */
+  dGeomOddsMeshSetBudget(above, 200.0); /* microseconds one collision may take */
   oddsPreparePair(below, above);       /* takes the memory now, not inside the loop */
 
   for (int step = 0; step < 1000; ++step) {

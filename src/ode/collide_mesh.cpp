@@ -32,6 +32,14 @@ bool use_cell_pair(const query::Answer& answer, const Settings& settings) noexce
   return settings.undecided_policy == ODDS_UNDECIDED_HIT && answer.probability > settings.undecided_probability;
 }
 
+// A query that the budget ended before it had decided, or had made its contacts with care, keeps what the pair's last
+// careful run found, for a few runs: bodies that touched one tick ago do so still, and a body at rest is not thrown off
+// by a processor that was away for a moment.
+bool hold_last(const query::Answer& answer, const Settings& settings) noexcept {
+  if (answer.verdict == query::Verdict::hit && answer.basis == query::Basis::proved) return !answer.contacts_complete;
+  return answer.basis == query::Basis::budget && settings.undecided_policy == ODDS_UNDECIDED_HIT;
+}
+
 // Contacts of an answer are in A's mesh frame with normals into A.
 void write_contact(ContactWriter& writer, const query::Contact& contact, const math::Pose& pose_a,
                    bool o1_is_a) noexcept {
@@ -105,9 +113,18 @@ int answer_pair(PairEntry& entry, dGeomID o1, dGeomID o2, int flags, dContactGeo
   count_basis(answer.basis);
   entry.last = record_of(answer, *pose_a);
   ContactWriter writer(o1, o2, limit, contacts, skip);
-  for (const query::Contact& contact : answer.contacts) write_contact(writer, contact, *pose_a, o1_is_a);
-  if (use_cell_pair(answer, settings)) {
-    write_contact(writer, answer.cell_pair, *pose_a, o1_is_a);
+  const bool careful = answer.basis == query::Basis::proved && answer.contacts_complete;
+  if (careful) entry.held.keep(answer.contacts);
+  if (!careful && hold_last(answer, settings) && entry.held.usable()) {
+    ++entry.held.runs;
+    for (std::size_t i = 0; i < entry.held.count; ++i) write_contact(writer, entry.held.contacts[i], *pose_a, o1_is_a);
+  } else if (!answer.contacts.empty()) {
+    for (const query::Contact& contact : answer.contacts) write_contact(writer, contact, *pose_a, o1_is_a);
+  } else if (use_cell_pair(answer, settings)) {
+    // A place and a direction, but no push: a depth that nobody has measured could throw a body away.
+    query::Contact contact = answer.cell_pair;
+    if (answer.basis == query::Basis::budget) contact.depth = 0.0;
+    write_contact(writer, contact, *pose_a, o1_is_a);
     entry.last.from_cell_pair = writer.count();
     count(statistics().cell_pair_contacts, static_cast<unsigned long long>(writer.count()));
   }

@@ -1,16 +1,34 @@
 // Workspaces of pairs of geoms, found without a lock by the unordered pair of geom numbers.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
 #include <mutex>
 #include <optional>
+#include <span>
 
 #include "odds/query/pair.hpp"
 #include "ode/geom_data.hpp"
 
 namespace odds::ode {
+
+/// The contacts of a pair's last proof, in A's mesh frame: what an undecided query falls back on.
+struct HeldContacts {
+  /// A stalled processor is away for some milliseconds; what is older says nothing any more.
+  static constexpr int most_runs = 10;
+  std::array<query::Contact, 8> contacts;
+  std::size_t count = 0;
+  int runs = 0;  ///< undecided runs since the proof
+
+  void keep(std::span<const query::Contact> found) noexcept {
+    count = std::min(found.size(), contacts.size());
+    std::copy_n(found.begin(), count, contacts.begin());
+    runs = 0;
+  }
+  [[nodiscard]] bool usable() const noexcept { return count > 0 && runs < most_runs; }
+};
 
 /// The memory of one pair. `a` is the geom that was created first, whatever the order of any call.
 struct PairEntry {
@@ -18,6 +36,7 @@ struct PairEntry {
   GeomData* b = nullptr;
   std::optional<query::Pair> pair;  ///< empty: making it failed, remembered so that the loop does not try again
   oddsAnswer last = {};             ///< with g1 = a
+  HeldContacts held;
   bool answered = false;
   std::atomic<bool> busy{false};          ///< in use by a thread
   std::atomic<PairEntry*> next{nullptr};  ///< in its bucket

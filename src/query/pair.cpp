@@ -40,7 +40,9 @@ struct Pair::Implementation {
 
 namespace {
 
-constexpr double hits_per_microsecond = 0.25;
+constexpr double hits_per_microsecond = 0.6;
+// Fewer may leave a gap in the rim of even two boxes, and the direction of a patch needs all of its rim.
+constexpr double least_hits = 64.0;
 // What a patch takes from hearing of the deadline to its end: a ray or two and the choice of contacts; a single
 // contact.
 constexpr std::int64_t patch_finish_ns = 7000;
@@ -51,7 +53,8 @@ constexpr std::int64_t single_finish_ns = 3000;
 std::uint32_t wanted_hits(const Request& request) noexcept {
   if (request.max_contacts <= 1) return 1;
   if (!std::isfinite(request.budget.microseconds)) return no_feature;
-  return static_cast<std::uint32_t>(std::clamp(hits_per_microsecond * request.budget.microseconds, 12.0, 65536.0));
+  return static_cast<std::uint32_t>(
+      std::clamp(hits_per_microsecond * request.budget.microseconds, least_hits, 65536.0));
 }
 
 /// A pose or request that no query can be run with: answered as undecided, never as a NaN.
@@ -143,7 +146,9 @@ void make_contacts(const Encounter<V>& encounter, const math::Pose& pose_b_in_a,
         pair.previous_normal.isZero() ? Vec3(encounter.a().origin() - centre_b) : pair.previous_normal;
     pair.quick_contact =
         first_contact(encounter, pair.hits.pairs().front(), pair.a->is_solid() && pair.b->is_solid(), towards_a);
+    pair.quick_contact.depth = 0.0;
     pair.answer.contacts = {&pair.quick_contact, 1};
+    pair.answer.contacts_complete = false;
     return;
   }
   for (TrianglePair& hit : pair.hits.pairs()) hit = {encounter.a().order()[hit.a], encounter.b().order()[hit.b]};
@@ -170,6 +175,7 @@ void make_contacts(const Encounter<V>& encounter, const math::Pose& pose_b_in_a,
   const Deadline deadline{[](void* state) noexcept { return !static_cast<Spending*>(state)->may_make_contacts(); },
                           &spending};
   pair.answer.contacts = pair.patches.build(input, deadline);
+  pair.answer.contacts_complete = spending.may_make_contacts();
   if (pair.answer.contacts.empty()) return;
   pair.previous_normal = pair.answer.contacts.front().normal;
   pair.previous_position = pair.answer.contacts.front().position;

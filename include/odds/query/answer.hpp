@@ -50,8 +50,12 @@ struct Answer {
   Basis basis = Basis::proved;
   double probability = 0.0;           ///< of a hit, in [0, 1]; exactly 1 or 0 where proved
   std::span<const Contact> contacts;  ///< in A's mesh frame, best first; valid until the pair's next run
-  bool has_cell_pair = false;         ///< whether `cell_pair` is set: some pair of nodes remained undecided
-  Contact cell_pair;  ///< where the surfaces most probably meet: centroids, mean normals, depth estimate
+  /// False if the time ended before the contacts were made with care: they come from one pair of triangles (then their
+  /// depth is 0, for nobody has measured it) or from a part of the patch. A caller that has contacts of the last tick
+  /// may prefer those.
+  bool contacts_complete = true;
+  bool has_cell_pair = false;  ///< whether `cell_pair` is set: some pair of nodes remained undecided
+  Contact cell_pair;           ///< where the surfaces most probably meet: centroids, mean normals, depth estimate
   double cell_pair_probability = 0.0;  ///< of an intersection within that pair of nodes
   Cost cost;
 };
