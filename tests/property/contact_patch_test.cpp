@@ -112,7 +112,7 @@ TEST(ContactPatchProperty, ExchangingTheBodiesTurnsTheNormalsAround) {
     ASSERT_EQ(there.empty(), back.empty());
     if (there.empty()) continue;
     for (Contact& c : back) c.normal = -(scene.pose_b_in_a.rotation * c.normal);
-    EXPECT_NEAR(there[0].depth, back[0].depth, 0.03 * there[0].depth + 1e-9);
+    EXPECT_NEAR(there[0].depth, back[0].depth, 0.04 * there[0].depth + 1e-9);
     EXPECT_LE((there[0].normal - back[0].normal).norm(), 1e-6);
     // Which of many equal points of a patch are taken depends on the frame; the patches do not.
     for (const Contact& c : there) {
@@ -135,7 +135,7 @@ TEST(ContactPatchProperty, MovingBothBodiesMovesTheContacts) {
     SCOPED_TRACE(seed);
     ASSERT_EQ(before.empty(), after.empty());
     if (before.empty()) continue;
-    EXPECT_NEAR(before[0].depth, after[0].depth, 0.03 * before[0].depth + 1e-9);
+    EXPECT_NEAR(before[0].depth, after[0].depth, 0.04 * before[0].depth + 1e-9);
     EXPECT_LE((motion.rotation * before[0].normal - after[0].normal).norm(), 1e-6);
   }
 }
