@@ -4,6 +4,8 @@
 #include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/distance.h>
 
+#include <limits>
+
 namespace odds::testing {
 
 struct FclModel::Data {
@@ -37,6 +39,13 @@ bool fcl_collide(const FclModel& a, const FclModel& b, const math::Pose& pose_b_
   fcl::CollisionResultd result;
   fcl::collide(&a.data().model, fcl::Transform3d::Identity(), &b.data().model, to_fcl(pose_b_in_a), request, result);
   return result.isCollision();
+}
+
+std::size_t fcl_contacts(const FclModel& a, const FclModel& b, const math::Pose& pose_b_in_a) {
+  const fcl::CollisionRequestd request(std::numeric_limits<std::size_t>::max(), true);
+  fcl::CollisionResultd result;
+  fcl::collide(&a.data().model, fcl::Transform3d::Identity(), &b.data().model, to_fcl(pose_b_in_a), request, result);
+  return result.numContacts();
 }
 
 double fcl_distance(const FclModel& a, const FclModel& b, const math::Pose& pose_b_in_a) {

@@ -24,6 +24,9 @@ class FclModel {
 /// Boolean collision query.
 [[nodiscard]] bool fcl_collide(const FclModel& a, const FclModel& b, const math::Pose& pose_b_in_a);
 
+/// Number of all contacts, each with its position, normal and depth.
+[[nodiscard]] std::size_t fcl_contacts(const FclModel& a, const FclModel& b, const math::Pose& pose_b_in_a);
+
 /// Surface distance in metres; 0 or negative where they meet.
 [[nodiscard]] double fcl_distance(const FclModel& a, const FclModel& b, const math::Pose& pose_b_in_a);
 

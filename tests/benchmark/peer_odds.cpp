@@ -1,0 +1,65 @@
+#include "benchmark/peer_odds.hpp"
+
+#include <stdexcept>
+
+#include "odds/query/pair.hpp"
+
+namespace odds::benchmark {
+namespace {
+
+const char* method_name(query::Method method) {
+  switch (method) {
+    case query::Method::exact:
+      return "exact";
+    case query::Method::incremental:
+      return "incremental";
+    default:
+      return "time-critical";
+  }
+}
+
+template <class T>
+T value_or_throw(Result<T> result) {
+  if (!result.ok()) throw std::runtime_error(result.error().message());
+  return std::move(result).value();
+}
+
+class OddsPeer final : public Peer {
+ public:
+  OddsPeer(const MeshPair& meshes, volume::Kind volume, query::Method method, int builds)
+      : Peer("odds " + std::string(volume::name(volume)) + " " + method_name(method)), method_(method) {
+    const query::ShapeOptions options{.volume = volume};
+    const auto build = [&](const auto& mesh) { return value_or_throw(query::Shape::build(mesh, options)); };
+    const auto a = build_measured(meshes.a->triangles().size(), builds, [&] { return build(meshes.a); });
+    const auto b = meshes.b == meshes.a ? a : build(meshes.b);
+    pair_ = std::make_unique<query::Pair>(value_or_throw(query::Pair::make(a, b)));
+  }
+
+  [[nodiscard]] bool is_coherent() const noexcept override { return method_ == query::Method::incremental; }
+  void forget() noexcept override { pair_->reset(); }
+  [[nodiscard]] bool collide(const math::Pose& pose_b_in_a) override {
+    return run(pose_b_in_a, 0).verdict == query::Verdict::hit;
+  }
+  [[nodiscard]] std::size_t contacts(const math::Pose& pose_b_in_a) override {
+    return run(pose_b_in_a, 8).contacts.size();
+  }
+
+ private:
+  const query::Answer& run(const math::Pose& pose_b_in_a, int max_contacts) noexcept {
+    query::Request request;
+    request.method = method_;
+    request.max_contacts = max_contacts;
+    return pair_->run(pose_b_in_a, request);
+  }
+
+  query::Method method_;
+  std::unique_ptr<query::Pair> pair_;
+};
+
+}  // namespace
+
+std::unique_ptr<Peer> make_odds_peer(const MeshPair& meshes, volume::Kind volume, query::Method method, int builds) {
+  return std::make_unique<OddsPeer>(meshes, volume, method, builds);
+}
+
+}  // namespace odds::benchmark
