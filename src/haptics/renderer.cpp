@@ -31,12 +31,13 @@ void copy(const ode::StepSummary& step, TickRecord& record) {
   record.step_us = step.step_us;
   record.contacts = step.contacts;
   record.max_depth_m = step.max_depth_m;
+  record.contact_work_j = step.contact_work_j;
 }
 
 }  // namespace
 
-Renderer::Renderer(ode::World& world, const std::optional<Hand>& hand, AllocationCount allocations)
-    : world_(&world), hand_(hand), allocations_(allocations) {
+Renderer::Renderer(ode::World& world, const std::optional<Hand>& hand, EffectSet& effects, AllocationCount allocations)
+    : world_(&world), hand_(hand), effects_(&effects), allocations_(allocations) {
   if (hand_) world.add_coupling(hand_->tool);
   if (hand_) safety_.emplace(hand_->limits);
 }
@@ -45,11 +46,13 @@ bool Renderer::begin() noexcept {
   failed_reads_ = 0;
   rescued_steps_ = 0;
   contacts_left_out_ = 0;
+  effects_->reset();
   if (!hand_) return true;
   DeviceState state;
   if (!hand_->device->read(0, state) || !finite(state)) return false;
   state_ = state;
   fresh_ns_ = 0;
+  energy_.reset(state);
   safety_.emplace(hand_->limits);
   world_->set_state(hand_->tool,
                     {{state.orientation.toRotationMatrix(), state.position_m}, Vec3::Zero(), Vec3::Zero()});
@@ -75,33 +78,49 @@ void Renderer::read_device(std::int64_t now_ns) noexcept {
   }
   state_ = state;
   if (state.fresh) fresh_ns_ = now_ns;
+  energy_.moved(state);
 }
 
-void Renderer::write_device(std::int64_t now_ns, const ode::BodyState& tool, TickRecord& record) noexcept {
-  const Vec3 center = tool.pose * world_->mass(hand_->tool).center_m;
-  const ode::Wrench on_hand = reaction_on_hand(world_->coupling_wrench(hand_->tool), center, state_.position_m);
+void Renderer::write_device(std::int64_t now_ns, const ode::Wrench& on_hand, TickRecord& record) noexcept {
   DeviceCommand command{now_ns, on_hand.force_n, on_hand.torque_nm, 0};
   safety_->apply(command, world_->options().step_s, 1e-9 * static_cast<double>(now_ns - fresh_ns_));
   if (!hand_->device->write(command)) safety_->trip();  // a device that takes no commands must not keep an old one
+  energy_.sent(command.force_n, command.torque_nm);
   copy(command.force_n, record.force_n);
   copy(command.torque_nm, record.torque_nm);
   record.safety = command.flags;
+  record.observed_energy_j = energy_.energy_j();
+}
+
+TickView Renderer::view(std::int64_t now_ns) noexcept {
+  TickView view;
+  view.world = world_;
+  view.now_ns = now_ns;
+  view.step_s = world_->options().step_s;
+  if (!hand_) return view;
+  view.device = &state_;
+  view.tool = hand_->tool;
+  view.energy = &energy_;
+  return view;
 }
 
 void Renderer::tick(std::int64_t now_ns, TickRecord& record) noexcept {
   const std::uint64_t allocated = allocations_ != nullptr ? allocations_() : 0;
-  if (hand_) {
-    read_device(now_ns);
-    world_->set_coupling(hand_->tool, hand_->coupling.towards(state_));
-  }
-  const ode::StepSummary step = world_->step();
+  if (hand_) read_device(now_ns);
+  TickView tick = view(now_ns);
+  effects_->before_step(tick);
+  last_step_ = world_->step();
+  const ode::StepSummary& step = last_step_;
+  tick.step = &step;
+  effects_->after_step(tick);
+  const ode::Wrench on_hand = effects_->on_hand(tick);
   copy(step, record);
   contacts_left_out_ += step.contacts_left_out;
   if (step.bodies_slowed + step.bodies_recovered > 0) ++rescued_steps_;
   if (hand_) {
     if (step.bodies_recovered > 0) safety_->trip();
+    write_device(now_ns, on_hand, record);
     const ode::BodyState tool = world_->state(hand_->tool);
-    write_device(now_ns, tool, record);
     copy(state_.position_m, record.device_position_m);
     copy(state_.orientation, record.device_orientation_wxyz);
     copy(tool.pose.translation, record.tool_position_m);
@@ -111,6 +130,23 @@ void Renderer::tick(std::int64_t now_ns, TickRecord& record) noexcept {
     record.allocations =
         static_cast<std::uint32_t>(std::min<std::uint64_t>(allocations_() - allocated, not_measured - 1));
   }
+}
+
+std::int64_t Renderer::trial(std::int64_t now_ns) noexcept {
+  if (hand_) {
+    DeviceState state = state_;
+    if (hand_->device->read(now_ns, state) && finite(state)) state_ = state;
+    world_->set_coupling(hand_->tool, {});  // no stiffness, no damping: no rows, unless an effect pulls
+  }
+  const realtime::Clock& clock = world_->options().clock;
+  const std::int64_t begin_ns = clock();
+  TickView tick = view(now_ns);
+  effects_->before_step(tick);
+  const ode::StepSummary step = world_->step();
+  tick.step = &step;
+  effects_->after_step(tick);
+  (void)effects_->on_hand(tick);
+  return clock() - begin_ns;
 }
 
 }  // namespace odds::haptics

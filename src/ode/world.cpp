@@ -10,8 +10,11 @@
 #include <vector>
 
 #include "odds/ode/geom.hpp"
+#include "ode/contact_rows.hpp"
+#include "ode/contact_work.hpp"
 #include "ode/coupling_joint.hpp"
 #include "ode/mass_properties.hpp"
+#include "ode/vectors.hpp"
 
 namespace odds::ode {
 namespace {
@@ -19,8 +22,6 @@ namespace {
 constexpr unsigned long fixed_bit = 1;
 constexpr unsigned long dynamic_bit = 2;
 constexpr int most_contacts_per_pair = 8;  // the geom's own limit
-// Slip slower than this is sticking: its direction is noise and says nothing about the direction of friction.
-constexpr double least_slip_m_per_s = 1e-3;
 // Depths and lever arms beyond this overflow in ODE's solver, which then ends the program.
 constexpr double farthest_m = 1e6;
 constexpr double rigid_within = 1e-6;  // of a pose given from outside: R^T R - I
@@ -30,19 +31,9 @@ std::atomic<std::uint64_t> solver_messages{0};
 // ODE writes to stderr where the solver meets redundant contacts; within a tick that would be a system call.
 void count_message(int, const char*, va_list) { solver_messages.fetch_add(1, std::memory_order_relaxed); }
 
-Vec3 vector_of(const dReal* v) { return {v[0], v[1], v[2]}; }
-
-Mat3 matrix_of(const dReal* r) {
-  Mat3 m;
-  m << r[0], r[1], r[2], r[4], r[5], r[6], r[8], r[9], r[10];
-  return m;
-}
-
-void to_ode(const Mat3& m, dMatrix3 r) {
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) r[4 * i + j] = m(i, j);
-    r[4 * i + 3] = 0.0;
-  }
+// Geoms know their place in the list of bodies.
+BodyId id_of(dGeomID geom) {
+  return {static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(dGeomGetData(geom)))};
 }
 
 struct Body {
@@ -96,13 +87,17 @@ struct World::Implementation {
   std::vector<std::unique_ptr<Body>> bodies;
   std::uint32_t dynamic_bodies = 0;
   StepSummary summary;  // of the step under way
+  MeetingHook hook;
+  std::vector<Momentum> momenta;  // of all bodies, before the solver; empty unless asked for
 
   Result<Body*> add(std::shared_ptr<const query::Shape> shape, const math::Pose& pose, const std::string& name);
   bool configure(dGeomID geom) const;
   std::optional<Error> prepare_pairs();
   void warm_up_solver();
-  void note_answer(dGeomID a, dGeomID b);
-  void add_contacts(const dContactGeom* found, int count, dBodyID a, dBodyID b);
+  void note_answer(dGeomID a, dGeomID b, Meeting& meeting);
+  void add_contact(const ContactPoint& point, const dContactGeom& found, dBodyID a, dBodyID b);
+  void note_momenta();
+  [[nodiscard]] double contact_work() const;
   void apply_damping();
   void hold_to_limits(Body& body);
   void place(Body& body, const BodyState& state);
@@ -123,6 +118,7 @@ Result<Body*> World::Implementation::add(std::shared_ptr<const query::Shape> sha
   if (!geom) return geom.error();
   bodies.push_back(std::make_unique<Body>(Body{name, std::move(geom).value(), nullptr, {}, nullptr, {pose, {}, {}}}));
   Body& body = *bodies.back();
+  dGeomSetData(body.geom.id(), reinterpret_cast<void*>(std::uintptr_t{bodies.size() - 1}));
   body.last_good.velocity_m_per_s.setZero();
   body.last_good.angular_velocity_rad_per_s.setZero();
   if (!configure(body.geom.id())) {
@@ -207,7 +203,7 @@ std::optional<Error> World::Implementation::prepare_pairs() {
 // Fills the joint group and the solver's memory once with the most contacts a step may have, then undoes the motion.
 void World::Implementation::warm_up_solver() {
   constexpr std::uint32_t most_solved = 64;  // the exact solver's time grows with the cube
-  const std::uint32_t rows = 3 * options.max_contacts_per_step + 6 * dynamic_bodies;
+  const std::uint32_t rows = (options.angular_friction ? 6 : 3) * options.max_contacts_per_step + 6 * dynamic_bodies;
   dWorldStepReserveInfo reserve{};
   reserve.struct_size = sizeof(reserve);
   reserve.reserve_factor = 1.2F;
@@ -228,7 +224,9 @@ void World::Implementation::warm_up_solver() {
     Eigen::Map<Vec3>(geom.normal) = direction.normalized();
     const Body& body = *moving[i % moving.size()];
     Eigen::Map<Vec3>(geom.pos) = vector_of(dBodyGetPosition(body.body)) - 1e-3 * direction;
-    add_contacts(&geom, 1, body.body, nullptr);
+    ContactPoint point = contact_point(geom, 1, options.contact, false, body.body, nullptr);
+    if (options.angular_friction) point.surface.rolling_m = point.surface.spinning_m = 1e-3;
+    add_contact(point, geom, body.body, nullptr);
   };
   const ContactModel asked = options.contact;
   options.contact.friction = 1.0;
@@ -250,17 +248,37 @@ void World::Implementation::near(void* self, dGeomID a, dGeomID b) noexcept {
   std::array<dContactGeom, most_contacts_per_pair> found;
   const int most = std::max(1, world.options.query.max_contacts);  // ODE refuses to be asked for none
   const int count = dCollide(a, b, most, found.data(), sizeof(dContactGeom));
-  world.note_answer(a, b);
-  if (count > 0) world.add_contacts(found.data(), count, dGeomGetBody(a), dGeomGetBody(b));
+  const dBodyID body_a = dGeomGetBody(a);
+  const dBodyID body_b = dGeomGetBody(b);
+  const bool velocity = world.options.contact_velocity || world.options.contact.friction > 0.0;
+  std::array<ContactPoint, most_contacts_per_pair> points;
+  for (int i = 0; i < count; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    points[at] = contact_point(found[at], count, world.options.contact, velocity, body_a, body_b);
+  }
+  Meeting meeting{id_of(a),
+                  id_of(b),
+                  query::Verdict::clear,
+                  query::Basis::proved,
+                  0.0,
+                  {points.data(), static_cast<std::size_t>(std::max(0, count))}};
+  world.note_answer(a, b, meeting);
+  ++world.summary.meetings;
+  if (world.hook.call != nullptr) world.hook.call(world.hook.self, meeting);
+  if (!world.options.contact.responds) return;
+  for (std::size_t i = 0; i < meeting.contacts.size(); ++i) world.add_contact(points[i], found[i], body_a, body_b);
 }
 
-void World::Implementation::note_answer(dGeomID a, dGeomID b) {
+void World::Implementation::note_answer(dGeomID a, dGeomID b, Meeting& meeting) {
   oddsAnswer answer;
   if (oddsGetLastAnswer(a, b, &answer) == 0) return;
   const auto basis = answer.basis == ODDS_PROVED      ? query::Basis::proved
                      : answer.basis == ODDS_ESTIMATED ? query::Basis::estimated
                                                       : query::Basis::budget;
   ++summary.queries;
+  meeting.verdict = answer.verdict == ODDS_HIT ? query::Verdict::hit : query::Verdict::clear;
+  meeting.basis = basis;
+  meeting.probability = answer.probability;
   if (answer.verdict == ODDS_HIT) summary.verdict = query::Verdict::hit;
   summary.basis = std::max(summary.basis, basis);
   summary.probability = std::max(summary.probability, answer.probability);
@@ -272,48 +290,36 @@ void World::Implementation::note_answer(dGeomID a, dGeomID b) {
   summary.query_net_overshoot_us = std::max(summary.query_net_overshoot_us, answer.net_overshoot_us);
 }
 
-void World::Implementation::add_contacts(const dContactGeom* found, int count, dBodyID a, dBodyID b) {
-  const ContactModel& model = options.contact;
-  // The contacts of a pair are springs side by side: each takes its share, so that the pair is as stiff as asked.
-  const double weight = (options.step_s * model.stiffness_n_per_m + model.damping_ns_per_m) / count;
-  for (int i = 0; i < count; ++i) {
-    const Vec3 position = vector_of(found[i].pos);
-    const Vec3 normal = vector_of(found[i].normal);
-    const bool finite = position.allFinite() && normal.allFinite() && std::isfinite(found[i].depth);
-    if (!finite || summary.contacts >= options.max_contacts_per_step) {
-      ++summary.contacts_left_out;
-      continue;
-    }
-    dContact contact{};
-    contact.geom = found[i];
-    contact.surface.mode = dContactSoftERP | dContactSoftCFM;
-    contact.surface.soft_erp = options.step_s * model.stiffness_n_per_m / (weight * count);
-    contact.surface.soft_cfm = 1.0 / weight;
-    if (model.friction > 0.0) {
-      contact.surface.mode |= dContactApprox1;
-      contact.surface.mu = model.friction;
-      Vec3 slip = Vec3::Zero();
-      dVector3 velocity;
-      if (a != nullptr) {
-        dBodyGetPointVel(a, position.x(), position.y(), position.z(), velocity);
-        slip += vector_of(velocity);
-      }
-      if (b != nullptr) {
-        dBodyGetPointVel(b, position.x(), position.y(), position.z(), velocity);
-        slip -= vector_of(velocity);
-      }
-      slip -= slip.dot(normal) * normal;
-      const double speed = slip.norm();
-      if (speed >
-          least_slip_m_per_s) {  // one axis of the friction pyramid along the slip makes it a cone where it counts
-        contact.surface.mode |= dContactFDir1;
-        Eigen::Map<Vec3>(contact.fdir1) = slip / speed;
-      }
-    }
-    dJointAttach(dJointCreateContact(world, contacts, &contact), a, b);
-    ++summary.contacts;
-    summary.max_depth_m = std::max(summary.max_depth_m, static_cast<double>(found[i].depth));
+void World::Implementation::add_contact(const ContactPoint& point, const dContactGeom& found, dBodyID a, dBodyID b) {
+  if (!can_be_solved(point) || summary.contacts >= options.max_contacts_per_step) {
+    ++summary.contacts_left_out;
+    return;
   }
+  const dContact contact = contact_rows(point, found, options.step_s);
+  dJointAttach(dJointCreateContact(world, contacts, &contact), a, b);
+  ++summary.contacts;
+  const Surface& surface = point.surface;
+  summary.friction_rows += surface.friction > 0.0 ? 2U : 0U;
+  summary.angular_rows += (surface.rolling_m > 0.0 ? 2U : 0U) + (surface.spinning_m > 0.0 ? 1U : 0U);
+  summary.max_depth_m = std::max(summary.max_depth_m, static_cast<double>(contact.geom.depth));
+}
+
+void World::Implementation::note_momenta() {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (bodies[i]->body == nullptr) continue;
+    momenta[i] = momentum_without_contacts(bodies[i]->body, bodies[i]->mass, options.gravity_m_per_s2, options.step_s);
+  }
+}
+
+double World::Implementation::contact_work() const {
+  double work = 0.0;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const Body& body = *bodies[i];
+    if (body.body == nullptr) continue;
+    const Wrench pull = body.coupling ? body.coupling->wrench() : Wrench{};
+    work += work_of_contacts(momenta[i], body.body, body.mass, pull, options.step_s);
+  }
+  return work;
 }
 
 void World::Implementation::hold_to_limits(Body& body) {
@@ -409,6 +415,7 @@ void World::add_coupling(BodyId id) {
 
 std::optional<Error> World::prepare() {
   if (auto error = implementation_->prepare_pairs()) return error;
+  if (implementation_->options.contact_work) implementation_->momenta.resize(implementation_->bodies.size());
   if (implementation_->dynamic_bodies > 0) implementation_->warm_up_solver();
   dSpaceClean(implementation_->space);
   return std::nullopt;
@@ -423,8 +430,13 @@ StepSummary World::step() noexcept {
   self.summary.collision_us = 1e-3 * static_cast<double>(collided_ns - start_ns);
   if (self.dynamic_bodies == 0) return self.summary;
   const double h = self.options.step_s;
+  const bool measures = self.options.contact_work && self.momenta.size() == self.bodies.size();
+  if (measures) self.note_momenta();
+  ++self.summary.solver_calls;
+  self.summary.bodies_stepped = self.dynamic_bodies;
   self.options.solver == Solver::exact ? dWorldStep(self.world, h) : dWorldQuickStep(self.world, h);
   dJointGroupEmpty(self.contacts);
+  if (measures) self.summary.contact_work_j = self.contact_work();
   for (const auto& body : self.bodies) {
     if (body->body != nullptr) self.hold_to_limits(*body);
   }
@@ -464,6 +476,8 @@ void World::set_state(BodyId id, const BodyState& state) noexcept {
 const MassProperties& World::mass(BodyId id) const noexcept { return implementation_->bodies[id.index]->mass; }
 bool World::is_dynamic(BodyId id) const noexcept { return implementation_->bodies[id.index]->body != nullptr; }
 std::uint32_t World::body_count() const noexcept { return static_cast<std::uint32_t>(implementation_->bodies.size()); }
+
+void World::set_meeting_hook(const MeetingHook& hook) noexcept { implementation_->hook = hook; }
 
 void World::set_contact(const ContactModel& contact) noexcept {
   implementation_->options.contact = contact;

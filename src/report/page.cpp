@@ -62,6 +62,7 @@ std::string page(const RunInfo& info, const RunSummary& summary, std::span<const
   html += page_latency(summary, charts);
   html += page_answers(summary, charts);
   html += page_forces(summary, charts);
+  html += page_effects(info, summary);
   html += page_machine(info);
   html += page_run(info);
   html += page_glossary();

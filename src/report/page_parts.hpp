@@ -13,6 +13,7 @@ namespace odds::report {
 [[nodiscard]] std::string page_latency(const RunSummary& summary, bool charts);
 [[nodiscard]] std::string page_answers(const RunSummary& summary, bool charts);
 [[nodiscard]] std::string page_forces(const RunSummary& summary, bool charts);
+[[nodiscard]] std::string page_effects(const RunInfo& info, const RunSummary& summary);
 [[nodiscard]] std::string page_machine(const RunInfo& info);
 [[nodiscard]] std::string page_run(const RunInfo& info);
 

@@ -1,6 +1,7 @@
 // The sections of the page below its top.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "report/page_parts.hpp"
@@ -147,6 +148,32 @@ std::string page_forces(const RunSummary& s, bool charts) {
   html += time_line("chart-contact", "Contact", "Depth of the deepest contact, and how many contact points there were.",
                     "low");
   return html;
+}
+
+std::string page_effects(const RunInfo& info, const RunSummary& s) {
+  if (info.effect_costs.empty()) return "<h2 id=\"effects\">Effects</h2>\n<p>The scene asks for none.</p>\n";
+  std::string html =
+      "<h2 id=\"effects\">Effects</h2>\n<p>What the scene asked for, and what it took in its own code; the rows that "
+      "an "
+      "effect adds to the solver count with the simulation step, a query with the collision phase. Effects that are "
+      "not "
+      "in this table were not made.</p>\n<div class=\"wide\"><table class=\"figures\"><tr><th>effect</th><th>line</th>"
+      "<th>evaluations a tick</th><th>mean a tick</th><th>longest</th></tr>\n";
+  for (const RunEffect& effect : info.effect_costs) {
+    const double ticks = static_cast<double>(std::max<std::uint64_t>(effect.ticks, 1));
+    html += fmt::format("<tr><td>{}</td><td>{}</td><td>{:.3g}</td><td>{}</td><td>{}</td></tr>\n",
+                        html_escaped(effect.name), effect.line, static_cast<double>(effect.evaluations) / ticks,
+                        duration(static_cast<double>(effect.total_ns) / ticks),
+                        duration(static_cast<double>(effect.longest_ns)));
+  }
+  html += "</table></div>\n";
+  if (info.device.empty() || info.device == "none") return html;
+  return html +
+         fmt::format("<p>Energy at the hand: {}. The balance of every tick is in ticks.csv.</p>\n",
+                     s.least_energy_j < 0.0
+                         ? fmt::format("at one time the simulation had given the hand {:.3g} J more than it had taken",
+                                       -s.least_energy_j)
+                         : std::string("the simulation never gave the hand more than it had taken"));
 }
 
 std::string page_machine(const RunInfo& info) {

@@ -56,6 +56,7 @@ void add_conditions(RunSummary& summary, const TickRecord& tick) {
   summary.most_contacts = std::max(summary.most_contacts, tick.contacts);
   summary.deepest_m = std::fmax(summary.deepest_m, tick.max_depth_m);
   summary.largest_force_n = std::fmax(summary.largest_force_n, length(tick.force_n));
+  summary.least_energy_j = std::fmin(summary.least_energy_j, tick.observed_energy_j);
   summary.largest_torque_nm = std::fmax(summary.largest_torque_nm, length(tick.torque_nm));
 }
 

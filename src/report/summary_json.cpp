@@ -73,6 +73,19 @@ Json safety(const RunSummary& s) {
           {"stale", s.safety[6]},          {"faulted", s.safety[7]}};
 }
 
+Json effects(const RunInfo& info) {
+  Json block = Json::array();
+  for (const RunEffect& effect : info.effect_costs) {
+    block.push_back({{"name", effect.name},
+                     {"line", effect.line},
+                     {"ticks", effect.ticks},
+                     {"evaluations", effect.evaluations},
+                     {"total_us", static_cast<double>(effect.total_ns) * 1e-3},
+                     {"longest_us", static_cast<double>(effect.longest_ns) * 1e-3}});
+  }
+  return block;
+}
+
 Json machine(const RunInfo& info) {
   Json host = Json::array();
   for (const realtime::HostLine& line : info.host) {
@@ -118,6 +131,8 @@ std::string summary_json(const RunInfo& info, const RunSummary& s) {
                     {"largest_force_n", number_or_null(s.largest_force_n)},
                     {"largest_torque_nm", number_or_null(s.largest_torque_nm)}}},
                   {"safety_ticks", safety(s)},
+                  {"effects", effects(info)},
+                  {"energy", {{"least_at_hand_j", number_or_null(s.least_energy_j)}}},
                   {"machine", machine(info)}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";  // a scene's text may not be UTF-8
 }

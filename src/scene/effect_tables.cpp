@@ -1,62 +1,102 @@
-// One function per effect: its keys, their units and ranges.
+// Which effects a scene asks for, and whether they have something to work on.
 #include "scene/effect_tables.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "odds/haptics/effect_registry.hpp"
 
 namespace odds::scene {
 namespace {
 
-using haptics::Range;
+using haptics::Effect;
+using haptics::Settings;
 using haptics::SettingsReader;
 
-void read(SettingsReader& reader, Contact& contact) {
-  reader.number("stiffness_n_per_m", Range::positive(), contact.stiffness_n_per_m);
-  reader.number("damping_ns_per_m", Range::not_negative(), contact.damping_ns_per_m);
-  reader.number("max_correcting_velocity_m_per_s", Range::positive(), contact.max_correcting_velocity_m_per_s);
+// [effects.NAME] is one table, [[effects.NAME]] several.
+std::vector<const Settings*> tables_of(SettingsReader& reader, std::string_view name) {
+  const haptics::Setting* setting = reader.settings().find(name);
+  if (setting != nullptr && std::holds_alternative<haptics::Value::List>(setting->value.data)) {
+    return reader.tables(name);
+  }
+  const Settings* table = reader.table(name);
+  return table == nullptr ? std::vector<const Settings*>{} : std::vector<const Settings*>{table};
 }
 
-void read(SettingsReader& reader, Friction& friction) {
-  reader.require("mu");
-  reader.number("mu", {0.0, 100.0, true}, friction.mu);
-}
+struct Made {
+  const AskedEffect* asked = nullptr;
+  std::unique_ptr<Effect> effect;
+};
 
-void read(SettingsReader& reader, Gravity& gravity) { reader.vector("g_m_per_s2", gravity.g_m_per_s2); }
-
-void read(SettingsReader& reader, haptics::VirtualCoupling& coupling) {
-  reader.number("k_t_n_per_m", Range::positive(), coupling.k_t_n_per_m);
-  reader.number("b_t_ns_per_m", Range::not_negative(), coupling.b_t_ns_per_m);
-  reader.number("k_r_nm_per_rad", Range::positive(), coupling.k_r_nm_per_rad);
-  reader.number("b_r_nms_per_rad", Range::not_negative(), coupling.b_r_nms_per_rad);
-  reader.number("max_force_n", Range::positive(), coupling.max_force_n);
-  reader.number("max_torque_nm", Range::positive(), coupling.max_torque_nm);
-}
-
-void read(SettingsReader& reader, ode::Damping& damping) {
-  reader.number("linear_per_s", Range::not_negative(), damping.linear_per_s);
-  reader.number("angular_per_s", Range::not_negative(), damping.angular_per_s);
-}
-
-template <class Parameters>
-std::optional<Error> read_effect(SettingsReader& effects, std::string_view name,
-                                 std::optional<Effect<Parameters>>& effect) {
-  const haptics::Settings* table = effects.table(name);
-  if (table == nullptr) return std::nullopt;
-  Effect<Parameters> asked;
-  asked.place = table->place;
-  SettingsReader reader(*table);
-  read(reader, static_cast<Parameters&>(asked));
-  effect = asked;
-  return reader.finish();
+std::optional<Error> check(const Scene& scene, const Made& made) {
+  const auto error = [&](const std::string& what, const std::string& remedy) {
+    return Error{scene.file, made.asked->place.text(), what, remedy};
+  };
+  const std::string rests_on(made.effect->rests_on());
+  std::string words = made.asked->name;
+  std::replace(words.begin(), words.end(), '_', ' ');
+  if (!rests_on.empty() && scene.find_effect(rests_on) == nullptr) {
+    return error(fmt::format("{} needs {}", words, rests_on),
+                 fmt::format("add [effects.{}], or remove this table", rests_on));
+  }
+  const bool held = scene.device.has_value();  // one that no body follows is refused elsewhere
+  if ((made.effect->needs() & haptics::need_device) != 0 && !held) {
+    return error(fmt::format("the {} has no device to pull towards", words),
+                 "add a [device.NAME] and device = \"NAME\" in a [[body]], or remove this table");
+  }
+  const bool moving = std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& b) { return b.dynamic; });
+  if ((made.effect->needs() & haptics::need_motion) != 0 && !moving) {
+    return error("this effect moves bodies, but no body is dynamic",
+                 "give a [[body]] motion = \"dynamic\" and a mass, or remove this table");
+  }
+  const auto same = std::count_if(scene.effects.begin(), scene.effects.end(),
+                                  [&](const AskedEffect& e) { return e.name == made.asked->name; });
+  if (same > 1 && !made.effect->repeatable()) {
+    return error(fmt::format("{} is asked for {} times", words, same), "keep one of the tables");
+  }
+  return std::nullopt;
 }
 
 }  // namespace
 
-std::optional<Error> read_effects(const haptics::Settings& settings, Effects& effects) {
+std::vector<haptics::BodyInfo> body_infos(const Scene& scene) {
+  std::vector<haptics::BodyInfo> infos;
+  for (const Body& body : scene.bodies) infos.push_back({body.name, body.dynamic});
+  return infos;
+}
+
+std::optional<Error> read_effects(const Settings& settings, Scene& scene) {
   SettingsReader reader(settings);
-  if (auto error = read_effect(reader, "contact", effects.contact)) return error;
-  if (auto error = read_effect(reader, "friction", effects.friction)) return error;
-  if (auto error = read_effect(reader, "gravity", effects.gravity)) return error;
-  if (auto error = read_effect(reader, "virtual_coupling", effects.virtual_coupling)) return error;
-  if (auto error = read_effect(reader, "damping", effects.damping)) return error;
-  return reader.finish();
+  for (const haptics::EffectType& type : haptics::effect_types()) {
+    for (const Settings* table : tables_of(reader, type.name)) {
+      scene.effects.push_back({std::string(type.name), *table, table->place});
+    }
+  }
+  if (auto error = reader.finish()) return error;
+  const std::vector<haptics::BodyInfo> bodies = body_infos(scene);
+  for (const AskedEffect& asked : scene.effects) {
+    auto made = haptics::make_effect(asked.name, {&asked.settings, bodies, scene.loop.period_s()});
+    if (!made) return made.error();
+    if (auto error = check(scene, {&asked, std::move(made).value()})) return error;
+  }
+  return std::nullopt;
+}
+
+const AskedEffect* Scene::find_effect(std::string_view effect_name) const {
+  const auto found =
+      std::find_if(effects.begin(), effects.end(), [&](const AskedEffect& e) { return e.name == effect_name; });
+  return found == effects.end() ? nullptr : &*found;
+}
+
+std::unique_ptr<haptics::EffectSet> Scene::make_effects() const {
+  auto set = std::make_unique<haptics::EffectSet>();
+  const std::vector<haptics::BodyInfo> infos = body_infos(*this);
+  for (const AskedEffect& asked : effects) {
+    auto made = haptics::make_effect(asked.name, {&asked.settings, infos, loop.period_s()});
+    if (made) set->add(asked.name, asked.place, std::move(made).value());  // read_effects has made it once already
+  }
+  return set;
 }
 
 }  // namespace odds::scene

@@ -223,7 +223,6 @@ std::optional<Error> read_devices(SettingsReader& top, Scene& scene) {
 
 // What the sections must agree on with each other.
 void check_whole(SettingsReader& top, const Scene& scene, bool device_used) {
-  const Effects& e = scene.effects;
   if (scene.bodies.empty()) top.reject(top.settings().place, "the scene has no body", "add a [[body]] table");
   for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
     const bool used = std::any_of(scene.bodies.begin(), scene.bodies.end(), [&](const Body& b) { return b.mesh == i; });
@@ -236,20 +235,8 @@ void check_whole(SettingsReader& top, const Scene& scene, bool device_used) {
     top.reject(scene.device->place, fmt::format("no body follows the device '{}'", scene.device->name),
                fmt::format("add device = \"{}\" to a [[body]], or remove the device", scene.device->name));
   }
-  if (device_used && !e.virtual_coupling) {
+  if (device_used && scene.find_effect("virtual_coupling") == nullptr) {
     top.reject(scene.device->place, "nothing connects the device with its body", "add [effects.virtual_coupling]");
-  }
-  if (e.virtual_coupling && !device_used) {
-    top.reject(e.virtual_coupling->place, "the virtual coupling has no device to pull towards",
-               "add a [device.NAME] and device = \"NAME\" in a [[body]], or remove this table");
-  }
-  if (e.friction && !e.contact) {
-    top.reject(e.friction->place, "friction needs contact", "add [effects.contact], or remove this table");
-  }
-  const bool moving = std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& b) { return b.dynamic; });
-  if (!moving && (e.gravity || e.damping)) {
-    top.reject(e.gravity ? e.gravity->place : e.damping->place, "this effect moves bodies, but no body is dynamic",
-               "give a [[body]] motion = \"dynamic\" and a mass, or remove this table");
   }
 }
 
@@ -271,9 +258,6 @@ std::optional<Error> read_sections(const Settings& document, Scene& scene) {
   if (const Settings* physics = top.table("physics")) {
     if (auto error = read_physics(*physics, scene)) return error;
   }
-  if (const Settings* effects = top.table("effects")) {
-    if (auto error = read_effects(*effects, scene.effects)) return error;
-  }
   for (const Settings* mesh : top.tables("mesh")) {
     if (auto error = read_mesh(*mesh, scene)) return error;
   }
@@ -281,6 +265,9 @@ std::optional<Error> read_sections(const Settings& document, Scene& scene) {
   std::string device_name;
   for (const Settings* body : top.tables("body")) {
     if (auto error = read_body(*body, scene, device_name)) return error;
+  }
+  if (const Settings* effects = top.table("effects")) {
+    if (auto error = read_effects(*effects, scene)) return error;
   }
   if (auto error = top.finish()) return error;
   check_whole(top, scene, !device_name.empty());
@@ -312,7 +299,7 @@ Result<Scene> read_scene(const std::filesystem::path& path) {
   return parse_scene(text.str(), path.string(), path.parent_path());
 }
 
-ode::WorldOptions Scene::world_options() const {
+ode::WorldOptions Scene::world_options(const haptics::EffectSet& asked) const {
   ode::WorldOptions options;
   options.step_s = loop.period_s();
   options.query = query;
@@ -320,15 +307,7 @@ ode::WorldOptions Scene::world_options() const {
   options.iterations = solver_iterations;
   options.max_speed_m_per_s = max_speed_m_per_s;
   options.max_spin_rad_per_s = max_spin_rad_per_s;
-  options.contact.enabled = effects.contact.has_value();
-  if (effects.contact) {
-    options.contact.stiffness_n_per_m = effects.contact->stiffness_n_per_m;
-    options.contact.damping_ns_per_m = effects.contact->damping_ns_per_m;
-    options.contact.max_correcting_velocity_m_per_s = effects.contact->max_correcting_velocity_m_per_s;
-  }
-  if (effects.friction) options.contact.friction = effects.friction->mu;
-  if (effects.gravity) options.gravity_m_per_s2 = effects.gravity->g_m_per_s2;
-  if (effects.damping) options.damping = *effects.damping;
+  asked.configure(options);
   return options;
 }
 

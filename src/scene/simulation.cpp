@@ -84,7 +84,8 @@ std::optional<Error> Simulation::load() {
     shapes.push_back(std::move(shape).value());
     report(what, 1.0);
   }
-  Result<ode::World> world = ode::World::make(scene_.world_options());
+  effects_ = scene_.make_effects();
+  Result<ode::World> world = ode::World::make(scene_.world_options(*effects_));
   if (!world) return world.error();
   world_.emplace(std::move(world).value());
   if (auto error = add_bodies(shapes)) return error;
@@ -93,6 +94,12 @@ std::optional<Error> Simulation::load() {
   if (auto error = world_->prepare()) {
     error->file = scene_.file;
     return error;
+  }
+  effects_->bind(*world_);
+  if (!renderer_->begin()) {
+    return Error{scene_.file, scene_.device->place.text(),
+                 fmt::format("the device '{}' gives no position: {}", scene_.device->name, device_->last_error()),
+                 "check the device"};
   }
   report("memory of the loop", 1.0);
   return std::nullopt;
@@ -127,27 +134,17 @@ std::optional<Error> Simulation::add_hand() {
     haptics::DeviceSpec spec = device_->spec();
     if (scene_.device->physical_damping_ns_per_m)
       spec.physical_damping_ns_per_m = *scene_.device->physical_damping_ns_per_m;
-    const haptics::VirtualCoupling& coupling = *scene_.effects.virtual_coupling;
-    if (auto warning = haptics::passivity_warning(coupling, spec, scene_.loop.period_s()))
-      warnings_.push_back(*warning);
+    for (std::size_t i = 0; i < effects_->size(); ++i) {
+      std::string warning = effects_->effect(i).warning(spec, scene_.loop.period_s());
+      if (!warning.empty()) warnings_.push_back(std::move(warning));
+    }
     const auto follows =
         std::find_if(scene_.bodies.begin(), scene_.bodies.end(), [](const Body& b) { return b.follows_device; });
     tool_ = bodies_[static_cast<std::size_t>(follows - scene_.bodies.begin())];
-    hand = haptics::Hand{device_.get(), *tool_, coupling, scene_.device->limits};
+    hand = haptics::Hand{device_.get(), *tool_, scene_.device->limits};
   }
-  renderer_ = std::make_unique<haptics::Renderer>(*world_, hand, options_.allocations);
-  if (!renderer_->begin()) {
-    return Error{scene_.file, scene_.device->place.text(),
-                 fmt::format("the device '{}' gives no position: {}", scene_.device->name, device_->last_error()),
-                 "check the device"};
-  }
+  renderer_ = std::make_unique<haptics::Renderer>(*world_, hand, *effects_, options_.allocations);
   return std::nullopt;
-}
-
-ode::Coupling Simulation::pull_at(std::int64_t now_ns) {
-  haptics::DeviceState state;
-  if (!device_ || !device_->read(now_ns, state)) return {};
-  return static_cast<const haptics::VirtualCoupling&>(*scene_.effects.virtual_coupling).towards(state);
 }
 
 PoseTrack Simulation::make_pose_track() const {
@@ -219,6 +216,10 @@ RunOutcome Simulation::run(const std::stop_token& stop) {
   outcome.failed_reads = renderer_->failed_reads();
   outcome.rescued_steps = renderer_->rescued_steps();
   outcome.contacts_left_out = renderer_->contacts_left_out();
+  for (std::size_t i = 0; i < effects_->size(); ++i) outcome.effects.push_back(effects_->cost(i));
+  outcome.events = effects_->events();
+  outcome.events_lost = effects_->events_lost();
+  if (device_) outcome.least_energy_j = renderer_->energy().least_j();
   return outcome;
 }
 

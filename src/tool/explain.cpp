@@ -18,16 +18,14 @@ struct ExplainArguments {
 };
 
 void print(const scene::Scene& scene, const scene::Explanation& explanation) {
-  fmt::print("{}: {} of {} effects are on\n", scene.file,
-             std::count_if(explanation.effects.begin(), explanation.effects.end(), [](const auto& e) { return e.on; }),
-             explanation.effects.size());
+  fmt::print("{}: {} of {} effects are on\n", scene.file, scene.effects.size(), explanation.effects.size());
   for (const scene::EffectLine& effect : explanation.effects) {
     if (!effect.on) {
       fmt::print("  off  {:<18} no [effects.{}]: not computed\n", effect.name, effect.name);
       continue;
     }
-    fmt::print("  on   {:<18} line {:<4} {:8.2f} us a tick (p90 {:.2f})  {}\n", effect.name, effect.place.line,
-               effect.cost_us, effect.cost_p90_us, effect.work);
+    fmt::print("  on   {:<18} line {:<4} {:8.2f} us a tick (p90 {:.2f})  {}; needs {}\n", effect.name,
+               effect.place.line, effect.cost_us, effect.cost_p90_us, effect.work, effect.needs);
   }
   std::uint64_t samples = 0;
   for (const scene::EffectLine& effect : explanation.effects) samples = std::max(samples, effect.samples);

@@ -41,6 +41,19 @@ ordered_json describe(const scene::Simulation& simulation, const report::RunInfo
   return json;
 }
 
+std::optional<Error> write_events(const std::filesystem::path& path, const scene::Scene& scene,
+                                  const scene::RunOutcome& outcome) {
+  std::ofstream file(path, std::ios::binary);
+  file << "t_ns,event,a,b,approach_m_per_s\n";
+  for (const haptics::ContactEvent& event : outcome.events) {
+    file << event.t_ns << (event.begins ? ",begin," : ",end,") << scene.bodies[event.a.index].name << ','
+         << scene.bodies[event.b.index].name << ',' << event.approach_m_per_s << '\n';
+  }
+  file.flush();
+  if (file) return std::nullopt;
+  return Error{path.string(), "", "cannot be written", "check the folder, its permissions and the free space"};
+}
+
 }  // namespace
 
 std::optional<Error> write_replay_folder(const std::filesystem::path& folder, const scene::Simulation& simulation,
@@ -52,6 +65,9 @@ std::optional<Error> write_replay_folder(const std::filesystem::path& folder, co
     if (auto error = haptics::write_track(folder / "device.csv", outcome.device_track)) return error;
   }
   if (auto error = outcome.poses.write(folder / "poses.csv")) return error;
+  if (simulation.scene().find_effect("events") != nullptr) {
+    if (auto error = write_events(folder / "events.csv", simulation.scene(), outcome)) return error;
+  }
   const std::filesystem::path side_car = folder / "replay.json";
   std::ofstream file(side_car, std::ios::binary);
   file << describe(simulation, info).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';

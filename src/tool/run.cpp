@@ -62,16 +62,6 @@ class Watcher {
   std::jthread thread_;
 };
 
-std::vector<std::string> effect_names(const scene::Effects& effects) {
-  std::vector<std::string> names;
-  if (effects.contact) names.emplace_back("contact");
-  if (effects.friction) names.emplace_back("friction");
-  if (effects.gravity) names.emplace_back("gravity");
-  if (effects.virtual_coupling) names.emplace_back("virtual_coupling");
-  if (effects.damping) names.emplace_back("damping");
-  return names;
-}
-
 report::RunInfo describe(const scene::Simulation& simulation, const RunArguments& arguments, double started_epoch_s) {
   const scene::Scene& scene = simulation.scene();
   report::RunInfo info;
@@ -82,7 +72,7 @@ report::RunInfo describe(const scene::Simulation& simulation, const RunArguments
     info.meshes.push_back({mesh.name, mesh.file, mesh.triangles});
   info.bounding_volume = volume::name(scene.volume);
   info.device = scene.device ? scene.device->name + " (" + scene.device->type + ")" : "none";
-  info.effects = effect_names(scene.effects);
+  for (const scene::AskedEffect& effect : scene.effects) info.effects.push_back(effect.name);
   info.period_ns = scene.loop.period_ns;
   info.budget_us = simulation.budget().microseconds;
   info.simulated_time = arguments.fast;
@@ -131,6 +121,10 @@ int run(const RunArguments& arguments) {
   }
   info.loop = outcome.loop;
   info.thread = outcome.thread;
+  for (const haptics::EffectCost& cost : outcome.effects) {
+    info.effect_costs.push_back(
+        {cost.name, cost.place.line, cost.ticks, cost.evaluations, cost.total_ns, cost.longest_ns});
+  }
   const report::RunSummary summary = report::summarize(info, outcome.ticks);
   const auto files = report::write_run_report(arguments.out, info, summary, outcome.ticks);
   if (!files) return fail(files.error());

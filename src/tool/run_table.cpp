@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -55,6 +56,17 @@ void print_run_table(const report::RunInfo& info, const report::RunSummary& s, c
   line("contacts", fmt::format("at most {}, deepest {:.2f} mm", s.most_contacts, 1e3 * s.deepest_m));
   line("force", fmt::format("at most {:.2f} N, torque at most {:.3f} N m", s.largest_force_n, s.largest_torque_nm));
   line("safety", safety(outcome.safety));
+  for (const report::RunEffect& effect : info.effect_costs) {
+    const double ticks = static_cast<double>(std::max<std::uint64_t>(effect.ticks, 1));
+    line("effect", fmt::format("{}: {:.2f} evaluations a tick, {:.3f} us in its own code, longest {:.1f}", effect.name,
+                               static_cast<double>(effect.evaluations) / ticks,
+                               1e-3 * static_cast<double>(effect.total_ns) / ticks,
+                               1e-3 * static_cast<double>(effect.longest_ns)));
+  }
+  if (outcome.device_track.states.size() > 1) {
+    line("energy at the hand", fmt::format("lowest balance {:.3g} J", outcome.least_energy_j));
+  }
+  if (outcome.events_lost > 0) line("events", fmt::format("{} found no room", outcome.events_lost));
   if (outcome.failed_reads > 0) line("device", fmt::format("{} reads failed", outcome.failed_reads));
   if (outcome.rescued_steps > 0)
     line("world", fmt::format("{} steps held a body's speed or put it back", outcome.rescued_steps));

@@ -77,6 +77,32 @@ TEST(Lists, TheCInterfaceOffersEveryVolumeUnderItsNumber) {
   }
 }
 
+TEST(Lists, EveryEffectHasItsFileAndItsName) {
+  Names files;
+  for (const SourceFile& file : read_files(ODDS_SOURCE_DIR, {"src/haptics/effects"})) {
+    if (file.path.ends_with(".cpp")) files.insert(std::filesystem::path(file.path).stem().string());
+  }
+  const auto list = read_files(ODDS_SOURCE_DIR, {"src/haptics/effects/list.hpp"});
+  ASSERT_EQ(list.size(), 1u);
+  static const std::regex entry("X\\(([a-z_]+)\\)");
+  Names names;
+  for (std::sregex_iterator found(list[0].text.begin(), list[0].text.end(), entry), end; found != end; ++found) {
+    names.insert((*found)[1]);
+  }
+  EXPECT_GT(names.size(), 10u);
+  EXPECT_EQ(names, files);
+}
+
+TEST(Lists, EveryEffectStandsOnThePageAboutScenes) {
+  const auto pages = read_files(ODDS_SOURCE_DIR, {"docs/scenes.md"});
+  ASSERT_EQ(pages.size(), 1u);
+  for (const SourceFile& file : read_files(ODDS_SOURCE_DIR, {"src/haptics/effects"})) {
+    if (!file.path.ends_with(".cpp")) continue;
+    const std::string name = std::filesystem::path(file.path).stem().string();
+    EXPECT_NE(pages[0].text.find("`[effects." + name + "]`"), std::string::npos) << name;
+  }
+}
+
 TEST(Lists, EveryMadeShapeHasItsHeaderAndItsName) {
   EXPECT_EQ(headers_with("include/odds/mesh/made", "Result<TriangleMesh> make("),
             as_file_names(mesh::made::shape_names()));

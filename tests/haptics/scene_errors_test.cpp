@@ -57,11 +57,11 @@ TEST(Scene, TheGoodOneIsTaken) {
   ASSERT_TRUE(scene.ok()) << scene.error().message();
   EXPECT_EQ(scene.value().bodies.size(), 2U);
   EXPECT_EQ(scene.value().loop.period_ns, 1'000'000);
-  EXPECT_TRUE(scene.value().effects.contact && scene.value().effects.friction &&
-              scene.value().effects.virtual_coupling);
-  EXPECT_EQ(scene.value().effects.friction->place.line, 31U);
-  EXPECT_FALSE(scene.value().effects.gravity || scene.value().effects.damping);
-  const ode::WorldOptions options = scene.value().world_options();
+  ASSERT_EQ(scene.value().effects.size(), 3U);
+  ASSERT_NE(scene.value().find_effect("friction"), nullptr);
+  EXPECT_EQ(scene.value().find_effect("friction")->place.line, 31U);
+  EXPECT_EQ(scene.value().find_effect("gravity"), nullptr);
+  const ode::WorldOptions options = scene.value().world_options(*scene.value().make_effects());
   EXPECT_EQ(options.contact.friction, 0.3);
   EXPECT_EQ(options.gravity_m_per_s2.norm(), 0.0);
 }

@@ -5,9 +5,10 @@
 #include <optional>
 
 #include "odds/haptics/device.hpp"
+#include "odds/haptics/effect_set.hpp"
+#include "odds/haptics/passivity.hpp"
 #include "odds/haptics/safety.hpp"
 #include "odds/haptics/tick_record.hpp"
-#include "odds/haptics/virtual_coupling.hpp"
 #include "odds/ode/world.hpp"
 
 namespace odds::haptics {
@@ -16,19 +17,19 @@ namespace odds::haptics {
 struct Hand {
   Device* device = nullptr;  ///< open; outlives the renderer
   ode::BodyId tool;          ///< the body that stands for what the hand holds
-  VirtualCoupling coupling;
   SafetyLimits limits;
 };
 
 /// Counts allocations of the calling thread since it began; null: nobody counts.
 using AllocationCount = std::uint64_t (*)() noexcept;
 
-/// Read the device, pull the tool towards it, collide and step the world, turn the pull into force and torque on the
-/// hand, pass the safety stages, write the device, fill in the record. Works without a hand too: then it only steps.
+/// Read the device, let the effects act, collide and step the world, gather force and torque on the hand from the
+/// effects, pass the safety stages, write the device, fill in the record. Works without a hand too: then it only steps.
 class Renderer {
  public:
-  /// `world` is prepared and outlives the renderer.
-  Renderer(ode::World& world, const std::optional<Hand>& hand, AllocationCount allocations = nullptr);
+  /// World and effects outlive the renderer. The effects are connected with the world by begin().
+  Renderer(ode::World& world, const std::optional<Hand>& hand, EffectSet& effects,
+           AllocationCount allocations = nullptr);
 
   /// Puts the tool where the device is, at rest, as at time 0, and begins all counts anew. False if the device gives no
   /// state.
@@ -43,6 +44,14 @@ class Renderer {
   /// system call or output, provided that the device does none.
   void tick(std::int64_t now_ns, TickRecord& record) noexcept;
 
+  /// One step from the world's present state for the time of a tick, without safety stages and without a word to the
+  /// device, in nanoseconds: what the effects that are on cost. The caller puts bodies and effects back.
+  [[nodiscard]] std::int64_t trial(std::int64_t now_ns) noexcept;
+
+  /// What the world did in the last tick.
+  [[nodiscard]] const ode::StepSummary& last_step() const noexcept { return last_step_; }
+  /// The balance of energy at the hand; means nothing without one.
+  [[nodiscard]] const PassivityObserver& energy() const noexcept { return energy_; }
   /// Null without a hand.
   [[nodiscard]] const SafetyCounts* safety_counts() const noexcept { return safety_ ? &safety_->counts() : nullptr; }
   /// Reads of the device that failed or gave numbers that were not finite.
@@ -53,11 +62,15 @@ class Renderer {
 
  private:
   void read_device(std::int64_t now_ns) noexcept;
-  void write_device(std::int64_t now_ns, const ode::BodyState& tool, TickRecord& record) noexcept;
+  void write_device(std::int64_t now_ns, const ode::Wrench& on_hand, TickRecord& record) noexcept;
+  [[nodiscard]] TickView view(std::int64_t now_ns) noexcept;
 
   ode::World* world_;
   std::optional<Hand> hand_;
+  EffectSet* effects_;
   std::optional<Safety> safety_;
+  PassivityObserver energy_;
+  ode::StepSummary last_step_;
   AllocationCount allocations_;
   DeviceState state_;
   std::int64_t fresh_ns_ = 0;  // when the state was last fresh

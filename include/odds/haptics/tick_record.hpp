@@ -59,6 +59,10 @@ struct TickRecord {
   std::array<double, 3> force_n{};    ///< on the hand, newton, as sent to the device
   std::array<double, 3> torque_nm{};  ///< on the hand, newton metre, as sent to the device
 
+  /// Energy that the simulation has taken in at the hand since the start; below zero it has given some (passivity.hpp).
+  double observed_energy_j = 0.0;
+  double contact_work_j = 0.0;  ///< what contacts did to the bodies' kinetic energy in this tick; 0 unless asked for
+
   std::uint32_t safety = 0;              ///< SafetyFlag bits
   std::uint32_t minor_faults = 0;        ///< page faults without I/O of the loop's thread during this tick
   std::uint32_t major_faults = 0;        ///< page faults with I/O

@@ -9,6 +9,7 @@
 
 #include "odds/math/error.hpp"
 #include "odds/math/pose.hpp"
+#include "odds/ode/meeting.hpp"
 #include "odds/query/answer.hpp"
 #include "odds/query/request.hpp"
 #include "odds/query/shape.hpp"
@@ -18,7 +19,8 @@ namespace odds::ode {
 
 /// What two bodies in contact do to each other.
 struct ContactModel {
-  bool enabled = true;  ///< false: nothing is collided at all
+  bool enabled = true;   ///< false: nothing is collided at all
+  bool responds = true;  ///< false: pairs are queried and meet (MeetingHook), but nothing pushes them apart
   double stiffness_n_per_m =
       20000.0;                     ///< of a whole pair: its contacts share it, so that their number is not felt; > 0
   double damping_ns_per_m = 20.0;  ///< likewise; >= 0
@@ -56,12 +58,10 @@ struct WorldOptions {
   std::uint32_t max_contacts_per_step = 64;  ///< of the whole world, 1 .. 1024; further ones are left out and counted
   double max_speed_m_per_s = 20.0;           ///< bodies are held to it: a tool never flies away
   double max_spin_rad_per_s = 200.0;
-  realtime::Clock clock = {};  ///< null: realtime::fastest_clock()
-};
-
-/// Index of a body in its world, in order of addition.
-struct BodyId {
-  std::uint32_t index = 0;
+  bool contact_velocity = false;  ///< whether ContactPoint::velocity_m_per_s is wanted; friction computes it anyway
+  bool angular_friction = false;  ///< whether to take memory for rows of rolling and spinning friction
+  bool contact_work = false;      ///< whether StepSummary::contact_work_j is wanted
+  realtime::Clock clock = {};     ///< null: realtime::fastest_clock()
 };
 
 /// How a dynamic body gets its mass. The inertia follows from the mesh if that is closed, else from its bounding box.
@@ -117,7 +117,15 @@ struct StepSummary {
   double query_stall_us = 0.0;
   double query_overshoot_us = 0.0;      ///< largest of the queries
   double query_net_overshoot_us = 0.0;  ///< likewise
+  std::uint32_t meetings = 0;           ///< pairs of bodies whose boxes met
   std::uint32_t contacts = 0;           ///< used
+  std::uint32_t friction_rows = 0;      ///< of the solver, against sliding
+  std::uint32_t angular_rows = 0;       ///< of the solver, against rolling and spinning
+  std::uint32_t solver_calls = 0;       ///< of ODE's step: 1, or 0 where nothing can move
+  std::uint32_t bodies_stepped = 0;     ///< dynamic ones; fixed bodies are never stepped
+  /// What contacts did to the bodies' kinetic energy, joule; below zero they took it away. Measured from momenta, so
+  /// that the damping of bodies counts too. 0 unless asked for.
+  double contact_work_j = 0.0;
   std::uint32_t contacts_left_out = 0;  ///< beyond max_contacts_per_step, or not finite
   double max_depth_m = 0.0;
   double collision_us = 0.0;        ///< broad phase, queries and contact joints
@@ -163,6 +171,9 @@ class World {
   [[nodiscard]] const MassProperties& mass(BodyId body) const noexcept;
   [[nodiscard]] bool is_dynamic(BodyId body) const noexcept;
   [[nodiscard]] std::uint32_t body_count() const noexcept;
+
+  /// Whom to call for each meeting of a step.
+  void set_meeting_hook(const MeetingHook& hook) noexcept;
 
   /// May be changed between steps.
   void set_contact(const ContactModel& contact) noexcept;

@@ -20,6 +20,16 @@ struct RunMesh {
   std::uint64_t triangles = 0;
 };
 
+/// What one effect of the scene took.
+struct RunEffect {
+  std::string name;
+  std::uint32_t line = 0;  ///< of the scene, where its table stands; 0: nowhere
+  std::uint64_t ticks = 0;
+  std::uint64_t evaluations = 0;  ///< points, bodies or rows that it worked on
+  std::int64_t total_ns = 0;      ///< in its own code, without what its rows cost the solver
+  std::int64_t longest_ns = 0;    ///< of one tick
+};
+
 /// Filled by whoever ran the loop. Text may come from users' files: the report escapes it.
 struct RunInfo {
   std::string scene;             ///< name or file of the scene
@@ -29,6 +39,7 @@ struct RunInfo {
   std::string bounding_volume;  ///< "obb"
   std::string device;           ///< "scripted: press"
   std::vector<std::string> effects;
+  std::vector<RunEffect> effect_costs;  ///< in the order in which they act; what was not asked for is not here
 
   std::int64_t period_ns = 1'000'000;
   double budget_us = std::numeric_limits<double>::infinity();  ///< of one query; infinity: none

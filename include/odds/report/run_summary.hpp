@@ -67,6 +67,7 @@ struct RunSummary {
   double deepest_m = 0.0;
   double largest_force_n = 0.0;
   double largest_torque_nm = 0.0;
+  double least_energy_j = 0.0;  ///< lowest balance of energy at the hand, <= 0; below zero: more given than taken
 
   std::vector<Check> checks;
 };

@@ -3,13 +3,14 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "odds/haptics/effect_set.hpp"
 #include "odds/haptics/safety.hpp"
 #include "odds/haptics/settings.hpp"
-#include "odds/haptics/virtual_coupling.hpp"
 #include "odds/math/error.hpp"
 #include "odds/math/pose.hpp"
 #include "odds/ode/world.hpp"
@@ -59,30 +60,11 @@ struct Device {
   haptics::Place place;
 };
 
-/// An effect is computed if and only if its table is there.
-template <class Parameters>
-struct Effect : Parameters {
-  haptics::Place place;  ///< of the table that asked for it
-};
-
-struct Contact {
-  double stiffness_n_per_m = 20000.0;
-  double damping_ns_per_m = 20.0;
-  double max_correcting_velocity_m_per_s = 1.0;
-};
-struct Friction {
-  double mu = 0.0;
-};
-struct Gravity {
-  Vec3 g_m_per_s2 = Vec3(0.0, 0.0, -9.81);
-};
-
-struct Effects {
-  std::optional<Effect<Contact>> contact;
-  std::optional<Effect<Friction>> friction;
-  std::optional<Effect<Gravity>> gravity;
-  std::optional<Effect<haptics::VirtualCoupling>> virtual_coupling;
-  std::optional<Effect<ode::Damping>> damping;
+/// An effect that the scene asks for: computed if and only if its table is there.
+struct AskedEffect {
+  std::string name;
+  haptics::Settings settings;  ///< the whole table; the effect's factory reads it
+  haptics::Place place;        ///< of the table
 };
 
 /// A scene that makes sense in itself: names resolve, numbers are in range. Files are not opened yet, except the
@@ -102,10 +84,14 @@ struct Scene {
   std::vector<Mesh> meshes;
   std::vector<Body> bodies;
   std::optional<Device> device;
-  Effects effects;
+  std::vector<AskedEffect> effects;  ///< in the order in which they act
 
-  /// What the world is made from. Effects without a table are off in it.
-  [[nodiscard]] ode::WorldOptions world_options() const;
+  /// The effects, made anew. Not yet connected with a world.
+  [[nodiscard]] std::unique_ptr<haptics::EffectSet> make_effects() const;
+  /// The first effect of this name; null if nobody asked for it.
+  [[nodiscard]] const AskedEffect* find_effect(std::string_view effect_name) const;
+  /// What the world is made from, and what the effects want of it.
+  [[nodiscard]] ode::WorldOptions world_options(const haptics::EffectSet& asked) const;
 };
 
 /// Reads a scene. Errors name file, line and column, and the nearest valid name where one was mistyped.

@@ -46,6 +46,10 @@ struct RunOutcome {
   std::uint64_t failed_reads = 0;
   std::uint64_t rescued_steps = 0;
   std::uint64_t contacts_left_out = 0;
+  std::vector<haptics::EffectCost> effects;   ///< what each effect took, in the order in which they act
+  std::vector<haptics::ContactEvent> events;  ///< if the scene asks for events
+  std::uint64_t events_lost = 0;
+  double least_energy_j = 0.0;  ///< lowest balance of energy at the hand; below zero: more given than taken
 };
 
 /// One mesh of the scene, for people.
@@ -77,8 +81,7 @@ class Simulation {
   [[nodiscard]] haptics::Renderer& renderer() noexcept { return *renderer_; }
   /// The body that follows the device, if there is one.
   [[nodiscard]] std::optional<ode::BodyId> tool() const noexcept { return tool_; }
-  /// The pull of the coupling as it would be at a time of the loop; nothing pulls without a device.
-  [[nodiscard]] ode::Coupling pull_at(std::int64_t now_ns);
+  [[nodiscard]] haptics::EffectSet& effects() noexcept { return *effects_; }
 
  private:
   Simulation(Scene scene, const SimulationOptions& options);
@@ -93,6 +96,7 @@ class Simulation {
   SimulationOptions options_;
   std::vector<LoadedMesh> meshes_;
   std::vector<std::string> warnings_;
+  std::unique_ptr<haptics::EffectSet> effects_;
   std::optional<ode::World> world_;
   std::vector<ode::BodyId> bodies_;
   std::optional<ode::BodyId> tool_;

@@ -1,0 +1,121 @@
+// What an effect is: one thing that a scene can ask for, what it needs to know, and when in a tick it acts.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "odds/haptics/device.hpp"
+#include "odds/haptics/passivity.hpp"
+#include "odds/haptics/settings.hpp"
+#include "odds/math/error.hpp"
+#include "odds/ode/world.hpp"
+
+namespace odds::haptics {
+
+/// Bits of Effect::needs(). The union over a scene's effects decides what a tick computes at all: without the first
+/// three nothing is collided.
+enum Need : std::uint32_t {
+  need_verdict = 1U << 0,       ///< whether two bodies meet; the query makes no contacts for it
+  need_one_contact = 1U << 1,   ///< one place, normal and depth of a pair
+  need_patch = 1U << 2,         ///< as many contacts as the scene allows
+  need_velocity = 1U << 3,      ///< velocities at the contacts: slip and approach
+  need_angular_rows = 1U << 4,  ///< room in the solver for torques at contacts
+  need_history = 1U << 5,       ///< something kept from tick to tick
+  need_motion = 1U << 6,        ///< a body that moves
+  need_device = 1U << 7,        ///< the device's state
+  need_contact_work = 1U << 8,  ///< what contacts did to the bodies' energy
+};
+
+/// Bits of Effect::stages(): only these functions are called.
+enum Stage : std::uint32_t {
+  stage_before_step = 1U << 0,
+  stage_meeting = 1U << 1,
+  stage_after_step = 1U << 2,
+  stage_hand = 1U << 3,
+};
+
+/// A body as effects know it before the world is built.
+struct BodyInfo {
+  std::string name;
+  bool dynamic = false;
+};
+
+/// What an effect is made from.
+struct EffectRequest {
+  const Settings* settings = nullptr;  ///< its table; the factory refuses keys that it does not know
+  std::span<const BodyInfo> bodies;    ///< in the order of their ids
+  double step_s = 0.001;
+};
+
+/// What an effect sees of the tick under way.
+struct TickView {
+  ode::World* world = nullptr;
+  std::int64_t now_ns = 0;
+  double step_s = 0.0;
+  const DeviceState* device = nullptr;        ///< null without one
+  ode::BodyId tool;                           ///< the body that follows the device; means nothing without one
+  const ode::StepSummary* step = nullptr;     ///< null before the step
+  const PassivityObserver* energy = nullptr;  ///< at the hand, up to the last tick; null without a device
+};
+
+/// A contact that began or ended.
+struct ContactEvent {
+  std::int64_t t_ns = 0;
+  ode::BodyId a;
+  ode::BodyId b;
+  bool begins = false;
+  double approach_m_per_s =
+      0.0;  ///< at the first contact of a pair that begins, >= 0; 0 where nobody computes velocities
+};
+
+/// One effect of one scene. Made before the world; the functions of the stages run inside the tick: no allocation,
+/// lock, exception, system call. Each returns how many things it worked on (points, bodies, rows): its evaluations.
+class Effect {
+ public:
+  Effect() = default;
+  Effect(const Effect&) = delete;
+  Effect& operator=(const Effect&) = delete;
+  virtual ~Effect() = default;
+
+  /// Need bits.
+  [[nodiscard]] virtual std::uint32_t needs() const noexcept = 0;
+  /// Stage bits.
+  [[nodiscard]] virtual std::uint32_t stages() const noexcept = 0;
+  /// What its evaluations are: "contacts", "bodies", "ticks".
+  [[nodiscard]] virtual std::string_view evaluates() const noexcept = 0;
+  /// Another effect without which this one can do nothing; "" if there is none.
+  [[nodiscard]] virtual std::string_view rests_on() const noexcept { return {}; }
+  /// Whether a scene may ask for it several times, as [[effects.NAME]].
+  [[nodiscard]] virtual bool repeatable() const noexcept { return false; }
+
+  /// Sets what it wants of the world, before that is made.
+  virtual void configure(ode::WorldOptions& /*options*/) const {}
+  /// Once the world is prepared. May allocate.
+  virtual void bind(const ode::World& /*world*/) {}
+  /// At the start of a run: forgets what it kept from ticks.
+  virtual void reset() noexcept {}
+  /// For trials: remember the state, and go back to it.
+  virtual void keep() noexcept {}
+  virtual void put_back() noexcept {}
+
+  virtual std::uint32_t before_step(const TickView& /*tick*/) noexcept { return 0; }
+  virtual std::uint32_t meet(const TickView& /*tick*/, ode::Meeting& /*meeting*/) noexcept { return 0; }
+  virtual std::uint32_t after_step(const TickView& /*tick*/) noexcept { return 0; }
+  /// Adds to force and torque on the hand, at the handle's origin, before the safety stages.
+  virtual std::uint32_t on_hand(const TickView& /*tick*/, ode::Wrench& /*on_hand*/) noexcept { return 0; }
+
+  /// What happened so far, for effects that write it down.
+  [[nodiscard]] virtual std::span<const ContactEvent> events() const noexcept { return {}; }
+  /// Events that found no room.
+  [[nodiscard]] virtual std::uint64_t events_lost() const noexcept { return 0; }
+  /// A sentence on what may go wrong with it on this device; "" if nothing.
+  [[nodiscard]] virtual std::string warning(const DeviceSpec& /*device*/, double /*period_s*/) const { return {}; }
+};
+
+/// "one contact, velocity": the bits in words.
+[[nodiscard]] std::string needs_text(std::uint32_t needs);
+
+}  // namespace odds::haptics

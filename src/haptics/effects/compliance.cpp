@@ -1,0 +1,48 @@
+// A soft body: its own spring in series with that of the contact.
+#include "haptics/effects/body_key.hpp"
+#include "haptics/effects/list.hpp"
+
+namespace odds::haptics::effects {
+namespace {
+
+class Compliance final : public Effect {
+ public:
+  Compliance(ode::BodyId body, double stiffness, double damping) : body_(body), k_(stiffness), b_(damping) {}
+  [[nodiscard]] std::uint32_t needs() const noexcept override { return need_patch; }
+  [[nodiscard]] std::uint32_t stages() const noexcept override { return stage_meeting; }
+  [[nodiscard]] std::string_view evaluates() const noexcept override { return "contacts"; }
+  [[nodiscard]] std::string_view rests_on() const noexcept override { return "contact"; }
+  [[nodiscard]] bool repeatable() const noexcept override { return true; }
+  std::uint32_t meet(const TickView&, ode::Meeting& meeting) noexcept override {
+    if (!involves(meeting, body_)) return 0;
+    const auto count = static_cast<double>(meeting.contacts.size());
+    for (ode::ContactPoint& point : meeting.contacts) {
+      double& k = point.surface.stiffness_n_per_m;
+      k = k * (k_ / count) / (k + k_ / count);
+      point.surface.damping_ns_per_m = b_ / count;
+    }
+    return static_cast<std::uint32_t>(meeting.contacts.size());
+  }
+
+ private:
+  ode::BodyId body_;
+  double k_;
+  double b_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Effect>> make_compliance(const EffectRequest& request) {
+  SettingsReader reader(*request.settings);
+  ode::BodyId body;
+  double stiffness = 0.0;
+  double damping = 0.0;
+  read_body(reader, "body", request.bodies, false, body);
+  reader.require("stiffness_n_per_m");
+  reader.number("stiffness_n_per_m", Range::positive(), stiffness);
+  reader.number("damping_ns_per_m", Range::not_negative(), damping);
+  if (auto error = reader.finish()) return *error;
+  return std::unique_ptr<Effect>(std::make_unique<Compliance>(body, stiffness, damping));
+}
+
+}  // namespace odds::haptics::effects

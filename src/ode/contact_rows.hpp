@@ -1,0 +1,23 @@
+// A point of contact as rows of ODE's solver.
+#pragma once
+
+#include <ode/ode.h>
+
+#include "odds/ode/meeting.hpp"
+#include "odds/ode/world.hpp"
+
+namespace odds::ode {
+
+/// One of `count` points of a pair, with its share of the model's stiffness and damping. `velocity`: whether to compute
+/// that too. Null bodies stand still.
+[[nodiscard]] ContactPoint contact_point(const dContactGeom& found, int count, const ContactModel& model, bool velocity,
+                                         dBodyID a, dBodyID b) noexcept;
+
+/// False if a number is not finite or nothing would push: such a point must not reach the solver.
+[[nodiscard]] bool can_be_solved(const ContactPoint& point) noexcept;
+
+/// What ODE is told. With step h the row of the normal is v + lambda / (h k + b) = h k / (h k + b) depth / h: the
+/// backward Euler step of a spring and damper, stable for every stiffness and damping.
+[[nodiscard]] dContact contact_rows(const ContactPoint& point, const dContactGeom& found, double step_s) noexcept;
+
+}  // namespace odds::ode
