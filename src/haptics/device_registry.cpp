@@ -5,6 +5,7 @@
 
 #include <map>
 
+#include "odds/haptics/human_arm_device.hpp"
 #include "odds/haptics/null_device.hpp"
 #include "odds/haptics/replay_device.hpp"
 #include "odds/haptics/scripted_device.hpp"
@@ -15,8 +16,10 @@ namespace {
 using Registry = std::map<std::string, DeviceFactory, std::less<>>;
 
 Registry& registry() {
-  static Registry factories = {
-      {"null", &NullDevice::make}, {"replay", &ReplayDevice::make}, {"scripted", &ScriptedDevice::make}};
+  static Registry factories = {{"human_arm", &HumanArmDevice::make},
+                               {"null", &NullDevice::make},
+                               {"replay", &ReplayDevice::make},
+                               {"scripted", &ScriptedDevice::make}};
   return factories;
 }
 

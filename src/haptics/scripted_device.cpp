@@ -92,6 +92,13 @@ ScriptedDevice::ScriptedDevice(const math::Pose& start, std::vector<Motion> moti
 Result<std::unique_ptr<Device>> ScriptedDevice::make(const DeviceRequest& request) {
   SettingsReader reader(*request.settings);
   reader.allow(common_device_keys);
+  auto device = read_script(reader);
+  if (!device) return device.error();
+  if (auto error = reader.finish()) return *error;
+  return std::unique_ptr<Device>(std::move(device).value());
+}
+
+Result<std::unique_ptr<ScriptedDevice>> ScriptedDevice::read_script(SettingsReader& reader) {
   Vec3 position = Vec3::Zero();
   Quat orientation = Quat::Identity();
   bool repeat = false;
@@ -121,8 +128,7 @@ Result<std::unique_ptr<Device>> ScriptedDevice::make(const DeviceRequest& reques
           "add a motion that leads back, or leave 'repeat' out");
     }
   }
-  if (auto error = reader.finish()) return *error;
-  return std::unique_ptr<Device>(std::move(device));
+  return device;
 }
 
 bool ScriptedDevice::read(std::int64_t now_ns, DeviceState& state) noexcept {

@@ -20,6 +20,10 @@ class ScriptedDevice final : public Device {
   /// Keys: position_m, orientation_wxyz, repeat, and [[motion]] tables with kind, duration_s and the keys of the kind.
   [[nodiscard]] static Result<std::unique_ptr<Device>> make(const DeviceRequest& request);
 
+  /// The same keys out of a table that has others too: for devices that follow a script in their own way. Neither the
+  /// common keys nor unknown ones are looked at.
+  [[nodiscard]] static Result<std::unique_ptr<ScriptedDevice>> read_script(SettingsReader& reader);
+
   [[nodiscard]] std::optional<Error> open() override { return std::nullopt; }
   void close() noexcept override {}
   [[nodiscard]] const DeviceSpec& spec() const noexcept override { return spec_; }
