@@ -3,11 +3,14 @@
 #include <array>
 #include <exception>
 #include <map>
+#include <memory>
+#include <mutex>
 #include <utility>
 #include <vector>
 
 #include "ode/last_error.hpp"
 #include "ode/mesh_data.hpp"
+#include "ode/partners.hpp"
 
 namespace odds::ode {
 namespace {
@@ -43,8 +46,71 @@ IndexedMesh read_triangles(dGeomID trimesh) {
   return result;
 }
 
+bool has_triangles(dGeomID geom) noexcept {
+  return geom != nullptr && dGeomGetClass(geom) == dTriMeshClass && dGeomTriMeshGetData(geom) != nullptr &&
+         dGeomTriMeshGetTriangleCount(geom) > 0;
+}
+
+// Geoms of the same data share one hierarchy. The data's address alone says little: it may be that of other data now.
+std::shared_ptr<const PreparedMesh> prepared_like_before(
+    dTriMeshDataID id, const IndexedMesh& mesh, int volume,
+    std::map<dTriMeshDataID, std::weak_ptr<const PreparedMesh>>& known) {
+  const auto found = known.find(id);
+  if (found == known.end()) return nullptr;
+  std::shared_ptr<const PreparedMesh> prepared = found->second.lock();
+  if (prepared == nullptr || static_cast<int>(prepared->shape->volume()) != volume) return nullptr;
+  const bool same = std::ranges::equal(prepared->mesh().vertices(), mesh.vertices) &&
+                    std::ranges::equal(prepared->mesh().triangles(), mesh.triangles);
+  return same ? prepared : nullptr;
+}
+
+std::shared_ptr<const PreparedMesh> prepare(dGeomID trimesh, const oddsBuildParams& params) {
+  static std::mutex mutex;
+  static std::map<dTriMeshDataID, std::weak_ptr<const PreparedMesh>> known;
+  const std::lock_guard lock(mutex);
+  std::erase_if(known, [](const auto& entry) { return entry.second.expired(); });
+  const dTriMeshDataID id = dGeomTriMeshGetData(trimesh);
+  IndexedMesh mesh = read_triangles(trimesh);
+  if (auto prepared = prepared_like_before(id, mesh, params.volume, known)) return prepared;
+  oddsMeshData data;
+  if (build_mesh_data(&data, std::move(mesh.vertices), std::move(mesh.triangles), &params) == 0) return nullptr;
+  known[id] = data.prepared;
+  return data.prepared;
+}
+
 }  // namespace
+
+Partner* adopt_trimesh(dGeomID trimesh, const oddsBuildParams* params, bool replace) noexcept {
+  if (!has_triangles(trimesh)) {
+    set_last_error("not a dTriMesh geom with triangles; make one with dCreateTriMesh");
+    return nullptr;
+  }
+  try {
+    oddsBuildParams defaults;
+    oddsBuildParamsInit(&defaults);
+    defaults.name = "dTriMesh";
+    auto prepared = prepare(trimesh, params != nullptr ? *params : defaults);
+    if (prepared == nullptr) return nullptr;
+    std::unique_ptr<Partner> partner = make_partner(trimesh, std::move(prepared));
+    partner->trimesh_data = dGeomTriMeshGetData(trimesh);
+    return replace ? partner_table().put(std::move(partner)) : partner_table().put_new(std::move(partner));
+  } catch (const std::exception& error) {
+    set_last_error(std::string_view(error.what()));
+  } catch (...) {
+    set_last_error("reading a dTriMesh failed");
+  }
+  return nullptr;
+}
+
 }  // namespace odds::ode
+
+int oddsPrepareTriMesh(dGeomID trimesh, const oddsBuildParams* params) noexcept {
+  if (oddsGetClass() < 0) {
+    odds::ode::set_last_error("oddsPrepareTriMesh: the library is not initialised; call oddsInitODE first");
+    return 0;
+  }
+  return odds::ode::adopt_trimesh(trimesh, params, true) != nullptr ? 1 : 0;
+}
 
 int oddsMeshDataBuildFromTriMesh(oddsMeshDataID data, dGeomID trimesh, const oddsBuildParams* params) noexcept {
   using odds::ode::set_last_error;

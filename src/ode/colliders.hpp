@@ -10,6 +10,11 @@ int collide_mesh(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int 
 int collide_plane(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int skip) noexcept;
 int collide_sphere(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int skip) noexcept;
 int collide_box(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int skip) noexcept;
+int collide_capsule(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int skip) noexcept;
+int collide_cylinder(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int skip) noexcept;
+int collide_ray(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int skip) noexcept;
+int collide_convex(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int skip) noexcept;
+int collide_stand_in(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int skip) noexcept;
 /// 0 contacts; says so once per class through ODE's message handler, and counts.
 int collide_unsupported(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int skip) noexcept;
 

@@ -12,6 +12,7 @@
 #include "ode/last_error.hpp"
 #include "ode/mesh_data.hpp"
 #include "ode/pair_table.hpp"
+#include "ode/partners.hpp"
 #include "ode/registry.hpp"
 #include "ode/statistics.hpp"
 
@@ -25,12 +26,12 @@ constexpr double farthest_position = 1e15;
 constexpr double exact_enough = 1e-12;
 constexpr double repairable = 1e-3;
 
-std::uint64_t next_number() noexcept {
+}  // namespace
+
+std::uint64_t next_geom_number() noexcept {
   static constinit std::atomic<std::uint64_t> last{0};
   return last.fetch_add(1, std::memory_order_relaxed) + 1;
 }
-
-}  // namespace
 
 Settings combine(const Settings& a, const Settings& b) noexcept {
   const auto smaller_limit = [](unsigned long x, unsigned long y) {
@@ -49,14 +50,22 @@ Settings combine(const Settings& a, const Settings& b) noexcept {
   return both;
 }
 
-GeomData& own_data(dGeomID geom) noexcept { return **static_cast<GeomData**>(dGeomGetClassData(geom)); }
+GeomData& own_data(dGeomID geom) noexcept {
+  if (dGeomGetClass(geom) < dFirstUserClass) return *partner_table().find(geom)->mesh;
+  return **static_cast<GeomData**>(dGeomGetClassData(geom));
+}
 
 GeomData* find_data(dGeomID geom, const char* caller) noexcept {
   const int our_class = oddsGetClass();
-  if (our_class >= 0 && geom != nullptr && dGeomGetClass(geom) == our_class) return &own_data(geom);
+  if (our_class >= 0 && geom != nullptr) {
+    if (dGeomGetClass(geom) == our_class) return &own_data(geom);
+    const Partner* partner = partner_table().find(geom);
+    if (partner != nullptr && partner->mesh != nullptr) return partner->mesh.get();
+  }
   try {
-    set_last_error(std::string(caller) + (our_class < 0 ? ": the library is not initialised; call oddsInitODE first"
-                                                        : ": not a geom made by dCreateOddsMesh"));
+    set_last_error(std::string(caller) +
+                   (our_class < 0 ? ": the library is not initialised; call oddsInitODE first"
+                                  : ": not a geom made by dCreateOddsMesh, nor one with a mesh that stands in for it"));
   } catch (...) {
     set_last_error("not a geom made by dCreateOddsMesh");
   }
@@ -64,6 +73,10 @@ GeomData* find_data(dGeomID geom, const char* caller) noexcept {
 }
 
 std::optional<math::Pose> world_pose(dGeomID geom) noexcept {
+  if (dGeomGetClass(geom) == dHeightfieldClass) {
+    const Partner* partner = partner_table().find(geom);
+    if (partner != nullptr && !partner->placeable) return math::Pose();  // ODE aborts if it is asked for its pose
+  }
   const dReal* p = dGeomGetPosition(geom);
   const dReal* r = dGeomGetRotation(geom);
   math::Pose pose;
@@ -140,7 +153,7 @@ dGeomID dCreateOddsMesh(dSpaceID space, oddsMeshDataID mesh_data) noexcept {
     return nullptr;
   }
   data->mesh = mesh_data->prepared;
-  data->number = next_number();
+  data->number = next_geom_number();
   const dGeomID geom = dCreateGeom(oddsGetClass());
   *static_cast<GeomData**>(dGeomGetClassData(geom)) = data;
   count(statistics().live_geoms);

@@ -39,10 +39,13 @@ struct GeomData {
   std::vector<PairEntry*> pairs;  ///< workspaces that this geom takes part in
 };
 
-/// The data of a geom that is known to be of our class (in ODE's callbacks).
+/// A number for GeomData::number. Thread-safe.
+[[nodiscard]] std::uint64_t next_geom_number() noexcept;
+
+/// The data of a geom that is known to be of our class, or to have a mesh that stands in for it (in colliders).
 [[nodiscard]] GeomData& own_data(dGeomID geom) noexcept;
 
-/// The data of any geom, or null with the last error set if it is not one of ours.
+/// The data of any geom, or null with the last error set if it is neither one of ours nor has a mesh that stands in.
 [[nodiscard]] GeomData* find_data(dGeomID geom, const char* caller) noexcept;
 
 /// The world pose, offsets and transforms included; the rotation is made orthonormal if ODE's is slightly off. Nothing

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "ode/last_error.hpp"
+#include "ode/partners.hpp"
 #include "ode/statistics.hpp"
 
 namespace odds::ode {
@@ -44,6 +45,23 @@ dGeomID inside_transforms(dGeomID geom) noexcept {
   return geom;
 }
 #pragma GCC diagnostic pop
+
+// The mesh of one geom of a pair: its own, or one that stands in for it. A dTriMesh that is not known yet is read, with
+// the bounding volume of the other. Null for a primitive, and with the last error set if a dTriMesh cannot be read.
+GeomData* prepared_data(dGeomID geom, dGeomID other) noexcept {
+  if (dGeomGetClass(geom) == oddsGetClass()) return &own_data(geom);
+  if (Partner* known = partner_table().find(geom)) {
+    if (known->mesh == nullptr || is_unchanged(*known)) return known->mesh.get();
+  }
+  if (dGeomGetClass(geom) != dTriMeshClass) return nullptr;
+  oddsBuildParams params;
+  oddsBuildParamsInit(&params);
+  if (dGeomGetClass(other) == oddsGetClass()) {
+    params.volume = static_cast<int>(own_data(other).mesh->shape->volume());
+  }
+  const Partner* adopted = adopt_trimesh(geom, &params, true);
+  return adopted != nullptr ? adopted->mesh.get() : nullptr;
+}
 
 }  // namespace
 
@@ -131,19 +149,27 @@ int oddsPreparePair(dGeomID g1, dGeomID g2) noexcept {
   g1 = inside_transforms(g1);
   g2 = inside_transforms(g2);
   const int our_class = oddsGetClass();
-  const auto ours = [our_class](dGeomID geom) { return our_class >= 0 && dGeomGetClass(geom) == our_class; };
   if (g1 == nullptr || g2 == nullptr || g1 == g2 || dGeomIsSpace(g1) != 0 || dGeomIsSpace(g2) != 0) {
     set_last_error(
         "oddsPreparePair: needs two different geoms, not null and not spaces; prepare the members of a space one by "
         "one");
     return 0;
   }
-  if (!ours(g1) && !ours(g2)) {
-    set_last_error("oddsPreparePair: neither geom was made by dCreateOddsMesh (or the library is not initialised)");
+  const auto is_mesh = [our_class](dGeomID geom) {
+    return our_class >= 0 && (dGeomGetClass(geom) == our_class || dGeomGetClass(geom) == dTriMeshClass);
+  };
+  if (!is_mesh(g1) && !is_mesh(g2)) {
+    set_last_error(
+        "oddsPreparePair: neither geom is a mesh made by dCreateOddsMesh or a dTriMesh (or the library is not "
+        "initialised)");
     return 0;
   }
-  if (!ours(g1) || !ours(g2)) return 1;
-  const PairTable::Made made = pair_table().prepare(own_data(g1), own_data(g2));
+  GeomData* first = prepared_data(g1, g2);
+  GeomData* second = first != nullptr || !is_mesh(g1) ? prepared_data(g2, g1) : nullptr;
+  const bool failed = (is_mesh(g1) && first == nullptr) || (is_mesh(g2) && second == nullptr);
+  if (failed) return 0;
+  if (first == nullptr || second == nullptr) return 1;
+  const PairTable::Made made = pair_table().prepare(*first, *second);
   return made.entry != nullptr && made.entry->pair ? 1 : 0;
 }
 

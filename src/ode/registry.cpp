@@ -10,6 +10,7 @@
 #include "ode/colliders.hpp"
 #include "ode/geom_data.hpp"
 #include "ode/last_error.hpp"
+#include "ode/partners.hpp"
 
 namespace odds::ode {
 namespace {
@@ -78,6 +79,17 @@ dColliderFn* collider_for(int other) noexcept {
       return &collide_sphere;
     case dBoxClass:
       return &collide_box;
+    case dCapsuleClass:
+      return &collide_capsule;
+    case dCylinderClass:
+      return &collide_cylinder;
+    case dRayClass:
+      return &collide_ray;
+    case dConvexClass:
+      return &collide_convex;
+    case dTriMeshClass:
+    case dHeightfieldClass:
+      return &collide_stand_in;
     default:
       break;
   }
@@ -123,7 +135,10 @@ void oddsCloseODE(void) noexcept {
       set_last_error("oddsCloseODE: called more often than oddsInitODE");
       return;
     }
-    if (--state.count == 0) live_class.store(-1, std::memory_order_release);
+    if (--state.count == 0) {
+      partner_table().clear();
+      live_class.store(-1, std::memory_order_release);
+    }
     dCloseODE();
   } catch (...) {
     set_last_error("oddsCloseODE: the lock of the class registry failed");

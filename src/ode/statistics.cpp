@@ -32,6 +32,11 @@ void oddsGetStats(oddsStats* stats) noexcept {
   stats->caught = read(all.caught);
   stats->live_geoms = read(all.live_geoms);
   stats->live_pairs = read(all.live_pairs);
+  stats->lazy_partners = read(all.lazy_partners);
+  stats->changed_partners = read(all.changed_partners);
+  stats->live_partners = read(all.live_partners);
+  stats->taken_over = read(all.taken_over);
+  stats->fallbacks = read(all.fallbacks);
 }
 
 void oddsResetStats(void) noexcept {
@@ -39,7 +44,8 @@ void oddsResetStats(void) noexcept {
   for (odds::ode::Counter* counter :
        {&all.queries, &all.queries_proved, &all.queries_estimated, &all.queries_budget, &all.contacts,
         &all.cell_pair_contacts, &all.primitive_queries, &all.primitive_cut_off, &all.unsupported, &all.lazy_pairs,
-        &all.failed_pairs, &all.busy_pairs, &all.bad_poses, &all.caught}) {
+        &all.failed_pairs, &all.busy_pairs, &all.bad_poses, &all.caught, &all.lazy_partners, &all.changed_partners,
+        &all.taken_over, &all.fallbacks}) {
     counter->store(0, std::memory_order_relaxed);
   }
 }

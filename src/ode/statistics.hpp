@@ -25,6 +25,11 @@ struct Statistics {
   Counter caught{0};
   Counter live_geoms{0};
   Counter live_pairs{0};
+  Counter lazy_partners{0};
+  Counter changed_partners{0};
+  Counter live_partners{0};
+  Counter taken_over{0};
+  Counter fallbacks{0};
 };
 
 [[nodiscard]] Statistics& statistics() noexcept;

@@ -1,29 +1,35 @@
-// Partners that our class does not collide with: said once per class, never silently.
+// Partners that our class cannot collide with as they are: said once per class, never silently.
 #include <array>
 #include <atomic>
 
 #include "ode/colliders.hpp"
+#include "ode/last_error.hpp"
+#include "ode/partners.hpp"
 #include "ode/statistics.hpp"
 
 namespace odds::ode {
 namespace {
 
-const char* class_name(int number) noexcept {
-  switch (number) {
-    case dCapsuleClass:
-      return "capsule";
-    case dCylinderClass:
-      return "cylinder";
-    case dRayClass:
-      return "ray";
+struct Remedy {
+  const char* name;
+  const char* text;
+};
+
+Remedy remedy_for(dGeomID geom) noexcept {
+  const bool known = partner_table().find(geom) != nullptr;
+  switch (dGeomGetClass(geom)) {
     case dConvexClass:
-      return "convex";
-    case dTriMeshClass:
-      return "dTriMesh";
+      return {"convex", known ? "it is not the one that was registered; call oddsForgetGeom before dGeomDestroy, and "
+                                "oddsRegisterConvex again"
+                              : "ODE does not tell its points; call oddsRegisterConvex"};
     case dHeightfieldClass:
-      return "heightfield";
+      return {"heightfield", "ODE does not tell its heights; call oddsMeshDataBuildHeightfield and oddsSetStandIn"};
+    case dTriMeshClass:
+      return {"dTriMesh", known ? "it changed since it was read; call oddsPrepareTriMesh again, and oddsForgetGeom "
+                                  "before dGeomDestroy"
+                                : oddsGetLastError()};
     default:
-      return "other";
+      return {"other", "use another class"};
   }
 }
 
@@ -34,10 +40,9 @@ int collide_unsupported(dGeomID, dGeomID o2, int, dContactGeom*, int) noexcept {
   count(statistics().unsupported);
   const int other = dGeomGetClass(o2);
   if (other >= 0 && other < dGeomNumClasses && !told[static_cast<std::size_t>(other)].exchange(true)) {
-    dMessage(0,
-             "odds: collisions of an odds mesh with a %s geom are not supported: 0 contacts; use a mesh, plane, sphere "
-             "or box",
-             class_name(other));
+    const Remedy remedy = remedy_for(o2);
+    dMessage(0, "odds: collisions of an odds mesh with this %s geom are not supported: 0 contacts; %s", remedy.name,
+             remedy.text);
   }
   return 0;
 }

@@ -36,6 +36,9 @@ TEST_F(Allocation, NoneInAnyCollisionOfPreparedPairs) {
   const dGeomID other = mesh_geom(shape, space);
   const dGeomID sphere = dCreateSphere(space, 0.5);
   const dGeomID box = dCreateBox(space, 0.5, 0.6, 0.7);
+  const dGeomID capsule = dCreateCapsule(space, 0.3, 0.5);
+  const dGeomID cylinder = dCreateCylinder(space, 0.3, 0.5);
+  const dGeomID ray = dCreateRay(space, 3);
   const dGeomID plane = dCreatePlane(space, 0, 0, 1, 0.2);
   ASSERT_EQ(oddsPreparePair(mesh, other), 1);
   std::mt19937 random(3);
@@ -49,11 +52,11 @@ TEST_F(Allocation, NoneInAnyCollisionOfPreparedPairs) {
       dGeomOddsMeshSetBudget(mesh, work == 100 ? 20 : dInfinity);
       for (int round = 0; round < 40; ++round) {
         rotate(mesh, Vec3(uniform(random), uniform(random), uniform(random)), uniform(random));
-        for (const dGeomID partner : {other, sphere, box}) {
+        for (const dGeomID partner : {other, sphere, box, capsule, cylinder, ray}) {
           dGeomSetPosition(partner, uniform(random), uniform(random), uniform(random));
         }
         const support::AllocationCounter counter;
-        for (const dGeomID partner : {other, sphere, box, plane}) {
+        for (const dGeomID partner : {other, sphere, box, capsule, cylinder, ray, plane}) {
           collisions += dCollide(mesh, partner, 16, contacts.data(), sizeof(dContactGeom)) > 0;
           dCollide(partner, mesh, 16, contacts.data(), sizeof(dContactGeom));
         }

@@ -20,7 +20,8 @@ extern "C" {
  * does nothing, returns 0, and says so in oddsGetLastError().
  * Threads: set-up functions (init, close, build, create, destroy, prepare, setters) must not run while another thread
  * collides the same geoms. dCollide itself may run in several threads at once on different pairs whose poses are clean
- * (call dSpaceClean or dGeomGetAABB before); the same pair in two threads at once is refused, with 0 contacts, and counted. */
+ * (call dSpaceClean or dGeomGetAABB before); the same pair in two threads at once is refused, with 0 contacts, and
+ * counted. */
 
 /* ---- Library --------------------------------------------------------------------------------------------------- */
 
@@ -36,7 +37,8 @@ void oddsCloseODE(void) ODDS_NOTHROW;
 /* The class number (dGeomGetClass of every geom made here), or -1 while not initialised. */
 int oddsGetClass(void) ODDS_NOTHROW;
 
-/* What went wrong in the last failed call of this thread; never null, "" if nothing did. Valid until the next failure. */
+/* What went wrong in the last failed call of this thread; never null, "" if nothing did. Valid until the next failure.
+ */
 const char* oddsGetLastError(void) ODDS_NOTHROW;
 
 /* ---- Mesh data ------------------------------------------------------------------------------------------------- */
@@ -70,8 +72,8 @@ void oddsMeshDataDestroy(oddsMeshDataID data) ODDS_NOTHROW;
 
 /* Copies an indexed mesh and builds its hierarchy (allocates, takes time: before the loop). Strides are in bytes;
  * `index_count` is three times the number of triangles. `params` may be null (defaults). A rebuilt container does not
- * change geoms that exist. Returns 1, or 0 with an error (index out of range, coordinate not finite, bad parameter ...);
- * then the container keeps what it had. */
+ * change geoms that exist. Returns 1, or 0 with an error (index out of range, coordinate not finite, bad parameter
+ * ...); then the container keeps what it had. */
 int oddsMeshDataBuildDouble(oddsMeshDataID data, const double* vertices, int vertex_stride, int vertex_count,
                             const dTriIndex* indices, int index_count, int triangle_stride,
                             const oddsBuildParams* params) ODDS_NOTHROW;
@@ -79,9 +81,26 @@ int oddsMeshDataBuildSingle(oddsMeshDataID data, const float* vertices, int vert
                             const dTriIndex* indices, int index_count, int triangle_stride,
                             const oddsBuildParams* params) ODDS_NOTHROW;
 
-/* Adopts the triangles of an existing dTriMesh geom, in its mesh frame, triangle numbers kept. ODE gives them out rounded
- * to single precision; equal vertices are welded. The dTriMesh geom is not changed. */
+/* Adopts the triangles of an existing dTriMesh geom, in its mesh frame, triangle numbers kept. ODE gives them out
+ * rounded to single precision; equal vertices are welded. The dTriMesh geom is not changed. */
 int oddsMeshDataBuildFromTriMesh(oddsMeshDataID data, dGeomID trimesh, const oddsBuildParams* params) ODDS_NOTHROW;
+
+/* The samples of an ODE heightfield, which ODE does not give out again. Its frame: x along the width, z along the
+ * depth, both from -half to half, y up. `thickness` > 0 closes the ground below its lowest point, so that it is a
+ * solid. */
+typedef struct oddsHeightfield {
+  dHeightfieldGetHeight* height; /* called once for each sample with x < width_samples, z < depth_samples */
+  void* user;                    /* handed to it */
+  double width;                  /* metres */
+  double depth;
+  int width_samples; /* 2 .. 8192 */
+  int depth_samples;
+  double scale; /* height in metres = sample * scale + offset */
+  double offset;
+  double thickness; /* metres, >= 0 */
+} oddsHeightfield;
+int oddsMeshDataBuildHeightfield(oddsMeshDataID data, const oddsHeightfield* field,
+                                 const oddsBuildParams* params) ODDS_NOTHROW;
 
 int oddsMeshDataGetTriangleCount(oddsMeshDataID data) ODDS_NOTHROW; /* 0 if not built */
 /* 1 if every edge is matched by its opposite (a solid: partners fully inside are pushed out), else 0. */
@@ -90,7 +109,8 @@ int oddsMeshDataIsClosed(oddsMeshDataID data) ODDS_NOTHROW;
 /* ---- Geoms ----------------------------------------------------------------------------------------------------- */
 
 /* A placeable geom of built data, put into `space` (may be null). Everything that works on a geom works on it: bodies,
- * offsets, category bits, dGeomTransform, all spaces. dGeomDestroy frees it and every pair workspace it takes part in. */
+ * offsets, category bits, dGeomTransform, all spaces. dGeomDestroy frees it and every pair workspace it takes part in.
+ */
 dGeomID dCreateOddsMesh(dSpaceID space, oddsMeshDataID data) ODDS_NOTHROW;
 
 /* Settings. A pair of two such geoms uses the more careful of both settings, in either order of call:
@@ -103,20 +123,20 @@ dGeomID dCreateOddsMesh(dSpaceID space, oddsMeshDataID data) ODDS_NOTHROW;
 int dGeomOddsMeshSetBudget(dGeomID geom, dReal microseconds) ODDS_NOTHROW;
 dReal dGeomOddsMeshGetBudget(dGeomID geom) ODDS_NOTHROW;
 
-/* Work one collision may do: pairs of nodes plus pairs of triangles. Same bits on every run if the budget in microseconds
- * is dInfinity. 0: no limit (default). */
+/* Work one collision may do: pairs of nodes plus pairs of triangles. Same bits on every run if the budget in
+ * microseconds is dInfinity. 0: no limit (default). */
 int dGeomOddsMeshSetWorkBudget(dGeomID geom, unsigned long units) ODDS_NOTHROW;
 unsigned long dGeomOddsMeshGetWorkBudget(dGeomID geom) ODDS_NOTHROW;
 
-/* k_min pairs of nodes with probability >= p_min end a query with an estimated hit. p_min in (0, 1]; 1: never (default).
- * k_min >= 1 (default 10). */
+/* k_min pairs of nodes with probability >= p_min end a query with an estimated hit. p_min in (0, 1]; 1: never
+ * (default). k_min >= 1 (default 10). */
 int dGeomOddsMeshSetPMin(dGeomID geom, dReal p_min) ODDS_NOTHROW;
 dReal dGeomOddsMeshGetPMin(dGeomID geom) ODDS_NOTHROW;
 int dGeomOddsMeshSetKMin(dGeomID geom, int k_min) ODDS_NOTHROW;
 int dGeomOddsMeshGetKMin(dGeomID geom) ODDS_NOTHROW;
 
 /* Most contacts of one collision, 0 .. 8 (default 8; 0: ask only, oddsGetLastAnswer tells). The flags of dCollide and
- * this limit both hold. */
+ * this limit both hold. With 8, a ray gives every crossing that the caller has room for. */
 int dGeomOddsMeshSetMaxContacts(dGeomID geom, int count) ODDS_NOTHROW;
 int dGeomOddsMeshGetMaxContacts(dGeomID geom) ODDS_NOTHROW;
 
@@ -138,13 +158,36 @@ int dGeomOddsMeshSetUndecidedPolicy(dGeomID geom, int policy, dReal p) ODDS_NOTH
 int dGeomOddsMeshGetUndecidedPolicy(dGeomID geom) ODDS_NOTHROW;
 dReal dGeomOddsMeshGetUndecidedProbability(dGeomID geom) ODDS_NOTHROW;
 
+/* ---- Partners of ODE's own classes ---------------------------------------------------------------------------------
+ * Spheres, boxes, capsules, cylinders, planes and rays need nothing. A dTriMesh is read (in single precision, as ODE
+ * keeps it) when its first pair is prepared, or else in its first dCollide, and counted (lazy_partners). Convexes and
+ * heightfields must be made known. What is known about a geom must be forgotten before it is destroyed; a geom that is
+ * no longer what was made known gives 0 contacts, and is counted (changed_partners). All are set-up functions; the last
+ * oddsCloseODE forgets everything. Settings of a dTriMesh or heightfield that is known can be set like those of a geom
+ * of this class; until then they leave every decision to the other geom. */
+
+/* Reads a dTriMesh now, again if it was read before (its vertices were moved, other data were set). */
+int oddsPrepareTriMesh(dGeomID trimesh, const oddsBuildParams* params) ODDS_NOTHROW;
+
+/* Lets mesh data stand in for a dTriMesh (your own doubles instead of ODE's rounded ones) or a heightfield; `placeable`
+ * is what dCreateHeightfield was given, and not used for a dTriMesh. */
+int oddsSetStandIn(dGeomID geom, oddsMeshDataID data, int placeable) ODDS_NOTHROW;
+
+/* Copies the points and polygons that dCreateConvex was given. Refused: what is not a convex solid. */
+int oddsRegisterConvex(dGeomID convex, const dReal* points, unsigned point_count, const unsigned* polygons,
+                       unsigned polygon_count) ODDS_NOTHROW;
+
+/* Call it before dGeomDestroy. 0 if nothing was known about the geom. */
+int oddsForgetGeom(dGeomID geom) ODDS_NOTHROW;
+
 /* ---- Pairs ----------------------------------------------------------------------------------------------------- */
 
-/* Takes the memory that collisions between two geoms of this class need (some 100 KB), in either order, and warms it. Call
- * it before the loop for every pair that can meet in a dSpaceCollide. Returns 1 (also if already prepared, and for a pair
- * of one such geom with any other, which needs no memory), or 0 (unlike volumes, out of memory, no geom of ours).
- * A pair that was not prepared is prepared at its first dCollide, inside the loop, and counted (lazy_pairs); if that fails
- * the collision returns 0 contacts and is counted (failed_pairs). */
+/* Takes the memory that collisions between two meshes need (some 100 KB), in either order, and warms it; a mesh is a
+ * geom of this class, a dTriMesh, or a heightfield with a stand-in. Call it before the loop for every pair that can
+ * meet in a dSpaceCollide. Returns 1 (also if already prepared, and for a pair of a mesh with a primitive, which needs
+ * no memory), or 0 (unlike volumes, out of memory, no mesh). A pair that was not prepared is prepared at its first
+ * dCollide, inside the loop, and counted (lazy_pairs); if that fails the collision returns 0 contacts and is counted
+ * (failed_pairs). */
 int oddsPreparePair(dGeomID g1, dGeomID g2) ODDS_NOTHROW;
 
 enum { ODDS_CLEAR = 0, ODDS_HIT = 1 };
@@ -166,9 +209,9 @@ typedef struct oddsAnswer {
   int has_cell_pair;                 /* 1 if the following are set: where the surfaces most probably meet */
   double cell_probability;           /* of an intersection within that pair of cells */
   double cell_position[3];
-  double cell_normal[3];             /* unit, into g1 */
-  double cell_depth;                 /* >= 0 */
-  int bad_pose;                      /* 1 if a pose was not finite or not rigid: no contacts, nothing tested */
+  double cell_normal[3]; /* unit, into g1 */
+  double cell_depth;     /* >= 0 */
+  int bad_pose;          /* 1 if a pose was not finite or not rigid: no contacts, nothing tested */
 } oddsAnswer;
 
 /* The last collision of a pair of two geoms of this class, in either order. 0 if they never collided. */
@@ -176,22 +219,28 @@ int oddsGetLastAnswer(dGeomID g1, dGeomID g2, oddsAnswer* answer) ODDS_NOTHROW;
 
 /* Counts since the start of the process or the last oddsResetStats, over all geoms and threads. */
 typedef struct oddsStats {
-  unsigned long long queries;            /* collisions between two geoms of this class */
-  unsigned long long queries_proved;     /* ... by basis of the answer */
+  unsigned long long queries;        /* collisions between two geoms of this class */
+  unsigned long long queries_proved; /* ... by basis of the answer */
   unsigned long long queries_estimated;
   unsigned long long queries_budget;
   unsigned long long contacts;           /* given back to ODE by these */
   unsigned long long cell_pair_contacts; /* ... of these, made from the most probable pair of cells */
-  unsigned long long primitive_queries;  /* collisions with planes, spheres and boxes */
-  unsigned long long primitive_cut_off;  /* ... of these, ended by their budget before all triangles were seen */
-  unsigned long long unsupported;        /* collisions with classes that are not supported: 0 contacts */
-  unsigned long long lazy_pairs;         /* pairs prepared inside dCollide */
-  unsigned long long failed_pairs;       /* collisions without a workspace (unlike volumes, out of memory) */
-  unsigned long long busy_pairs;         /* collisions refused: the pair was in use by another thread */
-  unsigned long long bad_poses;          /* collisions with a pose that was not finite or not rigid */
-  unsigned long long caught;             /* exceptions stopped at the border (never seen; a defect if not 0) */
-  unsigned long long live_geoms;         /* now, not reset */
-  unsigned long long live_pairs;         /* workspaces now, not reset */
+  unsigned long long
+      primitive_queries; /* collisions with planes, spheres, boxes, capsules, cylinders, rays, convexes */
+  unsigned long long primitive_cut_off; /* ... of these, ended by their budget before all triangles were seen */
+  unsigned long long unsupported;       /* collisions with geoms that were not made known, or changed: 0 contacts */
+  unsigned long long lazy_pairs;        /* pairs prepared inside dCollide */
+  unsigned long long failed_pairs;      /* collisions without a workspace (unlike volumes, out of memory) */
+  unsigned long long busy_pairs;        /* collisions refused: the pair was in use by another thread */
+  unsigned long long bad_poses;         /* collisions with a pose that was not finite or not rigid */
+  unsigned long long caught;            /* exceptions stopped at the border (never seen; a defect if not 0) */
+  unsigned long long live_geoms;        /* now, not reset */
+  unsigned long long live_pairs;        /* workspaces now, not reset */
+  unsigned long long lazy_partners;     /* dTriMesh geoms read inside dCollide */
+  unsigned long long changed_partners;  /* collisions with a geom that is not what was made known */
+  unsigned long long live_partners;     /* geoms of ODE's own classes that are known now, not reset */
+  unsigned long long taken_over;        /* collisions of a dTriMesh answered by a takeover */
+  unsigned long long fallbacks;         /* ... left to ODE's own collider */
 } oddsStats;
 void oddsGetStats(oddsStats* stats) ODDS_NOTHROW;
 void oddsResetStats(void) ODDS_NOTHROW;

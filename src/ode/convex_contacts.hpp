@@ -1,0 +1,25 @@
+// Our class against any convex body: the surface inside it, in patches of similar normals, each with one direction.
+#pragma once
+
+#include "odds/math/pose.hpp"
+#include "ode/contact_writer.hpp"
+#include "ode/convex_body.hpp"
+#include "ode/limit.hpp"
+#include "ode/prepared_mesh.hpp"
+
+namespace odds::ode {
+
+/// Writes contacts of a mesh (the writer's g1) with a body, the deepest patch first; normals lead into the mesh. One
+/// normal for all patches that the body leaves in the same direction; depths are at most the way out of the patch.
+/// False if the limit, or the room for pieces of the surface, ended it before every triangle was seen. noexcept, no
+/// allocation (about 150 KB of the stack).
+[[nodiscard]] bool write_convex_contacts(const PreparedMesh& mesh, const math::Pose& mesh_in_world,
+                                         const math::Pose& body_in_world, const ConvexBody& body, Limit& limit,
+                                         ContactWriter& writer, int room) noexcept;
+
+/// The whole of a collider function: the mesh's pose and settings, the limit, the counters. `body_in_world` may be
+/// empty (a bad pose).
+[[nodiscard]] int collide_convex_body(dGeomID mesh, dGeomID partner, const ConvexBody& body, int flags,
+                                      dContactGeom* contacts, int skip) noexcept;
+
+}  // namespace odds::ode

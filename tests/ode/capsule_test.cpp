@@ -1,0 +1,238 @@
+// Mesh against capsule: exact distances to a box; lying, standing, in corners, through sheets, swallowed.
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "odds/mesh/made/terrain.hpp"
+#include "ode/ode_fixture.hpp"
+
+namespace odds::test {
+namespace {
+
+class CapsuleTest : public OdeTest {
+ protected:
+  std::mt19937 random{21};
+  std::uniform_real_distribution<double> uniform{-1.0, 1.0};
+};
+
+Vec3 axis_of(dGeomID geom) {
+  const dReal* r = dGeomGetRotation(geom);
+  return {r[2], r[6], r[10]};
+}
+
+Vec3 place_of(dGeomID geom) {
+  const dReal* p = dGeomGetPosition(geom);
+  return {p[0], p[1], p[2]};
+}
+
+// The least distance between a segment and a solid box at the origin: a convex function along the segment.
+double distance_to_box(const Vec3& begin, const Vec3& end, const Vec3& half) {
+  const auto at = [&](double s) { return ((begin + s * (end - begin)).cwiseAbs() - half).cwiseMax(0.0).norm(); };
+  double from = 0.0;
+  double to = 1.0;
+  for (int i = 0; i < 200; ++i) {
+    const double a = from + (to - from) / 3.0;
+    const double b = to - (to - from) / 3.0;
+    (at(a) < at(b) ? to : from) = at(a) < at(b) ? b : a;
+  }
+  return std::min({at(from), at(0.0), at(1.0)});
+}
+
+TEST_F(CapsuleTest, TheDeepestContactIsAsDeepAsTheDistanceOfTheAxisSays) {
+  const Vec3 half(0.4, 0.5, 0.6);
+  const dGeomID mesh = mesh_geom(box_shape(0.8, 1.0, 1.2, 4), space);
+  const double radius = 0.25;
+  const double length = 0.7;
+  const dGeomID capsule = dCreateCapsule(space, radius, length);
+  int hits = 0;
+  for (int round = 0; round < 1000; ++round) {
+    rotate(capsule, Vec3(uniform(random), uniform(random), uniform(random)), 3.0 * uniform(random));
+    dGeomSetPosition(capsule, 1.2 * uniform(random), 1.2 * uniform(random), 1.2 * uniform(random));
+    const Vec3 arm = 0.5 * length * axis_of(capsule);
+    const double distance = distance_to_box(place_of(capsule) - arm, place_of(capsule) + arm, half);
+    const auto contacts = collide(capsule, mesh);
+    ASSERT_EQ(contacts.empty(), distance >= radius) << "round " << round << ", distance " << distance;
+    expect_sound(contacts, capsule, mesh);
+    if (contacts.empty() || distance < 1e-3) continue;
+    ++hits;
+    EXPECT_NEAR(contacts[0].depth, radius - distance, 1e-9) << "round " << round;
+    // Along the normal the deepest point of the capsule lies `depth` behind the contact's place.
+    const Vec3 n = normal_of(contacts[0]);
+    const double lowest = n.dot(place_of(capsule)) - std::abs(n.dot(arm)) - radius;
+    EXPECT_NEAR(n.dot(position_of(contacts[0])) - lowest, contacts[0].depth, 0.5 * length) << "round " << round;
+    for (const dContactGeom& contact : contacts) EXPECT_LE(contact.depth, contacts[0].depth + 1e-12);
+  }
+  EXPECT_GT(hits, 200);
+}
+
+TEST_F(CapsuleTest, LyingOnATessellatedFloorItIsHeldAtBothEnds) {
+  const dGeomID floor = mesh_geom(box_shape(2, 2, 0.2, 16), space);
+  const dGeomID capsule = dCreateCapsule(space, 0.1, 0.4);
+  for (int round = 0; round < 300; ++round) {
+    dMatrix3 lie;
+    const double angle = 3.1 * uniform(random);
+    const double tilt = 0.01 * uniform(random);
+    dRFromZAxis(lie, std::cos(angle), std::sin(angle), tilt);
+    dGeomSetRotation(capsule, lie);
+    const double lift = 0.2 * std::abs(axis_of(capsule).z());
+    dGeomSetPosition(capsule, 0.5 * uniform(random), 0.5 * uniform(random), 0.1 + 0.1 - 0.003 + lift - 0.001);
+    const auto contacts = collide(capsule, floor);
+    ASSERT_GE(contacts.size(), 2u) << "round " << round;
+    expect_sound(contacts, capsule, floor);
+    EXPECT_NEAR(contacts[0].depth, 0.004, 1e-9) << "round " << round;
+    for (const dContactGeom& contact : contacts) {
+      EXPECT_NEAR(contact.normal[2], 1.0, 1e-9) << "round " << round;
+      EXPECT_NEAR(contact.pos[2], 0.1, 1e-9);
+    }
+    if (2.0 * lift < 0.0035) {
+      EXPECT_NEAR((position_of(contacts[0]) - position_of(contacts[1])).norm(), 0.4, 0.01) << "round " << round;
+      EXPECT_NEAR(contacts[1].depth, 0.004 - 2.0 * lift, 1e-9) << "round " << round;
+    }
+  }
+}
+
+TEST_F(CapsuleTest, StandingItHasOneContact) {
+  const dGeomID floor = mesh_geom(box_shape(2, 2, 0.2, 16), space);
+  const dGeomID capsule = dCreateCapsule(space, 0.1, 0.4);
+  for (int step = 0; step < 100; ++step) {
+    dGeomSetPosition(capsule, -0.5 + 0.01 * step, 0.125, 0.1 + 0.2 + 0.1 - 0.002);
+    const auto contacts = collide(floor, capsule);
+    ASSERT_EQ(contacts.size(), 1u) << "step " << step;
+    EXPECT_NEAR(contacts[0].normal[2], -1.0, 1e-9);
+    EXPECT_NEAR(contacts[0].depth, 0.002, 1e-9);
+  }
+}
+
+TEST_F(CapsuleTest, ThroughTheFloorItIsPushedOutAsFarAsItsLowerEndIsDeep) {
+  const dGeomID floor = mesh_geom(box_shape(4, 4, 2, 8), space);
+  const dGeomID plane = dCreatePlane(nullptr, 0, 0, 1, 1);
+  const dGeomID capsule = dCreateCapsule(space, 0.05, 0.6);
+  int pierced = 0;
+  for (int round = 0; round < 300; ++round) {
+    rotate(capsule, Vec3(uniform(random), uniform(random), 0), 1.2 * uniform(random));
+    dGeomSetPosition(capsule, 0.3 * uniform(random), 0.3 * uniform(random), 1.0 + 0.2 * uniform(random));
+    const auto contacts = collide(capsule, floor);
+    const auto reference = collide(capsule, plane);
+    ASSERT_EQ(contacts.empty(), reference.empty()) << "round " << round;
+    if (contacts.empty()) continue;
+    double deepest = 0.0;
+    for (const dContactGeom& each : reference) deepest = std::max(deepest, each.depth);
+    EXPECT_NEAR(contacts[0].depth, deepest, 1e-9) << "round " << round;
+    for (const dContactGeom& contact : contacts) EXPECT_NEAR(contact.normal[2], 1.0, 1e-9) << "round " << round;
+    pierced += deepest > 0.05 && deepest < 0.6;
+  }
+  EXPECT_GT(pierced, 100);
+  dGeomDestroy(plane);
+}
+
+TEST_F(CapsuleTest, SwallowedByAClosedMeshItIsPushedToTheNearestFace) {
+  const dGeomID mesh = mesh_geom(box_shape(4, 4, 4, 4), space);
+  const dGeomID capsule = dCreateCapsule(space, 0.1, 0.4);
+  dGeomSetPosition(capsule, 0.1, 0.2, 1.5);
+  const auto contacts = collide(capsule, mesh);
+  ASSERT_EQ(contacts.size(), 2u) << "both ends of one way";
+  EXPECT_NEAR(contacts[0].depth, 0.5 + 0.2 + 0.1, 1e-9);
+  for (const dContactGeom& contact : contacts) EXPECT_NEAR(contact.normal[2], 1.0, 1e-9);
+}
+
+TEST_F(CapsuleTest, ThroughASheetItGoesBackToTheSideOfItsMiddle) {
+  mesh::made::Terrain flat;
+  flat.height = 0.0;
+  flat.cells = 10;
+  const dGeomID sheet = mesh_geom(shape_of(flat), space);
+  const dGeomID capsule = dCreateCapsule(space, 0.05, 0.4);
+  for (const double side : {1.0, -1.0}) {
+    dGeomSetPosition(capsule, 0.03, 0.04, side * 0.12);
+    const auto contacts = collide(capsule, sheet);
+    ASSERT_EQ(contacts.size(), 1u) << "one end is behind the sheet";
+    EXPECT_NEAR(contacts[0].normal[2], side, 1e-9);
+    EXPECT_NEAR(contacts[0].depth, 0.08 + 0.05, 1e-9);
+  }
+}
+
+TEST_F(CapsuleTest, AcrossARidgeItHasOneContactAndInACornerTwoNormals) {
+  const dGeomID mesh = mesh_geom(box_shape(1, 1, 1, 3), space);
+  const dGeomID capsule = dCreateCapsule(space, 0.1, 0.8);
+  dMatrix3 along;
+  dRFromZAxis(along, 1, 0, -1);
+  dGeomSetRotation(capsule, along);
+  const double away = std::sqrt(0.5) * 0.09;
+  dGeomSetPosition(capsule, 0.5 + away, 0.1, 0.5 + away);
+  const auto ridge = collide(capsule, mesh);
+  ASSERT_EQ(ridge.size(), 1u);
+  EXPECT_NEAR(ridge[0].depth, 0.01, 1e-9);
+  EXPECT_NEAR(ridge[0].normal[0], std::sqrt(0.5), 1e-9);
+  EXPECT_NEAR(ridge[0].normal[2], std::sqrt(0.5), 1e-9);
+
+  const dGeomID wall = mesh_geom(box_shape(1, 1, 1, 3), space);
+  dGeomSetPosition(wall, 1.0, 0.0, 1.0);  // its lower left edge meets the other's upper right edge
+  dGeomSetPosition(mesh, 0.0, 0.0, 0.0);
+  dRFromZAxis(along, 0, 1, 0);
+  dGeomSetRotation(capsule, along);
+  dGeomSetPosition(capsule, 0.5 - 0.098, 0.0, 0.5 + 0.097);
+  const auto on_floor = collide(capsule, mesh);
+  ASSERT_GE(on_floor.size(), 2u);
+  for (const dContactGeom& contact : on_floor) {
+    EXPECT_NEAR(contact.normal[2], 1.0, 1e-9);
+    EXPECT_NEAR(contact.depth, 0.003, 1e-9);
+  }
+  const auto at_wall = collide(capsule, wall);
+  ASSERT_GE(at_wall.size(), 2u);
+  for (const dContactGeom& contact : at_wall) {
+    EXPECT_NEAR(contact.normal[0], -1.0, 1e-9);
+    EXPECT_NEAR(contact.depth, 0.002, 1e-9);
+  }
+}
+
+TEST_F(CapsuleTest, ManyTrianglesAreCutOffAndCountedYetTheDeepestIsExact) {
+  const dGeomID floor = mesh_geom(box_shape(2, 2, 0.2, 60), space);
+  const dGeomID capsule = dCreateCapsule(space, 0.2, 0.8);
+  dMatrix3 lie;
+  dRFromZAxis(lie, 1, 0.3, 0);
+  dGeomSetRotation(capsule, lie);
+  dGeomSetPosition(capsule, 0.013, 0.017, 0.1 + 0.199);
+  const auto contacts = collide(capsule, floor);
+  EXPECT_EQ(stats().primitive_cut_off, 1u);
+  ASSERT_FALSE(contacts.empty());
+  for (const dContactGeom& contact : contacts) {
+    EXPECT_NEAR(contact.normal[2], 1.0, 1e-9);
+    EXPECT_NEAR(contact.depth, 0.001, 1e-9);
+  }
+}
+
+TEST_F(CapsuleTest, OnTerrainContactsAreSound) {
+  mesh::made::Terrain hills;
+  hills.cells = 48;
+  hills.depth = 0.5;
+  const dGeomID terrain = mesh_geom(shape_of(hills), space);
+  const dGeomID capsule = dCreateCapsule(space, 0.05, 0.1);
+  int seen = 0;
+  for (int round = 0; round < 500; ++round) {
+    rotate(capsule, Vec3(uniform(random), uniform(random), uniform(random)), 3.0 * uniform(random));
+    dGeomSetPosition(capsule, 0.8 * uniform(random), 0.8 * uniform(random), 0.1 * uniform(random));
+    const auto contacts = collide(capsule, terrain);
+    expect_sound(contacts, capsule, terrain);
+    for (const dContactGeom& contact : contacts) {
+      ++seen;
+      EXPECT_GT(contact.normal[2], 0.0) << "round " << round;
+      EXPECT_LE(contact.depth, 0.5) << "round " << round;
+    }
+  }
+  EXPECT_GT(seen, 200);
+}
+
+TEST_F(CapsuleTest, BadPosesAndSmallBudgetsAreCounted) {
+  const dGeomID mesh = mesh_geom(sphere_shape(1, 20), space);
+  const dGeomID capsule = dCreateCapsule(nullptr, 0.5, 1.0);
+  dGeomSetPosition(capsule, 1.2, 0, 0);
+  ASSERT_EQ(dGeomOddsMeshSetWorkBudget(mesh, 2), 1);
+  expect_sound(collide(mesh, capsule), mesh, capsule);
+  EXPECT_EQ(stats().primitive_cut_off, 1u);
+  dGeomSetPosition(capsule, NAN, 0, 0);
+  EXPECT_TRUE(collide(mesh, capsule).empty());
+  EXPECT_EQ(stats().bad_poses, 1u);
+  dGeomDestroy(capsule);
+}
+
+}  // namespace
+}  // namespace odds::test

@@ -1,0 +1,189 @@
+// Mesh against registered convexes: a cube answers as ODE's box does; odd shapes on floors; what is refused and found
+// out.
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "odds/mesh/made/icosphere.hpp"
+#include "ode/ode_fixture.hpp"
+
+namespace odds::test {
+namespace {
+
+// The arrays of dCreateConvex, which keeps pointers to them.
+struct Arrays {
+  std::vector<dReal> planes;
+  std::vector<dReal> points;
+  std::vector<unsigned> polygons;
+  unsigned faces = 0;
+
+  void add(const std::vector<unsigned>& corners) {
+    polygons.push_back(static_cast<unsigned>(corners.size()));
+    polygons.insert(polygons.end(), corners.begin(), corners.end());
+    const Vec3 normal = (at(corners[1]) - at(corners[0])).cross(at(corners[2]) - at(corners[0])).normalized();
+    for (int axis = 0; axis < 3; ++axis) planes.push_back(normal[axis]);
+    planes.push_back(normal.dot(at(corners[0])));
+    ++faces;
+  }
+  [[nodiscard]] Vec3 at(unsigned i) const { return {points[3 * i], points[3 * i + 1], points[3 * i + 2]}; }
+  [[nodiscard]] unsigned count() const { return static_cast<unsigned>(points.size() / 3); }
+};
+
+Arrays cuboid(const Vec3& half) {
+  Arrays arrays;
+  for (int c = 0; c < 8; ++c) {
+    for (int axis = 0; axis < 3; ++axis) arrays.points.push_back((c >> axis & 1) != 0 ? half[axis] : -half[axis]);
+  }
+  for (const auto& face : std::vector<std::vector<unsigned>>{
+           {0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}) {
+    arrays.add(face);
+  }
+  return arrays;
+}
+
+Arrays ball(double radius) {
+  const auto mesh = make(mesh::made::Icosphere{.radius = radius, .frequency = 3}).value();
+  Arrays arrays;
+  for (const Vec3& v : mesh.vertices()) arrays.points.insert(arrays.points.end(), {v.x(), v.y(), v.z()});
+  for (const mesh::Triangle& t : mesh.triangles()) arrays.add({t[0], t[1], t[2]});
+  return arrays;
+}
+
+class ConvexTest : public OdeTest {
+ protected:
+  void TearDown() override {
+    for (const dGeomID geom : known) oddsForgetGeom(geom);
+    OdeTest::TearDown();
+  }
+  dGeomID convex_of(const Arrays& arrays) {
+    const dGeomID geom = dCreateConvex(space, arrays.planes.data(), arrays.faces, arrays.points.data(), arrays.count(),
+                                       arrays.polygons.data());
+    EXPECT_EQ(oddsRegisterConvex(geom, arrays.points.data(), arrays.count(), arrays.polygons.data(), arrays.faces), 1)
+        << oddsGetLastError();
+    known.push_back(geom);
+    return geom;
+  }
+  std::vector<dGeomID> known;
+  std::mt19937 random{41};
+  std::uniform_real_distribution<double> uniform{-1.0, 1.0};
+};
+
+TEST_F(ConvexTest, AConvexBoxAnswersLikeABox) {
+  const Arrays arrays = cuboid(Vec3(0.25, 0.3, 0.35));
+  const dGeomID convex = convex_of(arrays);
+  const dGeomID box = dCreateBox(space, 0.5, 0.6, 0.7);
+  const dGeomID mesh = mesh_geom(box_shape(0.8, 1.0, 1.2, 2), space);
+  int hits = 0;
+  int longer = 0;
+  int shorter = 0;
+  for (int round = 0; round < 500; ++round) {
+    const Vec3 axis(uniform(random), uniform(random), uniform(random));
+    const double angle = 3.0 * uniform(random);
+    const Vec3 place(0.9 * uniform(random), uniform(random), 1.1 * uniform(random));
+    for (const dGeomID geom : {convex, box}) {
+      rotate(geom, axis, angle);
+      dGeomSetPosition(geom, place.x(), place.y(), place.z());
+    }
+    const auto ours = collide(convex, mesh);
+    const auto boxs = collide(box, mesh);
+    expect_sound(ours, convex, mesh);
+    ASSERT_EQ(ours.empty(), boxs.empty()) << "round " << round;
+    if (ours.empty()) continue;
+    ++hits;
+    longer += ours[0].depth > 1.25 * boxs[0].depth + 1e-3 ? 1 : 0;
+    shorter += ours[0].depth < 0.75 * boxs[0].depth - 1e-3 ? 1 : 0;
+  }
+  EXPECT_GT(hits, 200);
+  EXPECT_LT(longer, hits / 20) << "a box tries all crossings of edges, a convex what the refinement finds";
+  EXPECT_LT(shorter, hits / 20);
+}
+
+TEST_F(ConvexTest, OnATessellatedFloorItIsAsDeepAsItsLowestCorner) {
+  const dGeomID floor = mesh_geom(box_shape(2, 2, 0.4, 16), space);
+  for (const Arrays& arrays : {cuboid(Vec3(0.1, 0.15, 0.2)), ball(0.15)}) {
+    const dGeomID convex = convex_of(arrays);
+    for (int round = 0; round < 200; ++round) {
+      rotate(convex, Vec3(uniform(random), uniform(random), uniform(random)), 3.0 * uniform(random));
+      dGeomSetPosition(convex, 0.5 * uniform(random), 0.5 * uniform(random), 0.5);
+      dReal aabb[6];
+      dGeomGetAABB(convex, aabb);
+      const dReal* p = dGeomGetPosition(convex);
+      dGeomSetPosition(convex, p[0], p[1], p[2] - aabb[4] + 0.2 - 0.002);
+      const auto contacts = collide(floor, convex);
+      ASSERT_FALSE(contacts.empty()) << "round " << round;
+      expect_sound(contacts, floor, convex);
+      EXPECT_NEAR(contacts[0].depth, 0.002, 1e-9) << "round " << round;
+      for (const dContactGeom& contact : contacts) EXPECT_NEAR(contact.normal[2], -1.0, 1e-9);
+    }
+  }
+}
+
+TEST_F(ConvexTest, CrossedEdgesArePushedApartAcrossBoth) {
+  const dGeomID mesh = mesh_geom(box_shape(1, 0.2, 0.2), space);
+  rotate(mesh, Vec3(1, 0, 0), M_PI / 4);  // its upper edge runs along x
+  const Arrays arrays = cuboid(Vec3(0.1, 0.5, 0.1));
+  const dGeomID convex = convex_of(arrays);
+  rotate(convex, Vec3(0, 1, 0), M_PI / 4);  // its lower edge runs along y
+  dGeomSetPosition(convex, 0.13, 0.07, 0.2 * std::sqrt(2.0) - 0.01);
+  const auto contacts = collide(convex, mesh);
+  ASSERT_FALSE(contacts.empty());
+  EXPECT_NEAR(contacts[0].normal[2], 1.0, 1e-3);
+  EXPECT_NEAR(contacts[0].depth, 0.01, 1e-4);
+  EXPECT_NEAR(contacts[0].pos[0], 0.13, 1e-3);
+  EXPECT_NEAR(contacts[0].pos[1], 0.0, 1e-3);
+}
+
+TEST_F(ConvexTest, SwallowedByAClosedMeshItIsPushedOut) {
+  const dGeomID mesh = mesh_geom(box_shape(2, 2, 2, 4), space);
+  const Arrays arrays = cuboid(Vec3(0.1, 0.1, 0.1));
+  const dGeomID convex = convex_of(arrays);
+  dGeomSetPosition(convex, 0.1, 0.2, 0.6);
+  const auto contacts = collide(convex, mesh);
+  ASSERT_EQ(contacts.size(), 1u);
+  EXPECT_NEAR(contacts[0].normal[2], 1.0, 1e-9);
+  EXPECT_NEAR(contacts[0].depth, 0.5, 1e-9);
+}
+
+TEST_F(ConvexTest, WhatIsNoConvexSolidIsRefused) {
+  Arrays arrays = cuboid(Vec3(1, 1, 1));
+  const dGeomID geom = convex_of(arrays);
+  const auto refused = [&](const Arrays& tried, unsigned points, unsigned faces) {
+    EXPECT_EQ(oddsRegisterConvex(geom, tried.points.data(), points, tried.polygons.data(), faces), 0);
+    return std::string(oddsGetLastError());
+  };
+  Arrays dented = arrays;
+  dented.points[0] = dented.points[1] = dented.points[2] = 0.5;
+  EXPECT_NE(refused(dented, 8, 6).find("not convex"), std::string::npos) << oddsGetLastError();
+  Arrays infinite = arrays;
+  infinite.points[4] = NAN;
+  EXPECT_NE(refused(infinite, 8, 6).find("finite"), std::string::npos);
+  Arrays wrong = arrays;
+  wrong.polygons[1] = 8;
+  EXPECT_NE(refused(wrong, 8, 6).find("range"), std::string::npos);
+  Arrays flat = arrays;
+  for (unsigned i = 0; i < 8; ++i) flat.points[3 * i + 2] = 0;
+  EXPECT_NE(refused(flat, 8, 6), "");
+  EXPECT_NE(refused(arrays, 3, 6), "");
+  EXPECT_EQ(oddsRegisterConvex(nullptr, arrays.points.data(), 8, arrays.polygons.data(), 6), 0);
+  EXPECT_EQ(oddsRegisterConvex(dCreateSphere(space, 1), arrays.points.data(), 8, arrays.polygons.data(), 6), 0);
+}
+
+TEST_F(ConvexTest, AnotherGeomAtTheSameAddressIsFoundOut) {
+  const dGeomID mesh = mesh_geom(box_shape(1, 1, 1), space);
+  const Arrays arrays = cuboid(Vec3(0.3, 0.3, 0.3));
+  const Arrays other = cuboid(Vec3(0.2, 0.3, 0.3));
+  const dGeomID convex = convex_of(arrays);
+  dGeomSetPosition(convex, 0.7, 0, 0);
+  EXPECT_FALSE(collide(convex, mesh).empty());
+  dGeomSetConvex(convex, other.planes.data(), other.faces, other.points.data(), other.count(), other.polygons.data());
+  dGeomSetPosition(convex, 0.7, 0, 0);
+  EXPECT_TRUE(collide(convex, mesh).empty());
+  EXPECT_EQ(stats().changed_partners, 1u);
+  EXPECT_EQ(oddsForgetGeom(convex), 1);
+  EXPECT_EQ(oddsForgetGeom(convex), 0);
+  EXPECT_TRUE(collide(convex, mesh).empty());
+  EXPECT_EQ(stats().unsupported, 2u);
+}
+
+}  // namespace
+}  // namespace odds::test
