@@ -2,6 +2,7 @@
 #include "odds/haptics/renderer.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace odds::haptics {
@@ -37,7 +38,7 @@ void copy(const ode::StepSummary& step, TickRecord& record) {
 }  // namespace
 
 Renderer::Renderer(ode::World& world, const std::optional<Hand>& hand, EffectSet& effects, AllocationCount allocations)
-    : world_(&world), hand_(hand), effects_(&effects), allocations_(allocations) {
+    : world_(&world), hand_(hand), effects_(&effects), allocations_(allocations), period_s_(world.options().step_s) {
   if (hand_) world.add_coupling(hand_->tool);
   if (hand_) safety_.emplace(hand_->limits);
 }
@@ -51,6 +52,7 @@ bool Renderer::begin() noexcept {
   DeviceState state;
   if (!hand_->device->read(0, state) || !finite(state)) return false;
   state_ = state;
+  before_ = state;
   fresh_ns_ = 0;
   energy_.reset(state);
   safety_.emplace(hand_->limits);
@@ -83,7 +85,7 @@ void Renderer::read_device(std::int64_t now_ns) noexcept {
 
 void Renderer::write_device(std::int64_t now_ns, const ode::Wrench& on_hand, TickRecord& record) noexcept {
   DeviceCommand command{now_ns, on_hand.force_n, on_hand.torque_nm, 0};
-  safety_->apply(command, world_->options().step_s, 1e-9 * static_cast<double>(now_ns - fresh_ns_));
+  safety_->apply(command, period_s_, 1e-9 * static_cast<double>(now_ns - fresh_ns_));
   if (!hand_->device->write(command)) safety_->trip();  // a device that takes no commands must not keep an old one
   energy_.sent(command.force_n, command.torque_nm);
   copy(command.force_n, record.force_n);
@@ -104,15 +106,56 @@ TickView Renderer::view(std::int64_t now_ns) noexcept {
   return view;
 }
 
+std::uint32_t Renderer::steps_needed() const noexcept {
+  if (substeps_.most <= 1) return 1;
+  double fastest = hand_ ? (state_.position_m - before_.position_m).norm() / period_s_ : 0.0;
+  for (std::uint32_t i = 0; i < world_->body_count(); ++i) {
+    if (world_->is_dynamic({i})) fastest = std::max(fastest, world_->state({i}).velocity_m_per_s.norm());
+  }
+  const double wanted = std::ceil(fastest * period_s_ / substeps_.way_m);
+  return static_cast<std::uint32_t>(std::clamp(wanted, 1.0, static_cast<double>(substeps_.most)));
+}
+
+// The hand's way since the last tick is walked in as many pieces, so that the tool meets what lies on it.
+void Renderer::step_world(TickView& tick) noexcept {
+  const std::uint32_t steps = steps_needed();
+  if (steps == 1) {
+    effects_->before_step(tick);
+    last_step_ = world_->step();
+    tick.step = &last_step_;
+    effects_->after_step(tick);
+    return;
+  }
+  const double step_s = period_s_ / steps;
+  world_->set_step(step_s);
+  ode::StepSummary sum;
+  DeviceState between = state_;
+  for (std::uint32_t i = 1; i <= steps; ++i) {
+    const double share = static_cast<double>(i) / steps;
+    between.position_m = before_.position_m + share * (state_.position_m - before_.position_m);
+    between.orientation = before_.orientation.slerp(share, state_.orientation);
+    tick.step_s = step_s;
+    tick.step = nullptr;
+    if (tick.device != nullptr) tick.device = &between;
+    effects_->before_step(tick);
+    last_step_ = world_->step();
+    tick.step = &last_step_;
+    effects_->after_step(tick);
+    sum.add(last_step_);
+  }
+  last_step_ = sum;
+  tick.step_s = period_s_;
+  if (tick.device != nullptr) tick.device = &state_;
+  world_->set_step(period_s_);
+}
+
 void Renderer::tick(std::int64_t now_ns, TickRecord& record) noexcept {
   const std::uint64_t allocated = allocations_ != nullptr ? allocations_() : 0;
+  before_ = state_;
   if (hand_) read_device(now_ns);
   TickView tick = view(now_ns);
-  effects_->before_step(tick);
-  last_step_ = world_->step();
+  step_world(tick);
   const ode::StepSummary& step = last_step_;
-  tick.step = &step;
-  effects_->after_step(tick);
   const ode::Wrench on_hand = effects_->on_hand(tick);
   copy(step, record);
   contacts_left_out_ += step.contacts_left_out;

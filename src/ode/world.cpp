@@ -15,20 +15,20 @@
 #include "ode/coupling_joint.hpp"
 #include "ode/mass_properties.hpp"
 #include "ode/vectors.hpp"
+#include "ode/world_options.hpp"
 
 namespace odds::ode {
 namespace {
 
 constexpr unsigned long fixed_bit = 1;
 constexpr unsigned long dynamic_bit = 2;
-constexpr int most_contacts_per_pair = 8;  // the geom's own limit
 // Depths and lever arms beyond this overflow in ODE's solver, which then ends the program.
 constexpr double farthest_m = 1e6;
 constexpr double rigid_within = 1e-6;  // of a pose given from outside: R^T R - I
 
 std::atomic<std::uint64_t> solver_messages{0};
 
-// ODE writes to stderr where the solver meets redundant contacts; within a tick that would be a system call.
+// ODE writes to stderr where contacts are redundant; within a tick that would be a system call.
 void count_message(int, const char*, va_list) { solver_messages.fetch_add(1, std::memory_order_relaxed); }
 
 // Geoms know their place in the list of bodies.
@@ -44,25 +44,6 @@ struct Body {
   std::unique_ptr<CouplingJoint> coupling;
   BodyState last_good;
 };
-
-std::optional<Error> check(const WorldOptions& o) {
-  const auto bad = [](const char* what, const char* remedy) { return Error{"world", "", what, remedy}; };
-  if (!(o.step_s > 0.0) || !std::isfinite(o.step_s))
-    return bad("the step is not a positive time", "give seconds above zero");
-  if (!o.gravity_m_per_s2.allFinite()) return bad("gravity is not finite", "give three finite numbers");
-  if (!(o.contact.stiffness_n_per_m > 0.0) || !(o.contact.damping_ns_per_m >= 0.0)) {
-    return bad("the contact's stiffness or damping is out of range",
-               "give a stiffness above zero, a damping of at least zero");
-  }
-  if (!(o.contact.friction >= 0.0)) return bad("the friction coefficient is negative", "give at least zero");
-  if (o.query.max_contacts < 0 || o.query.max_contacts > most_contacts_per_pair) {
-    return bad("the contacts of a pair are out of range", "give 0 to 8");
-  }
-  if (o.max_contacts_per_step < 1 || o.max_contacts_per_step > 1024) {
-    return bad("the contacts of a step are out of range", "give 1 to 1024");
-  }
-  return std::nullopt;
-}
 
 }  // namespace
 
@@ -491,6 +472,12 @@ void World::set_gravity(const Vec3& g) noexcept {
 
 void World::set_damping(const Damping& damping) noexcept {
   implementation_->options.damping = damping;
+  implementation_->apply_damping();
+}
+
+void World::set_step(double step_s) noexcept {
+  if (!(step_s > 0.0) || !std::isfinite(step_s)) return;
+  implementation_->options.step_s = step_s;
   implementation_->apply_damping();
 }
 

@@ -71,6 +71,13 @@ std::optional<Error> read_physics(const Settings& settings, Scene& scene) {
     reader.reject("iterations", "the exact solver does not iterate",
                   "add solver = \"iterative\", or remove 'iterations'");
   }
+  if (reader.integer("max_contacts", 1, 1024, number)) scene.max_contacts = static_cast<std::uint32_t>(number);
+  reader.number("substep_way_m", Range::positive(), scene.substep_way_m);
+  if (reader.integer("most_substeps", 2, 64, number)) scene.most_substeps = static_cast<std::uint32_t>(number);
+  if (reader.has("substep_way_m") != reader.has("most_substeps")) {
+    reader.reject(reader.has("substep_way_m") ? "substep_way_m" : "most_substeps",
+                  "'substep_way_m' and 'most_substeps' belong together", "give both, or neither");
+  }
   reader.number("max_speed_m_per_s", Range::positive(), scene.max_speed_m_per_s);
   reader.number("max_spin_rad_per_s", Range::positive(), scene.max_spin_rad_per_s);
   return reader.finish();
@@ -305,6 +312,7 @@ ode::WorldOptions Scene::world_options(const haptics::EffectSet& asked) const {
   options.query = query;
   options.solver = solver;
   options.iterations = solver_iterations;
+  options.max_contacts_per_step = max_contacts;
   options.max_speed_m_per_s = max_speed_m_per_s;
   options.max_spin_rad_per_s = max_spin_rad_per_s;
   asked.configure(options);

@@ -96,6 +96,7 @@ std::optional<Error> Simulation::load() {
     return error;
   }
   effects_->bind(*world_);
+  renderer_->set_substeps({scene_.substep_way_m, scene_.most_substeps});
   if (!renderer_->begin()) {
     return Error{scene_.file, scene_.device->place.text(),
                  fmt::format("the device '{}' gives no position: {}", scene_.device->name, device_->last_error()),

@@ -213,6 +213,46 @@ TEST(Simulation, ThePegOfTheDemoFindsItsHole) {
   EXPECT_LT(largest_force(outcome), 3.0);
 }
 
+TEST(Simulation, SubStepsStopATooFastToolAtAThinPlate) {
+  // A ball of 4 mm is thrown at a plate of 1 mm at 8 m/s: 8 mm in a tick.
+  const auto depth_reached = [](const std::string& physics) {
+    const auto simulation = simulated("[physics]\nmax_speed_m_per_s = 20\n" + physics +
+                                      "[[mesh]]\nname = \"plate\"\nfile = \"made:box:x=0.2,y=0.2,z=0.001\"\n"
+                                      "[[mesh]]\nname = \"ball\"\nfile = \"made:icosphere:radius=0.002\"\n"
+                                      "[[body]]\nname = \"plate\"\nmesh = \"plate\"\n[[body]]\nname = \"ball\"\nmesh = "
+                                      "\"ball\"\nmotion = \"dynamic\"\n"
+                                      "mass_kg = 0.001\nposition_m = [0, 0, "
+                                      "0.0345]\n[effects.contact]\nstiffness_n_per_m = 1e6\ndamping_ns_per_m = 10\n"
+                                      "max_correcting_velocity_m_per_s = 0.1\n");
+    simulation->world().set_state({1}, {{Mat3::Identity(), Vec3(0, 0, 0.0345)}, Vec3(0, 0, -8.0), Vec3::Zero()});
+    double lowest = 1.0;
+    std::uint32_t most_steps = 0;
+    for (std::int64_t i = 0; i < 20; ++i) {
+      haptics::TickRecord record;
+      simulation->renderer().tick(i * 1'000'000, record);
+      lowest = std::min(lowest, simulation->world().state({1}).pose.translation.z());
+      most_steps = std::max(most_steps, simulation->renderer().last_step().solver_calls);
+    }
+    return std::pair{lowest, most_steps};
+  };
+  const auto [through, one] = depth_reached("");
+  EXPECT_LT(through, -0.01);
+  EXPECT_EQ(one, 1U);
+  const auto [stopped, steps] = depth_reached("substep_way_m = 0.0005\nmost_substeps = 32\n");
+  EXPECT_GT(stopped, 0.0);
+  EXPECT_EQ(steps, 16U);
+}
+
+TEST(Simulation, ASlowToolTakesOneStepATick) {
+  const auto simulation =
+      simulated("[physics]\nsubstep_way_m = 0.001\nmost_substeps = 8\n" + world + scripted + effects);
+  for (std::int64_t i = 0; i < 300; ++i) {
+    haptics::TickRecord record;
+    simulation->renderer().tick(i * 1'000'000, record);
+    ASSERT_EQ(simulation->renderer().last_step().solver_calls, 1U) << i;
+  }
+}
+
 TEST(Explain, SaysWhichEffectsAreOnAndWhichLineAsked) {
   const auto explanation = explain(scene(world + scripted + effects), 20);
   ASSERT_TRUE(explanation.ok()) << explanation.error().message();

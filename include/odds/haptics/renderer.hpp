@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "odds/haptics/device.hpp"
@@ -20,6 +21,13 @@ struct Hand {
   SafetyLimits limits;
 };
 
+/// Steps of the world within one tick. A tick takes as many as the fastest body needs to move no farther than `way_m`
+/// in each, at most `most`; a body that creeps costs one.
+struct SubSteps {
+  double way_m = std::numeric_limits<double>::infinity();  ///< > 0; infinity: always one step
+  std::uint32_t most = 1;                                  ///< >= 1
+};
+
 /// Counts allocations of the calling thread since it began; null: nobody counts.
 using AllocationCount = std::uint64_t (*)() noexcept;
 
@@ -30,6 +38,8 @@ class Renderer {
   /// World and effects outlive the renderer. The effects are connected with the world by begin().
   Renderer(ode::World& world, const std::optional<Hand>& hand, EffectSet& effects,
            AllocationCount allocations = nullptr);
+
+  void set_substeps(const SubSteps& substeps) noexcept { substeps_ = substeps; }
 
   /// Puts the tool where the device is, at rest, as at time 0, and begins all counts anew. False if the device gives no
   /// state.
@@ -64,6 +74,8 @@ class Renderer {
   void read_device(std::int64_t now_ns) noexcept;
   void write_device(std::int64_t now_ns, const ode::Wrench& on_hand, TickRecord& record) noexcept;
   [[nodiscard]] TickView view(std::int64_t now_ns) noexcept;
+  [[nodiscard]] std::uint32_t steps_needed() const noexcept;
+  void step_world(TickView& tick) noexcept;
 
   ode::World* world_;
   std::optional<Hand> hand_;
@@ -71,6 +83,9 @@ class Renderer {
   std::optional<Safety> safety_;
   PassivityObserver energy_;
   ode::StepSummary last_step_;
+  SubSteps substeps_;
+  double period_s_ = 0.0;
+  DeviceState before_;  // at the last tick
   AllocationCount allocations_;
   DeviceState state_;
   std::int64_t fresh_ns_ = 0;  // when the state was last fresh

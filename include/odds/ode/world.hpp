@@ -133,6 +133,9 @@ struct StepSummary {
   std::uint32_t bodies_slowed = 0;  ///< held to the greatest speed
   std::uint32_t bodies_recovered =
       0;  ///< their state was not finite any more; put back to where they were last, at rest
+
+  /// Several steps as one: what is a sum adds up; contacts, depth and overshoot keep the largest.
+  void add(const StepSummary& next) noexcept;
 };
 
 /// Bodies, contacts and time. Set-up functions allocate and may fail; after prepare() nothing does. One thread at a
@@ -179,6 +182,8 @@ class World {
   void set_contact(const ContactModel& contact) noexcept;
   void set_gravity(const Vec3& gravity_m_per_s2) noexcept;
   void set_damping(const Damping& damping) noexcept;
+  /// Length of the next steps, seconds. Ignored unless positive and finite.
+  void set_step(double step_s) noexcept;
   [[nodiscard]] const WorldOptions& options() const noexcept;
 
  private:

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -79,6 +80,9 @@ struct Scene {
   volume::Kind volume = volume::Kind::obb;
   ode::Solver solver = ode::Solver::exact;
   int solver_iterations = 20;
+  std::uint32_t max_contacts = 64;  ///< of a step, all pairs together
+  double substep_way_m = std::numeric_limits<double>::infinity();
+  std::uint32_t most_substeps = 1;
   double max_speed_m_per_s = 20.0;
   double max_spin_rad_per_s = 200.0;
   std::vector<Mesh> meshes;

@@ -81,6 +81,8 @@ class Simulation {
   [[nodiscard]] haptics::Renderer& renderer() noexcept { return *renderer_; }
   /// The body that follows the device, if there is one.
   [[nodiscard]] std::optional<ode::BodyId> tool() const noexcept { return tool_; }
+  /// Null without one. For programs that call renderer().tick themselves; run() switches its forces on and off.
+  [[nodiscard]] haptics::Device* device() noexcept { return device_.get(); }
   [[nodiscard]] haptics::EffectSet& effects() noexcept { return *effects_; }
 
  private:

@@ -1,0 +1,27 @@
+// Ranges of a world's options.
+#include "ode/world_options.hpp"
+
+#include <cmath>
+
+namespace odds::ode {
+
+std::optional<Error> check(const WorldOptions& o) {
+  const auto bad = [](const char* what, const char* remedy) { return Error{"world", "", what, remedy}; };
+  if (!(o.step_s > 0.0) || !std::isfinite(o.step_s))
+    return bad("the step is not a positive time", "give seconds above zero");
+  if (!o.gravity_m_per_s2.allFinite()) return bad("gravity is not finite", "give three finite numbers");
+  if (!(o.contact.stiffness_n_per_m > 0.0) || !(o.contact.damping_ns_per_m >= 0.0)) {
+    return bad("the contact's stiffness or damping is out of range",
+               "give a stiffness above zero, a damping of at least zero");
+  }
+  if (!(o.contact.friction >= 0.0)) return bad("the friction coefficient is negative", "give at least zero");
+  if (o.query.max_contacts < 0 || o.query.max_contacts > most_contacts_per_pair) {
+    return bad("the contacts of a pair are out of range", "give 0 to 8");
+  }
+  if (o.max_contacts_per_step < 1 || o.max_contacts_per_step > 1024) {
+    return bad("the contacts of a step are out of range", "give 1 to 1024");
+  }
+  return std::nullopt;
+}
+
+}  // namespace odds::ode

@@ -1,0 +1,80 @@
+// Runs all hard cases, prints one line for each run, writes one page. Exit status 1 if something does not hold.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "hard_cases/page.hpp"
+#include "hard_cases/run_case.hpp"
+#include "hard_cases/troubled_device.hpp"
+
+namespace odds::hard_cases {
+namespace {
+
+void print(const Outcome& outcome) {
+  for (const Figures& f : outcome.runs) {
+    fmt::print(
+        "{:<20} {:<6} {:5} ticks {:6.2f} s  largest {:8.3g} N  given {:8.2g} J  deep missed {} of {}  force {}  angle "
+        "{}  contacts {}  {}\n",
+        outcome.hard_case->name, f.budget, f.ticks, f.wall_s, f.largest_force_n, f.given_j, f.missed_deep, f.deep,
+        f.force_error_p95 ? fmt::format("{:.1f} %", 100.0 * *f.force_error_p95) : "-",
+        f.angle_error_p95_deg ? fmt::format("{:.1f} deg", *f.angle_error_p95_deg) : "-", f.most_contacts,
+        f.broken.empty() ? "holds" : "BROKEN");
+    for (const std::string& what : f.broken) fmt::print("    {}\n", what);
+  }
+}
+
+int run(const std::string& folder, const std::string& only, double share) {
+  std::filesystem::create_directories(folder);
+  register_troubled_device();
+  const std::vector<HardCase> cases = all_cases(folder);
+  const auto began = std::chrono::steady_clock::now();
+  std::vector<Outcome> outcomes;
+  bool all_hold = true;
+  for (const HardCase& hard_case : cases) {
+    if (!only.empty() && hard_case.name != only) continue;
+    Result<Outcome> outcome = run_case(hard_case, folder, share);
+    if (!outcome) {
+      fmt::print(stderr, "error: {}: {}\n", hard_case.name, outcome.error().message());
+      return 1;
+    }
+    print(outcome.value());
+    for (const Figures& f : outcome.value().runs) all_hold = all_hold && f.broken.empty();
+    outcomes.push_back(std::move(outcome).value());
+  }
+  if (outcomes.empty()) {
+    fmt::print(stderr, "error: there is no case '{}'\n", only);
+    return 2;
+  }
+  const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  std::ofstream(folder + "/hard_cases.html") << page_of(outcomes, took_s);
+  fmt::print("page: {}/hard_cases.html\n", folder);
+  return all_hold ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace odds::hard_cases
+
+int main(int argc, char** argv) {
+  std::string folder = "hard_cases";
+  std::string only;
+  double share = 1.0;
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    if (argument == "--out" && i + 1 < argc) {
+      folder = argv[++i];
+    } else if (argument == "--only" && i + 1 < argc) {
+      only = argv[++i];
+    } else if (argument == "--share" && i + 1 < argc) {
+      share = std::atof(argv[++i]);
+    } else {
+      fmt::print(stderr, "usage: odds_hard_cases [--out FOLDER] [--only CASE] [--share OF_THE_SECONDS]\n");
+      return 2;
+    }
+  }
+  return odds::hard_cases::run(folder, only, share);
+}

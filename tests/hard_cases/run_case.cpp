@@ -1,0 +1,201 @@
+// The loop by hand: with ticks left out, clocks that jump, and an exact query beside every tick.
+#include "hard_cases/run_case.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "hard_cases/compare.hpp"
+#include "odds/math/random.hpp"
+#include "odds/mesh/made/by_name.hpp"
+#include "odds/mesh/read.hpp"
+#include "odds/query/pair.hpp"
+#include "odds/scene/simulation.hpp"
+
+namespace odds::hard_cases {
+namespace {
+
+using scene::Scene;
+using scene::Simulation;
+
+struct Budget {
+  const char* name;
+  std::uint64_t work_units;  // 0: no limit
+};
+constexpr Budget budgets[] = {{"none", 0}, {"50 us", 1000}, {"1 us", 20}};
+
+/// The same meshes without a budget: whether the tool overlaps something, and how deeply.
+class Oracle {
+ public:
+  static Result<Oracle> make(const Scene& scene, const std::string& folder) {
+    Oracle oracle;
+    std::vector<std::shared_ptr<const query::Shape>> shapes;
+    for (const scene::Mesh& mesh : scene.meshes) {
+      auto read = mesh.file.starts_with(mesh::made::prefix) ? mesh::made::make_shape(mesh.file)
+                                                            : mesh::read(folder + "/" + mesh.file);
+      if (!read) return read.error();
+      auto shape = query::Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(read).value()));
+      if (!shape) return shape.error();
+      shapes.push_back(std::move(shape).value());
+    }
+    for (std::uint32_t i = 0; i < scene.bodies.size(); ++i) {
+      if (scene.bodies[i].follows_device) oracle.tool_ = i;
+    }
+    if (!oracle.tool_) return oracle;
+    for (std::uint32_t i = 0; i < scene.bodies.size(); ++i) {
+      if (i == *oracle.tool_) continue;
+      auto pair = query::Pair::make(shapes[scene.bodies[i].mesh], shapes[scene.bodies[*oracle.tool_].mesh]);
+      if (!pair) return pair.error();
+      oracle.pairs_.push_back({i, std::move(pair).value()});
+    }
+    return oracle;
+  }
+  double depth_m(const ode::World& world) {
+    double deepest = 0.0;
+    for (auto& [body, pair] : pairs_) {
+      const math::Pose pose = world.state({body}).pose.inverse() * world.state({*tool_}).pose;
+      for (const query::Contact& contact : pair.run(pose, {}).contacts) deepest = std::max(deepest, contact.depth);
+    }
+    return deepest;
+  }
+
+ private:
+  std::optional<std::uint32_t> tool_;
+  std::vector<std::pair<std::uint32_t, query::Pair>> pairs_;
+};
+
+Result<Scene> scene_of(const HardCase& hard_case, const Budget& budget, double seconds, const std::string& folder) {
+  const std::string query = budget.work_units == 0 ? "" : fmt::format("[query]\nwork_units = {}\n", budget.work_units);
+  return scene::parse_scene(
+      fmt::format("format = \"odds.scene/1\"\n[loop]\nseconds = {}\n{}{}", seconds, query, hard_case.scene),
+      hard_case.name + ".toml", folder);
+}
+
+/// The next tick's time by the loop's clock, and how it came there.
+std::int64_t next_ns(Trouble trouble, std::uint64_t tick, std::int64_t now_ns, std::int64_t period_ns) {
+  switch (trouble) {
+    case Trouble::none:
+      break;
+    case Trouble::missed_ticks:
+      if (tick == 450 || tick == 600) return now_ns + 41 * period_ns;
+      if ((tick * 0x9E3779B97F4A7C15ULL >> 32U) % 10 == 0) return now_ns + 2 * period_ns;
+      break;
+    case Trouble::clock_jumps:
+      if (tick == 300 || tick == 450) return now_ns + 300'000'000;
+      if (tick >= 500 && tick < 550) return now_ns;
+      break;
+  }
+  return now_ns + period_ns;
+}
+
+bool finite(const haptics::TickRecord& t) {
+  double sum = t.observed_energy_j + t.max_depth_m + t.probability;
+  for (const double x : t.force_n) sum += x;
+  for (const double x : t.torque_nm) sum += x;
+  for (const double x : t.tool_position_m) sum += x;
+  for (const double x : t.tool_orientation_wxyz) sum += x;
+  return std::isfinite(sum);
+}
+
+void note(Figures& figures, const haptics::TickRecord& record, double exact_depth_m, double deep_m, std::int64_t now_ns,
+          int& missed_in_row) {
+  Sample sample;
+  sample.t_s = 1e-9 * static_cast<double>(now_ns);
+  std::copy(record.force_n.begin(), record.force_n.end(), sample.force_n);
+  sample.energy_j = record.observed_energy_j;
+  sample.depth_m = record.max_depth_m;
+  sample.contacts = record.contacts;
+  sample.overlaps_deeply = exact_depth_m > deep_m;
+  ++figures.ticks;
+  if (!finite(record)) ++figures.not_finite;
+  figures.largest_force_n =
+      std::fmax(figures.largest_force_n, std::hypot(sample.force_n[0], sample.force_n[1], sample.force_n[2]));
+  figures.given_j = std::fmax(figures.given_j, -record.observed_energy_j);
+  figures.most_contacts = std::max(figures.most_contacts, record.contacts);
+  figures.deepest_m = std::fmax(figures.deepest_m, record.max_depth_m);
+  if ((record.safety & ~std::uint32_t{haptics::safety_force_rise}) != 0) ++figures.safety_ticks;
+  if (sample.overlaps_deeply) ++figures.deep;
+  missed_in_row = sample.overlaps_deeply && record.contacts == 0 ? missed_in_row + 1 : 0;
+  if (missed_in_row >= 2) ++figures.missed_deep;
+  figures.samples.push_back(sample);
+}
+
+Result<Figures> run_once(const HardCase& hard_case, const Budget& budget, const std::string& folder, double share) {
+  const double seconds = hard_case.seconds * share;
+  Result<Scene> parsed = scene_of(hard_case, budget, seconds, folder);
+  if (!parsed) return parsed.error();
+  auto oracle = Oracle::make(parsed.value(), folder);
+  if (!oracle) return oracle.error();
+  scene::SimulationOptions options;
+  options.simulated_time = true;
+  auto made = Simulation::make(std::move(parsed).value(), options);
+  if (!made) return made.error();
+  Simulation& simulation = *made.value();
+  if (simulation.device() != nullptr) simulation.device()->enable_forces(true);
+  Figures figures;
+  figures.budget = budget.name;
+  const auto began = std::chrono::steady_clock::now();
+  const std::int64_t period_ns = simulation.scene().loop.period_ns;
+  const auto end_ns = static_cast<std::int64_t>(seconds * 1e9);
+  std::int64_t now_ns = 0;
+  int missed_in_row = 0;
+  for (std::uint64_t tick = 0; now_ns < end_ns; ++tick) {
+    const double exact_depth_m = oracle.value().depth_m(simulation.world());
+    haptics::TickRecord record;
+    simulation.renderer().tick(now_ns, record);
+    note(figures, record, exact_depth_m, hard_case.deep_m, now_ns, missed_in_row);
+    now_ns = next_ns(hard_case.trouble, tick, now_ns, period_ns);
+  }
+  figures.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  figures.failed_reads = simulation.renderer().failed_reads();
+  figures.rescued = simulation.renderer().rescued_steps();
+  figures.left_out = simulation.renderer().contacts_left_out();
+  for (std::uint32_t i = 0; i < simulation.scene().bodies.size(); ++i) {
+    if (simulation.scene().bodies[i].name == hard_case.ends)
+      figures.end_height_m = simulation.world().state({i}).pose.translation.z();
+  }
+  return figures;
+}
+
+void judge(const HardCase& hard_case, Figures& f) {
+  const auto broken = [&](const std::string& what) { f.broken.push_back(what); };
+  if (f.not_finite > 0) broken(fmt::format("{} ticks with numbers that are not finite", f.not_finite));
+  if (f.largest_force_n > hard_case.max_force_n * (1.0 + 1e-9))
+    broken(fmt::format("a force of {:.3g} N, beyond the limit of {} N", f.largest_force_n, hard_case.max_force_n));
+  if (f.given_j > hard_case.given_j)
+    broken(fmt::format("{:.3g} J given to the hand, {:.3g} allowed", f.given_j, hard_case.given_j));
+  if (f.missed_deep > 0)
+    broken(fmt::format("{} ticks without contact in a deep overlap, not the first of their row", f.missed_deep));
+  if (!hard_case.ends.empty() && !(f.end_height_m > hard_case.ends_above_m))
+    broken(
+        fmt::format("'{}' ends at {:.4g} m, below {:.4g} m", hard_case.ends, f.end_height_m, hard_case.ends_above_m));
+  if (f.budget != std::string("50 us") || !hard_case.compares) return;
+  if (f.force_error_p95 && *f.force_error_p95 > 0.07)
+    broken(fmt::format("force off by {:.1f} % at the 95th percentile (7 % allowed)", 100.0 * *f.force_error_p95));
+  if (f.angle_error_p95_deg && *f.angle_error_p95_deg > 18.0)
+    broken(fmt::format("force off by {:.1f} degrees at the 95th percentile (18 allowed)", *f.angle_error_p95_deg));
+  if (f.onset_ticks && std::abs(*f.onset_ticks) > 1) broken(fmt::format("contact begins {} ticks off", *f.onset_ticks));
+  if (f.noise_share && *f.noise_share > 0.01)
+    broken(fmt::format("{:.2f} % added noise (1 % allowed)", 100.0 * *f.noise_share));
+}
+
+}  // namespace
+
+Result<Outcome> run_case(const HardCase& hard_case, const std::string& folder, double share_of_seconds) {
+  Outcome outcome;
+  outcome.hard_case = &hard_case;
+  for (const Budget& budget : budgets) {
+    Result<Figures> figures = run_once(hard_case, budget, folder, share_of_seconds);
+    if (!figures) return figures.error();
+    outcome.runs.push_back(std::move(figures).value());
+  }
+  for (Figures& figures : outcome.runs) {
+    if (hard_case.trouble == Trouble::none) compare(outcome.runs.front(), hard_case.touching_n, figures);
+    judge(hard_case, figures);
+  }
+  return outcome;
+}
+
+}  // namespace odds::hard_cases

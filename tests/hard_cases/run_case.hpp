@@ -1,0 +1,58 @@
+// Runs a hard case and judges it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hard_cases/hard_case.hpp"
+#include "odds/math/error.hpp"
+
+namespace odds::hard_cases {
+
+/// What one run left of a tick.
+struct Sample {
+  double t_s = 0.0;
+  double force_n[3] = {};
+  double energy_j = 0.0;
+  double depth_m = 0.0;
+  bool overlaps_deeply = false;  ///< by an exact query at the same poses
+  std::uint32_t contacts = 0;
+};
+
+/// The figures of one run of a case with one budget.
+struct Figures {
+  std::string budget;  ///< "none", "50 us", "1 us"
+  std::uint64_t ticks = 0;
+  std::uint64_t not_finite = 0;
+  double largest_force_n = 0.0;
+  double given_j = 0.0;  ///< most that the hand has got beyond what it has put in, >= 0
+  std::uint64_t missed_deep =
+      0;                   ///< ticks that are the second or a later one in a row without a contact in a deep overlap
+  std::uint64_t deep = 0;  ///< ticks with a deep overlap
+  std::uint64_t failed_reads = 0;
+  std::uint64_t rescued = 0;
+  std::uint64_t left_out = 0;
+  std::uint64_t safety_ticks = 0;  ///< in which a safety stage changed the force
+  std::uint32_t most_contacts = 0;
+  double deepest_m = 0.0;
+  double end_height_m = 0.0;              ///< of the body that the case names
+  std::optional<double> force_error_p95;  ///< share of the exact run's force
+  std::optional<double> angle_error_p95_deg;
+  std::optional<int> onset_ticks;     ///< between the first contact of this run and that of the exact one
+  std::optional<double> noise_share;  ///< RMS of the change from tick to tick beyond the exact run's, of its mean force
+  double wall_s = 0.0;
+  std::vector<Sample> samples;
+  std::vector<std::string> broken;  ///< what did not hold
+};
+
+struct Outcome {
+  const HardCase* hard_case = nullptr;
+  std::vector<Figures> runs;  ///< the exact one first
+};
+
+/// Runs without a limit, with 1000 work units (50 us) and with 20 (1 us).
+Result<Outcome> run_case(const HardCase& hard_case, const std::string& folder, double share_of_seconds);
+
+}  // namespace odds::hard_cases
