@@ -23,8 +23,11 @@ void print(const Outcome& outcome) {
         outcome.hard_case->name, f.budget, f.ticks, f.wall_s, f.largest_force_n, f.given_j, f.missed_deep, f.deep,
         f.force_error_p95 ? fmt::format("{:.1f} %", 100.0 * *f.force_error_p95) : "-",
         f.angle_error_p95_deg ? fmt::format("{:.1f} deg", *f.angle_error_p95_deg) : "-", f.most_contacts,
-        f.broken.empty() ? "holds" : "BROKEN");
+        !f.broken.empty() ? "BROKEN"
+        : !f.weak.empty() ? "weak"
+                          : "holds");
     for (const std::string& what : f.broken) fmt::print("    {}\n", what);
+    for (const std::string& what : f.weak) fmt::print("    {}\n", what);
   }
 }
 

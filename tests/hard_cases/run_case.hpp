@@ -45,6 +45,7 @@ struct Figures {
   double wall_s = 0.0;
   std::vector<Sample> samples;
   std::vector<std::string> broken;  ///< what did not hold
+  std::vector<std::string> weak;    ///< what a budget of 1 us cannot give: safe, but not as it should feel
 };
 
 struct Outcome {

@@ -84,9 +84,9 @@ class Renderer {
   PassivityObserver energy_;
   ode::StepSummary last_step_;
   SubSteps substeps_;
-  double period_s_ = 0.0;
   DeviceState before_;  // at the last tick
   AllocationCount allocations_;
+  double period_s_;
   DeviceState state_;
   std::int64_t fresh_ns_ = 0;  // when the state was last fresh
   std::uint64_t failed_reads_ = 0;
