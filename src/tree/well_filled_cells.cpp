@@ -1,127 +1,113 @@
-// Cutting triangles by the planes of a regular grid, and the areas of the pieces.
+// The area of a triangle in each cell of a regular grid.
 #include "odds/tree/well_filled_cells.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <utility>
 
 #include "odds/math/tolerances.hpp"
 
 namespace odds::tree {
 namespace {
 
-// A triangle cut by at most six planes has at most nine corners.
-struct Polygon {
-  static constexpr int kMaxCorners = 9;
-  double corner[kMaxCorners + 1][3];
-  int count = 0;
-
-  void append(const double* point) noexcept {
-    // Rounding can make a sliver slightly non-convex and yield one corner more per cut than geometry allows; such a
-    // corner lies on its neighbour and may be dropped.
-    if (count > kMaxCorners) return;
-    for (int i = 0; i < 3; ++i) corner[count][i] = point[i];
-    ++count;
-  }
-};
-
 // Cell index of a grid coordinate; what lies outside belongs to the outermost cell. Safe for every value, NaN included.
 int cell_of(double coordinate) noexcept {
-  if (!(coordinate >= 1.0)) return 0;
-  return coordinate < kCellsPerAxis - 1 ? static_cast<int>(coordinate) : kCellsPerAxis - 1;
+  return static_cast<int>(std::min(kCellsPerAxis - 1.0, std::max(0.0, coordinate)));
 }
 
-struct Range {
-  int first;
-  int last;
+// A corner in grid units: `w` along the axis of projection, `u` and `v` along the other two.
+struct Point {
+  double u;
+  double v;
+  double w;
 };
 
-Range cells_along(const Polygon& polygon, int axis) noexcept {
-  double low = polygon.corner[0][axis];
-  double high = low;
-  for (int i = 1; i < polygon.count; ++i) {
-    low = std::min(low, polygon.corner[i][axis]);
-    high = std::max(high, polygon.corner[i][axis]);
-  }
-  return {cell_of(low), cell_of(high)};
-}
-
-// Both parts of a convex polygon on the two sides of the plane x_axis = plane.
-void cut(const Polygon& polygon, int axis, double plane, Polygon& below, Polygon& above) noexcept {
-  below.count = 0;
-  above.count = 0;
-  const double* previous = polygon.corner[polygon.count - 1];
-  double previous_height = previous[axis] - plane;
-  for (int i = 0; i < polygon.count; ++i) {
-    const double* current = polygon.corner[i];
-    const double height = current[axis] - plane;
-    if ((height < 0.0 && previous_height > 0.0) || (height > 0.0 && previous_height < 0.0)) {
-      const double t = previous_height / (previous_height - height);
-      double crossing[3];
-      for (int k = 0; k < 3; ++k) crossing[k] = previous[k] + t * (current[k] - previous[k]);
-      crossing[axis] = plane;
-      below.append(crossing);
-      above.append(crossing);
-    }
-    if (height <= 0.0) below.append(current);
-    if (height >= 0.0) above.append(current);
-    previous = current;
-    previous_height = height;
-  }
-}
-
-// Area of the projection along `axis`, in grid units.
-double projected_area(const Polygon& polygon, int axis) noexcept {
-  const int u = axis == 2 ? 0 : axis + 1;
-  const int v = axis == 0 ? 2 : axis - 1;
-  double twice = 0.0;
-  const double* origin = polygon.corner[0];
-  for (int i = 2; i < polygon.count; ++i) {
-    const double* p = polygon.corner[i - 1];
-    const double* q = polygon.corner[i];
-    twice += (p[u] - origin[u]) * (q[v] - origin[v]) - (p[v] - origin[v]) * (q[u] - origin[u]);
-  }
-  return 0.5 * std::fabs(twice);
-}
-
-// Spreads one triangle over the cells: slabs along x, rods along y, cells along z, each cut once.
-class Slicer {
- public:
-  // metres^2 per unit of area projected along `projection`.
-  Slicer(double* cells, int projection, double scale) noexcept
-      : cells_(cells), projection_(projection), scale_(scale) {}
-
-  template <int Axis>
-  void slice(const Polygon& polygon, std::size_t base) noexcept {
-    if (polygon.count < 3) return;
-    const Range range = cells_along(polygon, Axis);
-    Polygon spare[2];
-    Polygon piece;
-    const Polygon* rest = &polygon;
-    for (int k = range.first; k < range.last; ++k) {
-      Polygon& above = spare[k & 1];
-      cut(*rest, Axis, k + 1, piece, above);
-      descend<Axis>(piece, base, k);
-      rest = &above;
-      if (above.count < 3) return;
-    }
-    descend<Axis>(*rest, base, range.last);
+// Where the line low -> high is at a level of w in between.
+struct Side {
+  Side(const Point& low, const Point& high) noexcept
+      : low_(low), u_(high.u - low.u), v_(high.v - low.v), per_w_(1.0 / (high.w - low.w)) {}
+  [[nodiscard]] Point at(double level) const noexcept {
+    const double t = (level - low_.w) * per_w_;
+    return {low_.u + t * u_, low_.v + t * v_, level};
   }
 
  private:
-  template <int Axis>
-  void descend(const Polygon& piece, std::size_t base, int k) noexcept {
-    const std::size_t cell = base * kCellsPerAxis + static_cast<std::size_t>(k);
-    if constexpr (Axis == 2) {
-      if (piece.count >= 3) cells_[cell] += scale_ * projected_area(piece, projection_);
-    } else {
-      slice<Axis + 1>(piece, cell);
+  Point low_;
+  double u_;
+  double v_;
+  double per_w_;
+};
+
+// The places in (0, 1) where a coordinate that runs from `start` by `change` passes from one cell to the next; the one
+// after the last is infinite.
+struct Crossings {
+  Crossings(double start, double end) noexcept {
+    const int first = cell_of(start);
+    const int last = cell_of(end);
+    step = last > first ? 1 : -1;
+    count = std::abs(last - first);
+    const double per_change = 1.0 / (end - start);
+    const double border = (last > first ? first + 1 : first) - start;
+    for (int k = 0; k < kCellsPerAxis; ++k) place[k] = (border + k * step) * per_change;  // more than needed: no branch
+    place[count] = std::numeric_limits<double>::infinity();
+  }
+  int step;
+  int count;
+  double place[kCellsPerAxis];
+};
+
+int index_of(const Point& point) noexcept {
+  return (cell_of(point.w) * kCellsPerAxis + cell_of(point.v)) * kCellsPerAxis + cell_of(point.u);
+}
+
+// Calls visit(cell, climb, share) for each piece of an edge within one cell: how far the edge climbs along v in it, and
+// the area, projected along w, between it and the cell's far border along u. Cells are numbered in layers along w, rows
+// along v, columns along u.
+template <class Visit>
+void walk(const Point& from, const Point& to, const Visit& visit) noexcept {
+  const double run = to.u - from.u;
+  const double rise = to.v - from.v;
+  double border = cell_of(from.u) + 1 - from.u;
+  double done = 0.0;
+  int cell = index_of(from);
+  const auto go_to = [&](double place) {
+    const double climb = (place - done) * rise;
+    visit(static_cast<std::size_t>(cell), climb, climb * (border - 0.5 * (place + done) * run));
+    done = place;
+  };
+  if (index_of(to) != cell) {
+    const Crossings along_u(from.u, to.u);
+    const Crossings along_v(from.v, to.v);
+    const Crossings along_w(from.w, to.w);
+    const double* u = along_u.place;
+    const double* v = along_v.place;
+    const double* w = along_w.place;
+    for (int steps = along_u.count + along_v.count + along_w.count; steps > 0; --steps) {
+      const double place = std::min(std::min(*u, *v), *w);
+      const int is_u = *u == place ? 1 : 0;
+      const int is_v = *v == place ? 1 - is_u : 0;
+      const int is_w = 1 - is_u - is_v;
+      go_to(place);
+      border += is_u * along_u.step;
+      cell += is_u * along_u.step + kCellsPerAxis * (is_v * along_v.step + kCellsPerAxis * is_w * along_w.step);
+      u += is_u;
+      v += is_v;
+      w += is_w;
     }
   }
+  go_to(1.0);
+}
 
-  double* cells_;
-  int projection_;
-  double scale_;
-};
+// Share of a triangle's area below `level`; its corners' heights in ascending order, low < level < high.
+double share_below(double low, double middle, double high, double level) noexcept {
+  if (level <= middle) return (level - low) * (level - low) / ((high - low) * (middle - low));
+  return 1.0 - (high - level) * (high - level) / ((high - low) * (high - middle));
+}
+
+constexpr std::size_t stride_of[3] = {kCellsPerAxis * kCellsPerAxis, kCellsPerAxis, 1};
 
 }  // namespace
 
@@ -133,7 +119,6 @@ double max_section_area(const Vec3& sides) noexcept {
 
 void CellCounter::begin(const Vec3& center, const Mat3& axes, const Vec3& half_extents) noexcept {
   center_ = center;
-  to_box_ = axes.transpose();
   area_.fill(0.0);
   const double largest = half_extents.maxCoeff();
   const double thinnest = largest > 0.0 ? tolerances::thinnest_extent * largest : 1.0;
@@ -142,37 +127,125 @@ void CellCounter::begin(const Vec3& center, const Mat3& axes, const Vec3& half_e
     const bool widened = half_extents[i] < thinnest;
     const double half_extent = widened ? thinnest : half_extents[i];
     cell_sides[i] = 2.0 * half_extent / kCellsPerAxis;
-    cells_per_metre_[i] = kCellsPerAxis / (2.0 * half_extent);
+    to_grid_.row(i) = kCellsPerAxis / (2.0 * half_extent) * axes.col(i).transpose();
     middle_[i] = 0.5 * kCellsPerAxis + (widened ? 0.5 : 0.0);
   }
   max_area_ = max_section_area(cell_sides);
 }
 
 void CellCounter::add(const Vec3& a, const Vec3& b, const Vec3& c) noexcept {
-  const Vec3 corner[3] = {to_box_ * (a - center_), to_box_ * (b - center_), to_box_ * (c - center_)};
-  const Vec3 normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
-  const double area = 0.5 * normal.norm();
+  const double area = 0.5 * (b - a).cross(c - a).norm();
   if (!(area > 0.0) || !std::isfinite(area)) return;
+  const Vec3 grid[3] = {to_grid_ * (a - center_) + middle_, to_grid_ * (b - center_) + middle_,
+                        to_grid_ * (c - center_) + middle_};
+  std::size_t first_cell = 0;
+  int crossed_axes = 0;
+  int crossed_axis = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int cell = cell_of(std::min({grid[0][axis], grid[1][axis], grid[2][axis]}));
+    first_cell += static_cast<std::size_t>(cell) * stride_of[axis];
+    if (cell_of(std::max({grid[0][axis], grid[1][axis], grid[2][axis]})) != cell) {
+      ++crossed_axes;
+      crossed_axis = axis;
+    }
+  }
+  if (crossed_axes == 0) {
+    area_[first_cell] += area;
+  } else if (crossed_axes == 1) {
+    add_along(crossed_axis, grid[0][crossed_axis], grid[1][crossed_axis], grid[2][crossed_axis], first_cell, area);
+  } else {
+    add_across(grid, area);
+  }
+}
 
-  Polygon triangle;
-  for (const Vec3& x : corner) {
-    const Vec3 grid = x.cwiseProduct(cells_per_metre_) + middle_;
-    triangle.append(grid.data());
+void CellCounter::add_along(int axis, double a, double b, double c, std::size_t cell, double area) noexcept {
+  const double low = std::min({a, b, c});
+  const double high = std::max({a, b, c});
+  const double middle = std::max(std::min(a, b), std::min(std::max(a, b), c));
+  const int last = cell_of(high);
+  double below = 0.0;
+  for (int k = cell_of(low); k < last; ++k, cell += stride_of[axis]) {
+    const double share = share_below(low, middle, high, k + 1);
+    area_[cell] += std::max(0.0, share - below) * area;
+    below = share;
   }
-  Range range[3];
-  for (int axis = 0; axis < 3; ++axis) range[axis] = cells_along(triangle, axis);
-  if (range[0].first == range[0].last && range[1].first == range[1].last && range[2].first == range[2].last) {
-    area_[static_cast<std::size_t>((range[0].first * kCellsPerAxis + range[1].first) * kCellsPerAxis +
-                                   range[2].first)] += area;
-    return;
+  area_[cell] += std::max(0.0, 1.0 - below) * area;
+}
+
+// The triangle is cut into layers along one axis, and in each layer the area in every cell is found without making the
+// pieces: it is the sum over the polygon's edges, with sign, of what lies between an edge and the far side of the grid.
+// An edge gives each cell that it crosses the share to its right there, and all cells further right in that row the
+// full height that it climbs in the cell; the latter is carried by a running sum.
+void CellCounter::add_across(const Vec3 (&grid)[3], double area) noexcept {
+  // All pieces lie in one plane: their areas relate to the triangle's as their projections do. The largest projection
+  // loses least, and crosses the fewest layers.
+  const Vec3 normal = (grid[1] - grid[0]).cross(grid[2] - grid[0]);
+  if (!normal.allFinite()) return;  // too far off to be counted in cells so small
+  int w = 0;
+  normal.cwiseAbs().maxCoeff(&w);
+  const int u = w == 2 ? 1 : 2;
+  const int v = w == 0 ? 1 : 0;
+  Point low{grid[0][u], grid[0][v], grid[0][w]};
+  Point middle{grid[1][u], grid[1][v], grid[1][w]};
+  Point high{grid[2][u], grid[2][v], grid[2][w]};
+  if (middle.w < low.w) std::swap(low, middle);
+  if (high.w < low.w) std::swap(low, high);
+  if (high.w < middle.w) std::swap(middle, high);
+  // The edges are summed in the order low, high, middle; a sum over edges is minus the area in counter-clockwise order.
+  const double twice = (middle.u - low.u) * (high.v - low.v) - (high.u - low.u) * (middle.v - low.v);
+  if (!(std::fabs(twice) > 0.0)) return;
+
+  const auto add_edge = [this](const Point& from, const Point& to) {
+    walk(from, to, [this](std::size_t cell, double climb, double share) {
+      pieces_[cell].share += share;
+      pieces_[cell].climb += climb;
+      touched_[cell / cells_per_layer] |= std::uint64_t{1} << cell % cells_per_layer;
+    });
+  };
+  add_edge(low, high);
+  add_edge(high, middle);
+  add_edge(middle, low);
+  const Side straight(low, high);
+  const Side lower(low, middle);
+  const Side upper(middle, high);
+  const int first = cell_of(low.w);
+  const int last = cell_of(high.w);
+  for (int k = first; k < last; ++k) {
+    const double level = k + 1;
+    Point from = straight.at(level);
+    Point to = level <= middle.w ? lower.at(level) : upper.at(level);
+    from.w = to.w = k;
+    walk(from, to, [this](std::size_t cell, double climb, double share) {
+      const std::uint64_t bit = std::uint64_t{1} << cell % cells_per_layer;
+      pieces_[cell].share += share;
+      pieces_[cell].climb += climb;
+      touched_[cell / cells_per_layer] |= bit;
+      pieces_[cell + cells_per_layer].share -= share;
+      pieces_[cell + cells_per_layer].climb -= climb;
+      touched_[cell / cells_per_layer + 1] |= bit;
+    });
   }
-  // All pieces lie in one plane: their areas relate to the triangle's as their projections do. The projection along the
-  // largest component of the normal loses least.
-  int projection = 0;
-  normal.cwiseAbs().maxCoeff(&projection);
-  const double whole = projected_area(triangle, projection);
-  if (!(whole > 0.0)) return;
-  Slicer(area_.data(), projection, area / whole).slice<0>(triangle, 0);
+  const std::size_t strides[3] = {stride_of[u], stride_of[v], stride_of[w]};
+  for (int k = first; k <= last; ++k) collect_layer(static_cast<std::size_t>(k), strides, 2.0 * area / twice);
+}
+
+void CellCounter::collect_layer(std::size_t layer, const std::size_t (&strides)[3], double scale) noexcept {
+  const std::uint64_t touched = std::exchange(touched_[layer], 0);
+  for (std::size_t row = 0; row < kCellsPerAxis; ++row) {
+    const auto columns = static_cast<std::uint8_t>(touched >> row * kCellsPerAxis);
+    if (columns == 0) continue;
+    const auto first = static_cast<std::size_t>(std::countr_zero(columns));
+    const auto end = static_cast<std::size_t>(std::bit_width(columns));
+    Piece* pieces = pieces_.data() + layer * cells_per_layer + row * kCellsPerAxis;
+    double* cells = area_.data() + layer * strides[2] + row * strides[1];
+    double height = 0.0;
+    for (std::size_t i = first; i < end; ++i) {
+      // Rounding may leave a trace below zero where there is nothing.
+      cells[i * strides[0]] += std::max(0.0, scale * (height + pieces[i].share));
+      height += pieces[i].climb;
+      pieces[i] = {};
+    }
+  }
 }
 
 std::uint16_t CellCounter::count(double tau) const noexcept {

@@ -166,6 +166,74 @@ TEST(WellFilledCells, AgreesWithSamplingOfTheSurface) {
   EXPECT_LT(difference, 0.04 * cells.total_area());
 }
 
+// What is left of a convex polygon on one side of a plane: sign * (x_axis - offset) <= 0.
+std::vector<Vec3> cut(const std::vector<Vec3>& polygon, int axis, double sign, double offset) {
+  std::vector<Vec3> left;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec3& p = polygon[i];
+    const Vec3& q = polygon[(i + 1) % polygon.size()];
+    const double height_p = sign * (p[axis] - offset);
+    const double height_q = sign * (q[axis] - offset);
+    if (height_p <= 0.0) left.push_back(p);
+    if ((height_p < 0.0) != (height_q < 0.0)) left.push_back(p + height_p / (height_p - height_q) * (q - p));
+  }
+  return left;
+}
+
+double area_in_cell(const Triangle& t, const Vec3& lower, const Vec3& sides) {
+  std::vector<Vec3> polygon(t.begin(), t.end());
+  for (int axis = 0; axis < 3; ++axis) {
+    polygon = cut(polygon, axis, -1.0, lower[axis]);
+    polygon = cut(polygon, axis, 1.0, lower[axis] + sides[axis]);
+  }
+  Vec3 twice = Vec3::Zero();
+  for (std::size_t i = 2; i < polygon.size(); ++i) {
+    twice += (polygon[i - 1] - polygon[0]).cross(polygon[i] - polygon[0]);
+  }
+  return 0.5 * twice.norm();
+}
+
+TEST(WellFilledCells, AgreesWithClippingToEveryCellByItself) {
+  const Vec3 half(1.0, 0.3, 0.05);
+  const Vec3 sides = half / 4.0;
+  for (const double size : {0.02, 0.1, 0.4, 0.9}) {
+    for (Triangle t : random_triangles(23, 40, 1.0 - size, size)) {
+      for (Vec3& corner : t) corner = corner.cwiseProduct(half);
+      if (size > 0.5) t[2][2] = t[1][2] = t[0][2];  // along a layer
+      CellCounter cells;
+      cells.begin(Vec3::Zero(), Mat3::Identity(), half);
+      cells.add(t[0], t[1], t[2]);
+      for (int i = 0; i < 512; ++i) {
+        const Vec3 lower = Vec3(i / 64, i / 8 % 8, i % 8).cwiseProduct(sides) - half;
+        EXPECT_NEAR(cells.area(i / 64, i / 8 % 8, i % 8), area_in_cell(t, lower, sides), 1e-13) << i;
+      }
+    }
+  }
+}
+
+TEST(WellFilledCells, CornersAndEdgesOnBordersOfCellsLoseNoArea) {
+  std::mt19937 random(29);
+  std::uniform_int_distribution<int> coordinate(0, 8);
+  for (int i = 0; i < 3000; ++i) {
+    Triangle t;
+    for (Vec3& corner : t) corner = Vec3(coordinate(random), coordinate(random), coordinate(random));
+    CellCounter cells;
+    cells.begin(Vec3(4, 4, 4), Mat3::Identity(), Vec3(4, 4, 4));
+    cells.add(t[0], t[1], t[2]);
+    EXPECT_NEAR(cells.total_area(), area_of(t), 1e-12);
+  }
+}
+
+TEST(WellFilledCells, TriangleFarBeyondATinyBoxDoesNoHarm) {
+  CellCounter cells;
+  cells.begin(Vec3::Zero(), Mat3::Identity(), Vec3::Constant(1e-300));
+  cells.add(Vec3(1e15, 0, 0), Vec3(0, 1e15, 0), Vec3(0, 0, -1e15));
+  EXPECT_EQ(cells.total_area(), 0.0);
+  cells.begin(Vec3::Zero(), Mat3::Identity(), Vec3(1, 1, 1));
+  cells.add(Vec3(-1, -1, 0.1), Vec3(1, -1, 0.1), Vec3(-1, 1, 0.1));
+  EXPECT_NEAR(cells.total_area(), 2.0, 1e-12);
+}
+
 TEST(WellFilledCells, FlatBoxKeepsItsSurfaceInOneLayerDespiteRounding) {
   CellCounter cells;
   cells.begin(Vec3(0, 0, 1), Mat3::Identity(), Vec3(1, 1, 0));
