@@ -3,14 +3,14 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <thread>
 
 #include "odds/math/elementary.hpp"
 
 namespace odds::tree {
 namespace {
+
+constexpr std::size_t parallel_part = 16384;  // triangles that are worth a thread for something short
 
 // Sums over triangles that a node's statistics are made from; they add up the tree.
 struct Moments {
@@ -121,22 +121,12 @@ void relate_area(NodeStatistics& node, double volume) noexcept {
 
 std::vector<TriangleCorners> corners_about(const mesh::TriangleMesh& mesh, const Vec3& origin) {
   std::vector<TriangleCorners> corners(mesh.triangles().size());
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    for (std::size_t k = 0; k < 3; ++k) corners[i][k] = mesh.vertices()[mesh.triangles()[i][k]] - origin;
-  }
+  for_parts(corners.size(), parallel_part, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) corners[i][k] = mesh.vertices()[mesh.triangles()[i][k]] - origin;
+    }
+  });
   return corners;
-}
-
-void for_parts(std::size_t count, std::size_t part, const std::function<void(std::size_t, std::size_t)>& task) {
-  const std::size_t parts = (count + part - 1) / part;
-  const std::size_t threads = std::min<std::size_t>(std::max(1U, std::thread::hardware_concurrency()), parts);
-  std::atomic<std::size_t> next{0};
-  const auto work = [&] {
-    for (std::size_t i = next++; i < parts; i = next++) task(i * part, std::min(count, (i + 1) * part));
-  };
-  std::vector<std::jthread> helpers;
-  for (std::size_t i = 1; i < threads; ++i) helpers.emplace_back(work);
-  work();
 }
 
 NodeSurface measure_surface(const Topology& topology, std::span<const TriangleCorners> corners) {
@@ -144,14 +134,18 @@ NodeSurface measure_surface(const Topology& topology, std::span<const TriangleCo
   surface.statistics.resize(topology.nodes.size());
   surface.axes.resize(topology.nodes.size());
   std::vector<Moments> moments(topology.nodes.size());
+  for_parts(topology.nodes.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const TopologyNode& node = topology.nodes[i];
+      if (!node.is_leaf()) continue;
+      for (std::uint32_t t = node.begin; t < node.end; ++t) moments[i] += moments_of(corners[t]);
+    }
+  });
   for (std::size_t i = topology.nodes.size(); i-- > 0;) {  // children come after their parents
     const TopologyNode& node = topology.nodes[i];
-    if (node.is_leaf()) {
-      for (std::uint32_t t = node.begin; t < node.end; ++t) moments[i] += moments_of(corners[t]);
-    } else {
-      moments[i] = moments[node.first];
-      moments[i] += moments[node.first + 1];
-    }
+    if (node.is_leaf()) continue;
+    moments[i] = moments[node.first];
+    moments[i] += moments[node.first + 1];
   }
   for_parts(topology.nodes.size(), 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

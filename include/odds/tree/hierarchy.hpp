@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "odds/mesh/triangle_mesh.hpp"
+#include "odds/tree/for_parts.hpp"
 #include "odds/tree/node_statistics.hpp"
 #include "odds/tree/topology.hpp"
 #include "odds/tree/well_filled_cells.hpp"
@@ -34,10 +35,6 @@ void relate_area(NodeStatistics& node, double volume) noexcept;
 
 /// Corners of the mesh's triangles relative to `origin`, in the mesh's order.
 [[nodiscard]] std::vector<TriangleCorners> corners_about(const mesh::TriangleMesh& mesh, const Vec3& origin);
-
-/// Calls task(begin, end) on parts of [0, count), on as many threads as the machine has when there is enough to do.
-/// The parts do not depend on the number of threads.
-void for_parts(std::size_t count, std::size_t part, const std::function<void(std::size_t, std::size_t)>& task);
 
 /// Binary hierarchy over volumes of one kind. Its frame is the mesh's, moved so that the centre of the bounding box is
 /// the origin: single precision then resolves the mesh wherever it stands. Immutable after `build`; shareable among

@@ -35,9 +35,10 @@ struct Topology {
 /// Deeper than this a node is split at the median, so that stacks of fixed size hold every search.
 inline constexpr std::uint32_t deepest_level = 64;
 
-/// Top-down build by the surface area heuristic over 16 bins of the centroids' longest axis (Wald 2007); deterministic;
-/// O(n log n). `leaf_triangles` in 1 .. 16.
+/// Top-down build by the surface area heuristic over 16 bins along each axis (Wald 2007); deterministic; O(n log n).
+/// `leaf_triangles` in 1 .. 16. Big meshes are divided among `threads` threads (0: as many as there are processors),
+/// which changes nothing in the result; `progress` is called by the calling thread only.
 [[nodiscard]] Topology build_topology(std::span<const TriangleCorners> triangles, std::uint32_t leaf_triangles,
-                                      const Progress& progress = {});
+                                      const Progress& progress = {}, std::size_t threads = 0);
 
 }  // namespace odds::tree
