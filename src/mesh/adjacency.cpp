@@ -1,44 +1,71 @@
 #include "mesh/adjacency.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
 #include <tuple>
 
+#include "odds/math/random.hpp"
+
 namespace odds::mesh {
 
+namespace {
+
+std::uint64_t hash_of(const Vec3& position) {
+  std::uint64_t hash = 0;
+  for (const double x : position) {
+    const double unsigned_zero = x + 0.0;  // -0 equals 0
+    hash = math::scramble(hash ^ std::bit_cast<std::uint64_t>(unsigned_zero));
+  }
+  return hash;
+}
+
+}  // namespace
+
 std::vector<std::uint32_t> first_at_position(std::span<const Vec3> vertices) {
-  std::vector<std::uint32_t> order(vertices.size());
-  std::iota(order.begin(), order.end(), 0U);
-  const auto key = [&](std::uint32_t i) {
-    const Vec3& v = vertices[i];
-    return std::make_tuple(v.x(), v.y(), v.z());
-  };
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return std::tuple_cat(key(a), std::make_tuple(a)) < std::tuple_cat(key(b), std::make_tuple(b));
-  });
+  // An open-addressed table of the indices seen first, at most half full.
+  constexpr std::uint32_t none = ~std::uint32_t{0};
+  std::vector<std::uint32_t> table(std::bit_ceil(2 * vertices.size() + 1), none);
+  const std::size_t mask = table.size() - 1;
   std::vector<std::uint32_t> first(vertices.size());
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const bool same = i > 0 && vertices[order[i]] == vertices[order[i - 1]];
-    first[order[i]] = same ? first[order[i - 1]] : order[i];
+  for (std::uint32_t i = 0; i < vertices.size(); ++i) {
+    std::size_t slot = hash_of(vertices[i]) & mask;
+    while (table[slot] != none && vertices[table[slot]] != vertices[i]) slot = (slot + 1) & mask;
+    if (table[slot] == none) table[slot] = i;
+    first[i] = table[slot];
   }
   return first;
 }
 
 std::vector<EdgeUse> sorted_edge_uses(std::span<const Triangle> triangles) {
-  std::vector<EdgeUse> uses;
-  uses.reserve(3 * triangles.size());
-  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
-    const Triangle& t = triangles[i];
-    if (repeats_vertex(t)) continue;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t from = t[k];
-      const std::uint32_t to = t[(k + 1) % 3];
-      uses.push_back({{std::min(from, to), std::max(from, to)}, i, from < to});
+  const auto for_each_use = [&](const auto& visit) {
+    for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+      const Triangle& t = triangles[i];
+      if (repeats_vertex(t)) continue;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t from = t[k];
+        const std::uint32_t to = t[(k + 1) % 3];
+        visit(EdgeUse{{std::min(from, to), std::max(from, to)}, i, from < to});
+      }
     }
+  };
+  // By the smaller vertex first, by counting; a vertex has few edges, so that the rest is quick.
+  std::vector<std::uint32_t> end;
+  for (const Triangle& t : triangles) {
+    const std::size_t needed = *std::max_element(t.begin(), t.end()) + std::size_t{2};
+    if (end.size() < needed) end.resize(needed, 0);
   }
-  std::sort(uses.begin(), uses.end(), [](const EdgeUse& a, const EdgeUse& b) {
-    return std::tie(a.edge, a.triangle) < std::tie(b.edge, b.triangle);
-  });
+  for_each_use([&](const EdgeUse& use) { ++end[use.edge[0] + 1]; });
+  for (std::size_t i = 1; i < end.size(); ++i) end[i] += end[i - 1];
+  std::vector<EdgeUse> uses(end.empty() ? 0 : end.back());
+  for_each_use([&](const EdgeUse& use) { uses[end[use.edge[0]]++] = use; });
+  std::uint32_t begin = 0;
+  for (const std::uint32_t last : end) {
+    std::sort(uses.begin() + begin, uses.begin() + last, [](const EdgeUse& a, const EdgeUse& b) {
+      return std::tie(a.edge[1], a.triangle) < std::tie(b.edge[1], b.triangle);
+    });
+    begin = last;
+  }
   return uses;
 }
 

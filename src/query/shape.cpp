@@ -2,9 +2,10 @@
 
 #include <array>
 #include <chrono>
+#include <future>
 #include <string>
 
-#include "odds/mesh/faults.hpp"
+#include "odds/mesh/enclosed_volume.hpp"
 #include "query/search.hpp"
 #include "query/shape_data.hpp"
 
@@ -45,10 +46,7 @@ ShapeSummary summarise(const tree::Hierarchy<V>& hierarchy) {
   return summary;
 }
 
-bool closed_and_outward(const mesh::TriangleMesh& mesh) {
-  const mesh::Faults faults = mesh::find_faults(mesh, {.examples = 0});
-  return faults.volume.value_or(0.0) > 0.0;
-}
+bool closed_and_outward(const mesh::TriangleMesh& mesh) { return mesh::enclosed_volume(mesh).value_or(0.0) > 0.0; }
 
 /// The query box in the hierarchy's frame.
 struct Box {
@@ -121,10 +119,14 @@ Result<std::shared_ptr<const Shape>> Shape::build(std::shared_ptr<const mesh::Tr
   }
   const auto start = std::chrono::steady_clock::now();
   auto data = std::make_unique<Data>();
-  data->solid = closed_and_outward(*mesh);
+  // Beside the hierarchy, whose first steps leave processors idle; not worth a thread for a small mesh.
+  const bool is_big = mesh->triangles().size() > 20000;
+  auto solid = std::async(is_big ? std::launch::async | std::launch::deferred : std::launch::deferred,
+                          [&mesh] { return closed_and_outward(*mesh); });
   const tree::BuildOptions build_options{options.leaf_triangles, options.tau};
   data->hierarchy = build_hierarchy(options.volume, *mesh, build_options, progress,
                                     std::make_index_sequence<std::variant_size_v<AnyHierarchy>>());
+  data->solid = solid.get();
   data->summary = std::visit([](const auto& hierarchy) { return summarise(hierarchy); }, data->hierarchy);
   data->summary.build_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   data->options = options;

@@ -44,11 +44,8 @@ struct Side {
 // The places in (0, 1) where a coordinate that runs from `start` by `change` passes from one cell to the next; the one
 // after the last is infinite.
 struct Crossings {
-  Crossings(double start, double end) noexcept {
-    const int first = cell_of(start);
-    const int last = cell_of(end);
-    step = last > first ? 1 : -1;
-    count = std::abs(last - first);
+  Crossings(int first, int last, double start, double end) noexcept
+      : step(last > first ? 1 : -1), count(std::abs(last - first)) {
     const double per_change = 1.0 / (end - start);
     const double border = (last > first ? first + 1 : first) - start;
     for (int k = 0; k < kCellsPerAxis; ++k) place[k] = (border + k * step) * per_change;  // more than needed: no branch
@@ -59,43 +56,54 @@ struct Crossings {
   double place[kCellsPerAxis];
 };
 
-int index_of(const Point& point) noexcept {
-  return (cell_of(point.w) * kCellsPerAxis + cell_of(point.v)) * kCellsPerAxis + cell_of(point.u);
-}
-
 // Calls visit(cell, climb, share) for each piece of an edge within one cell: how far the edge climbs along v in it, and
 // the area, projected along w, between it and the cell's far border along u. Cells are numbered in layers along w, rows
-// along v, columns along u.
-template <class Visit>
-void walk(const Point& from, const Point& to, const Visit& visit) noexcept {
+// along v, columns along u; an edge that stays in one layer is walked along u and v only.
+template <bool across_layers, class Visit>
+void walk(const Point& from, const Point& to, int layer, int last_layer, const Visit& visit) noexcept {
+  const int column = cell_of(from.u);
+  const int last_column = cell_of(to.u);
+  const int row = cell_of(from.v);
+  const int last_row = cell_of(to.v);
   const double run = to.u - from.u;
   const double rise = to.v - from.v;
-  double border = cell_of(from.u) + 1 - from.u;
+  double border = column + 1 - from.u;
   double done = 0.0;
-  int cell = index_of(from);
+  int cell = (layer * kCellsPerAxis + row) * kCellsPerAxis + column;
   const auto go_to = [&](double place) {
     const double climb = (place - done) * rise;
     visit(static_cast<std::size_t>(cell), climb, climb * (border - 0.5 * (place + done) * run));
     done = place;
   };
-  if (index_of(to) != cell) {
-    const Crossings along_u(from.u, to.u);
-    const Crossings along_v(from.v, to.v);
-    const Crossings along_w(from.w, to.w);
+  if (column != last_column || row != last_row || (across_layers && layer != last_layer)) {
+    const Crossings along_u(column, last_column, from.u, to.u);
+    const Crossings along_v(row, last_row, from.v, to.v);
     const double* u = along_u.place;
     const double* v = along_v.place;
-    const double* w = along_w.place;
-    for (int steps = along_u.count + along_v.count + along_w.count; steps > 0; --steps) {
-      const double place = std::min(std::min(*u, *v), *w);
-      const int is_u = *u == place ? 1 : 0;
-      const int is_v = *v == place ? 1 - is_u : 0;
-      const int is_w = 1 - is_u - is_v;
-      go_to(place);
-      border += is_u * along_u.step;
-      cell += is_u * along_u.step + kCellsPerAxis * (is_v * along_v.step + kCellsPerAxis * is_w * along_w.step);
-      u += is_u;
-      v += is_v;
-      w += is_w;
+    if constexpr (across_layers) {
+      const Crossings along_w(layer, last_layer, from.w, to.w);
+      const double* w = along_w.place;
+      for (int steps = along_u.count + along_v.count + along_w.count; steps > 0; --steps) {
+        const double place = std::min(std::min(*u, *v), *w);
+        const int is_u = *u == place ? 1 : 0;
+        const int is_v = *v == place ? 1 - is_u : 0;
+        const int is_w = 1 - is_u - is_v;
+        go_to(place);
+        border += is_u * along_u.step;
+        cell += is_u * along_u.step + kCellsPerAxis * (is_v * along_v.step + kCellsPerAxis * is_w * along_w.step);
+        u += is_u;
+        v += is_v;
+        w += is_w;
+      }
+    } else {
+      for (int steps = along_u.count + along_v.count; steps > 0; --steps) {
+        const int is_u = *u < *v ? 1 : 0;
+        go_to(std::min(*u, *v));
+        border += is_u * along_u.step;
+        cell += is_u * along_u.step + (1 - is_u) * kCellsPerAxis * along_v.step;
+        u += is_u;
+        v += 1 - is_u;
+      }
     }
   }
   go_to(1.0);
@@ -195,27 +203,32 @@ void CellCounter::add_across(const Vec3 (&grid)[3], double area) noexcept {
   const double twice = (middle.u - low.u) * (high.v - low.v) - (high.u - low.u) * (middle.v - low.v);
   if (!(std::fabs(twice) > 0.0)) return;
 
-  const auto add_edge = [this](const Point& from, const Point& to) {
-    walk(from, to, [this](std::size_t cell, double climb, double share) {
-      pieces_[cell].share += share;
-      pieces_[cell].climb += climb;
-      touched_[cell / cells_per_layer] |= std::uint64_t{1} << cell % cells_per_layer;
-    });
+  const auto add_piece = [this](std::size_t cell, double climb, double share) {
+    pieces_[cell].share += share;
+    pieces_[cell].climb += climb;
+    touched_[cell / cells_per_layer] |= std::uint64_t{1} << cell % cells_per_layer;
   };
-  add_edge(low, high);
-  add_edge(high, middle);
-  add_edge(middle, low);
+  const int first = cell_of(low.w);
+  const int bend = cell_of(middle.w);
+  const int last = cell_of(high.w);
+  const auto add_edge = [&](const Point& from, const Point& to, int layer, int last_layer) {
+    if (layer == last_layer) {
+      walk<false>(from, to, layer, layer, add_piece);
+    } else {
+      walk<true>(from, to, layer, last_layer, add_piece);
+    }
+  };
+  add_edge(low, high, first, last);
+  add_edge(high, middle, last, bend);
+  add_edge(middle, low, bend, first);
   const Side straight(low, high);
   const Side lower(low, middle);
   const Side upper(middle, high);
-  const int first = cell_of(low.w);
-  const int last = cell_of(high.w);
   for (int k = first; k < last; ++k) {
     const double level = k + 1;
-    Point from = straight.at(level);
-    Point to = level <= middle.w ? lower.at(level) : upper.at(level);
-    from.w = to.w = k;
-    walk(from, to, [this](std::size_t cell, double climb, double share) {
+    const Point from = straight.at(level);
+    const Point to = level <= middle.w ? lower.at(level) : upper.at(level);
+    walk<false>(from, to, k, k, [this](std::size_t cell, double climb, double share) {
       const std::uint64_t bit = std::uint64_t{1} << cell % cells_per_layer;
       pieces_[cell].share += share;
       pieces_[cell].climb += climb;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "odds/mesh/enclosed_volume.hpp"
 #include "odds/mesh/made/box.hpp"
 #include "odds/mesh/made/by_name.hpp"
 #include "odds/mesh/repair.hpp"
@@ -203,6 +204,47 @@ TEST(Repair, SaysSoWhenThereIsNothingToDo) {
 
 TEST(Repair, RefusesToReturnNothing) {
   EXPECT_FALSE(repair(mesh_of({{0, 0, 0}, {1, 1, 1}, {2, 2, 2}}, {{0, 1, 2}})).ok());
+}
+
+TEST(EnclosedVolume, IsThatOfTheFaultsForWholeAndForDamagedMeshes) {
+  std::vector<TriangleMesh> meshes;
+  for (const std::string_view name : made::shape_names()) {
+    const bool is_car = name == "car_body";
+    meshes.push_back(made::make_shape(std::string(name) + (is_car ? ":triangles=2000" : "")).value());
+  }
+  const TriangleMesh box = made::make(made::Box{.x = 1, .y = 2, .z = 3, .cells = 3}).value();
+  const std::vector<Vec3> vertices(box.vertices().begin(), box.vertices().end());
+  const std::vector<Triangle> triangles(box.triangles().begin(), box.triangles().end());
+  meshes.push_back(soup_of(box));
+  std::vector<Triangle> damaged = triangles;
+  damaged.pop_back();  // a hole
+  meshes.push_back(mesh_of(vertices, damaged));
+  damaged = triangles;
+  std::swap(damaged[5][0], damaged[5][1]);  // turned around
+  meshes.push_back(mesh_of(vertices, damaged));
+  damaged = triangles;
+  damaged.push_back(damaged[7]);  // edges of three triangles
+  meshes.push_back(mesh_of(vertices, damaged));
+  damaged = triangles;
+  damaged.push_back({4, 4, 9});  // no edges of its own
+  meshes.push_back(mesh_of(vertices, damaged));
+  for (Triangle& t : damaged = triangles) std::swap(t[0], t[1]);  // inside out
+  meshes.push_back(mesh_of(vertices, damaged));
+  std::vector<Vec3> signed_zeros = tetrahedron;
+  for (Vec3& v : signed_zeros) v = -v;  // zeros become -0
+  std::vector<Triangle> split_faces = tetrahedron_faces;
+  signed_zeros.push_back(Vec3::Zero());
+  split_faces[0][0] = 4;
+  meshes.push_back(mesh_of(signed_zeros, split_faces));
+  std::size_t closed = 0;
+  for (const TriangleMesh& mesh : meshes) {
+    const std::optional<double> expected = find_faults(mesh).volume;
+    EXPECT_EQ(enclosed_volume(mesh), expected) << mesh.name();
+    closed += expected.has_value() ? 1 : 0;
+  }
+  EXPECT_GT(closed, 5u);
+  EXPECT_LT(closed, meshes.size() - 3);
+  EXPECT_TRUE(enclosed_volume(meshes.back()).has_value());
 }
 
 }  // namespace
