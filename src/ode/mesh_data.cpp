@@ -16,10 +16,10 @@ namespace {
 
 std::optional<Error> check(const oddsBuildParams& params, const std::string& name) {
   if (params.volume < 0 || params.volume >= static_cast<int>(volume::kind_names.size())) {
-    return Error{name, "", "oddsBuildParams.volume is unknown", "use one of ODDS_VOLUME_AABB ... ODDS_VOLUME_HULL"};
+    return Error{name, "", "oddsBuildParams.volume is unknown", "use one of ODDS_VOLUME_AABB ... ODDS_VOLUME_WIDE"};
   }
-  if (params.leaf_triangles < 1 || params.leaf_triangles > 16) {
-    return Error{name, "", "oddsBuildParams.leaf_triangles is out of range", "use 1 .. 16 (default 4)"};
+  if (params.leaf_triangles < 0 || params.leaf_triangles > 16) {
+    return Error{name, "", "oddsBuildParams.leaf_triangles is out of range", "use 1 .. 16, or 0 for what suits the volume (default)"};
   }
   if (!(params.tau > 0.0 && params.tau <= 1.0)) {
     return Error{name, "", "oddsBuildParams.tau is out of range", "use 0 < tau <= 1 (default 0.25)"};
@@ -128,8 +128,8 @@ oddsMeshDataID oddsMeshDataFromShape(std::shared_ptr<const query::Shape> shape) 
 
 void oddsBuildParamsInit(oddsBuildParams* params) noexcept {
   if (params == nullptr) return;
-  params->volume = ODDS_VOLUME_OBB;
-  params->leaf_triangles = 4;
+  params->volume = ODDS_VOLUME_WIDE;
+  params->leaf_triangles = 0;
   params->tau = 0.25;
   params->name = nullptr;
 }

@@ -4,20 +4,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include "odds/math/elementary.hpp"
 #include "odds/primitive/triangle_triangle.hpp"
-#include "odds/probability/balls_into_bins.hpp"
-#include "odds/probability/kinematic.hpp"
 #include "odds/query/answer.hpp"
 #include "odds/query/contact_patch.hpp"
 #include "odds/query/request.hpp"
 #include "odds/tree/hierarchy.hpp"
 #include "query/bucket_queue.hpp"
+#include "query/node_odds.hpp"
 #include "query/spending.hpp"
 
 namespace odds::query {
 
-/// Intersecting triangle pairs found so far, as positions in leaf order. Fixed capacity.
+/// Intersecting triangle pairs found so far, by their indices in the meshes. Fixed capacity.
 class HitList {
  public:
   explicit HitList(std::uint32_t capacity) : pairs_(capacity) {}
@@ -46,12 +44,10 @@ enum class Progressed : std::uint8_t {
 template <volume::BoundingVolume V>
 class Encounter {
  public:
-  Encounter(const tree::Hierarchy<V>& a, const tree::Hierarchy<V>& b, const math::Pose& pose_b_in_a,
+  /// `b_in_a`: of B's hierarchy frame in A's.
+  Encounter(const tree::Hierarchy<V>& a, const tree::Hierarchy<V>& b, const math::Pose& b_in_a,
             EstimatorKind estimator) noexcept
-      : a_(a), b_(b), estimator_(estimator) {
-    // From mesh frames to hierarchy frames: x_A = R x_B + t with x = local + origin on both sides.
-    b_in_a_.rotation = pose_b_in_a.rotation;
-    b_in_a_.translation = pose_b_in_a.rotation * b.origin() + (pose_b_in_a.translation - a.origin());
+      : a_(a), b_(b), b_in_a_(b_in_a), estimator_(estimator) {
     reach_ = a.reach() + b.reach();
     relative_ = V::PreparedPose::make(b_in_a_, 2.0 * reach_);
   }
@@ -90,29 +86,14 @@ class Encounter {
     prefetch_line(&b_.statistics()[pair.b]);
   }
 
-  /// What orders the search: log2 of lambda, where 1 - exp(-lambda) is the probability that the surfaces below i and j
-  /// meet, given that their volumes overlap. Cheaper than the probability itself.
+  /// What orders the search; see met_rank.
   [[nodiscard]] float rank(std::uint32_t i, std::uint32_t j) const noexcept {
-    if (estimator_ == EstimatorKind::cells) {
-      const float p = std::min(probability(i, j), 1.0F - 1e-7F);
-      return math::rough_log2(-std::log1p(-static_cast<double>(p)));
-    }
-    const double common = overlap_volume(a_.nodes()[i].volume, b_.nodes()[j].volume, relative_);
-    return probability::log_kinematic_rate(a_.statistics()[i], b_.statistics()[j], relative_.rotation, common);
+    return met_rank(met(i, j), estimator_, {a_.levels(), b_.levels()});
   }
 
   /// Estimated probability that surfaces below i and j meet, given that their volumes overlap.
   [[nodiscard]] float probability(std::uint32_t i, std::uint32_t j) const noexcept {
-    const V& volume_a = a_.nodes()[i].volume;
-    const V& volume_b = b_.nodes()[j].volume;
-    const tree::NodeStatistics& sa = a_.statistics()[i];
-    const tree::NodeStatistics& sb = b_.statistics()[j];
-    const double common = overlap_volume(volume_a, volume_b, relative_);
-    const float p =
-        estimator_ == EstimatorKind::cells
-            ? static_cast<float>(cells_probability(sa, sb, volume_a.volume(), volume_b.volume(), common))
-            : probability::kinematic(sa, sb, relative_.rotation, volume_a.volume(), volume_b.volume(), common);
-    return std::isfinite(p) ? std::clamp(p, 0.0F, 1.0F) : 0.5F;
+    return met_probability(met(i, j), estimator_, {a_.levels(), b_.levels()});
   }
 
   /// Levels that still lie below the pair: 0 for two leaves.
@@ -132,7 +113,7 @@ class Encounter {
         spending.spend_triangle_pairs(1);
         if (primitive::triangles_intersect(a_.corners()[ta].data(), moved.data())) {
           if (hits.empty() && wanted > 1) spending.keep_time_for_contacts();
-          hits.add({ta, tb});
+          hits.add({a_.order()[ta], b_.order()[tb]});
           if (hits.full(wanted)) return Progressed::enough;
         }
         const bool last = ta + 1 == leaf_a.first + leaf_a.count;
@@ -144,12 +125,6 @@ class Encounter {
     return Progressed::finished;
   }
 
-  /// The exact test of one pair of triangles, given in leaf order.
-  [[nodiscard]] bool triangles_meet_now(TrianglePair pair) const noexcept {
-    const tree::TriangleCorners moved = in_a(pair.b);
-    return primitive::triangles_intersect(a_.corners()[pair.a].data(), moved.data());
-  }
-
   [[nodiscard]] tree::TriangleCorners in_a(std::uint32_t leaf_triangle_b) const noexcept {
     const tree::TriangleCorners& corners = b_.corners()[leaf_triangle_b];
     return {b_in_a_ * corners[0], b_in_a_ * corners[1], b_in_a_ * corners[2]};
@@ -157,30 +132,8 @@ class Encounter {
 
   /// Where, in which direction and how deep the surfaces of the pair most probably meet, in A's mesh frame.
   [[nodiscard]] Contact cell_contact(std::uint32_t i, std::uint32_t j) const noexcept {
-    const tree::NodeStatistics& sa = a_.statistics()[i];
-    const tree::NodeStatistics& sb = b_.statistics()[j];
-    const float radius_a = a_.nodes()[i].radius;
-    const float radius_b = b_.nodes()[j].radius;
-    const Vec3 centroid_a = sa.centroid.cast<double>();
-    const Vec3 centroid_b = b_in_a_ * sb.centroid.cast<double>();
-    // The smaller node says more about where: weight by the inverse of the size.
-    const double weight_a = static_cast<double>(radius_b) / std::max(static_cast<double>(radius_a + radius_b), 1e-300);
-    Contact contact;
-    contact.position = weight_a * centroid_a + (1.0 - weight_a) * centroid_b + a_.origin();
-    Vec3 direction = b_in_a_.rotation * sb.mean_normal.cast<double>() - sa.mean_normal.cast<double>();
-    if (!(direction.norm() > 1e-3))
-      direction = b_in_a_.rotation * sb.slab_normal.cast<double>();  // closed on all sides
-    const double length = direction.norm();
-    contact.normal = length > 0.0 && std::isfinite(length) ? Vec3(direction / length) : Vec3::UnitZ();
-    // A's surface lies beyond B's by this much. Two patches that nobody has looked into cannot be told to overlap
-    // deeper than the thinner of them is thick. They may not meet at all, and a patch that faces all ways has no side
-    // to be beyond: so it is the expected depth that counts, weighted by how flat both patches are (a whole closed
-    // body: not at all).
-    const double passed = contact.normal.dot(centroid_b - centroid_a);
-    const double thickness = 2.0 * static_cast<double>(std::min(sa.slab_half, sb.slab_half));
-    const double flatness = static_cast<double>(std::min(sa.mean_normal.norm() * sb.mean_normal.norm(), 1.0F));
-    contact.depth = static_cast<double>(probability(i, j)) * flatness * std::clamp(passed, 0.0, thickness);
-    return contact;
+    return met_contact(a_.statistics()[i], b_.statistics()[j], a_.nodes()[i].radius, b_.nodes()[j].radius, b_in_a_,
+                       a_.origin(), static_cast<double>(probability(i, j)));
   }
 
   [[nodiscard]] const tree::Hierarchy<V>& a() const noexcept { return a_; }
@@ -192,14 +145,11 @@ class Encounter {
 
   static void prefetch_line(const void* address) noexcept { __builtin_prefetch(address); }
 
-  /// The book's estimate: (4.15), (4.16) and the collision inside a shared cell of Zachmann 2007.
-  [[nodiscard]] double cells_probability(const tree::NodeStatistics& sa, const tree::NodeStatistics& sb,
-                                         double volume_a, double volume_b, double common) const noexcept {
-    const probability::CellCounts counts =
-        probability::cells_in_overlap(sa.well_filled_cells, sb.well_filled_cells, common, volume_a, volume_b);
-    return probability::collision_probability(
-        counts, probability::collision_in_shared_cell(sa.depth, sb.depth, static_cast<int>(a_.levels()) - 1,
-                                                      static_cast<int>(b_.levels()) - 1));
+  [[nodiscard]] NodesMet met(std::uint32_t i, std::uint32_t j) const noexcept {
+    const V& volume_a = a_.nodes()[i].volume;
+    const V& volume_b = b_.nodes()[j].volume;
+    return {a_.statistics()[i], b_.statistics()[j], relative_.rotation,
+            volume_a.volume(),  volume_b.volume(),  overlap_volume(volume_a, volume_b, relative_)};
   }
 
   const tree::Hierarchy<V>& a_;

@@ -4,18 +4,18 @@
 #include <algorithm>
 
 #include "odds/primitive/triangle_triangle.hpp"
-#include "query/encounter.hpp"
+#include "odds/query/answer.hpp"
+#include "query/posed_meshes.hpp"
 
 namespace odds::query {
 
 /// About 0.2 us. Position: middle of the segment in which the triangles meet. Normal: difference of the face normals,
 /// turned towards `towards_a` unless both bodies are solid. Depth: the lesser of how far one triangle's corners lie
 /// beyond the other's plane.
-template <volume::BoundingVolume V>
-[[nodiscard]] Contact first_contact(const Encounter<V>& encounter, TrianglePair hit, bool both_solid,
-                                    const Vec3& towards_a) noexcept {
-  const tree::TriangleCorners& a = encounter.a().corners()[hit.a];
-  const tree::TriangleCorners b = encounter.in_a(hit.b);
+[[nodiscard]] inline Contact first_contact(const PosedMeshes& meshes, TrianglePair hit, bool both_solid,
+                                           const Vec3& towards_a) noexcept {
+  const tree::TriangleCorners a = meshes.corners_a(hit.a);
+  const tree::TriangleCorners b = meshes.corners_b(hit.b);
   const auto unit_normal = [](const tree::TriangleCorners& t) -> Vec3 {
     const Vec3 cross = (t[1] - t[0]).cross(t[2] - t[0]);
     const double length = cross.norm();
@@ -40,9 +40,9 @@ template <volume::BoundingVolume V>
   primitive::IntersectionSegment segment;
   segment.begin = segment.end = (a[0] + a[1] + a[2]) / 3.0;
   static_cast<void>(primitive::intersection_segment(a.data(), b.data(), segment));
-  contact.position = 0.5 * (segment.begin + segment.end) + encounter.a().origin();
-  contact.triangle_a = encounter.a().order()[hit.a];
-  contact.triangle_b = encounter.b().order()[hit.b];
+  contact.position = 0.5 * (segment.begin + segment.end) + meshes.origin_a();
+  contact.triangle_a = hit.a;
+  contact.triangle_b = hit.b;
   return contact;
 }
 

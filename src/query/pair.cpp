@@ -11,6 +11,7 @@
 #include "query/first_contact.hpp"
 #include "query/search.hpp"
 #include "query/shape_data.hpp"
+#include "query/wide_search.hpp"
 
 namespace odds::query {
 
@@ -22,7 +23,8 @@ struct Pair::Implementation {
         queue(options.queue_capacity),
         hits(options.hit_capacity),
         slice(options.slice_capacity),
-        patches(options.hit_capacity) {}
+        patches(options.hit_capacity),
+        wide(wide::searches_for(options.instruction_set)) {}
 
   std::shared_ptr<const Shape> a;
   std::shared_ptr<const Shape> b;
@@ -30,8 +32,9 @@ struct Pair::Implementation {
   HitList hits;
   BottomSlice slice;
   bool has_witness = false;
-  TrianglePair witness;  ///< the pair of triangles, in leaf order, that proved the last incremental hit
+  TrianglePair witness;  ///< the pair of triangles that proved the last incremental hit
   PatchBuilder patches;
+  const wide::Searches* wide;
   Vec3 previous_normal = Vec3::Zero();    ///< of the last run's first contact, in A's frame; zero: none
   Vec3 previous_position = Vec3::Zero();  ///< of that contact
   Contact quick_contact;
@@ -65,26 +68,25 @@ Answer refused() noexcept {
   return answer;
 }
 
-/// The witness of the last hit first, then the bottom slice.
-template <volume::BoundingVolume V>
-void search_incrementally(const Encounter<V>& encounter, std::uint32_t wanted, Pair::Implementation& pair,
-                          Spending& spending, SearchResult& result) noexcept {
-  if (wanted == 1 && pair.has_witness && spending.allows(1)) {
-    spending.spend_triangle_pairs(1);
-    if (encounter.triangles_meet_now(pair.witness)) {
-      pair.hits.add(pair.witness);
-      result.ended = Progressed::enough;
-      return;
-    }
-  }
-  pair.slice.search(encounter, wanted, pair.hits, spending, result);
+/// The witness of the last hit. True: it still is one, and no more are wanted.
+bool witness_suffices(const PosedMeshes& meshes, std::uint32_t wanted, Pair::Implementation& pair, Spending& spending,
+                      SearchResult& result) noexcept {
+  if (wanted != 1 || !pair.has_witness || !spending.allows(1)) return false;
+  spending.spend_triangle_pairs(1);
+  if (!meshes.meet(pair.witness)) return false;
+  pair.hits.add(pair.witness);
+  result.ended = Progressed::enough;
+  return true;
+}
+
+void remember_witness(Pair::Implementation& pair) noexcept {
   pair.has_witness = !pair.hits.empty();
   if (pair.has_witness) pair.witness = pair.hits.pairs().front();
 }
 
 template <volume::BoundingVolume V>
-SearchResult search(const Encounter<V>& encounter, const Request& request, Pair::Implementation& pair,
-                    Spending& spending) noexcept {
+SearchResult search(const Encounter<V>& encounter, const PosedMeshes& meshes, const Request& request,
+                    Pair::Implementation& pair, Spending& spending) noexcept {
   SearchResult result;
   if (encounter.far_apart()) return result;
   spending.spend_node_pairs(1);
@@ -95,10 +97,28 @@ SearchResult search(const Encounter<V>& encounter, const Request& request, Pair:
     return result;
   }
   if (request.method == Method::incremental && !request.polygon_free) {
-    search_incrementally(encounter, wanted, pair, spending, result);
+    if (witness_suffices(meshes, wanted, pair, spending, result)) return result;
+    pair.slice.search(encounter, wanted, pair.hits, spending, result);
+    remember_witness(pair);
     return result;
   }
   return TimeCriticalSearch<V>(encounter, request, wanted, pair.queue, pair.hits, spending).run({0, 0, 0.0F});
+}
+
+SearchResult search(const wide::Encounter& encounter, const PosedMeshes& meshes, const Request& request,
+                    Pair::Implementation& pair, Spending& spending) noexcept {
+  SearchResult result;
+  if (encounter.far_apart()) return result;
+  const std::uint32_t wanted = wanted_hits(request);
+  wide::Task task{encounter, request, wanted, pair.queue, pair.hits, spending, result};
+  if (request.polygon_free || request.method == Method::time_critical) {
+    pair.wide->time_critical(task);
+    return result;
+  }
+  if (request.method == Method::incremental && witness_suffices(meshes, wanted, pair, spending, result)) return result;
+  pair.wide->depth_first(task, tree::WideTree::root, tree::WideTree::root);
+  if (request.method == Method::incremental) remember_witness(pair);
+  return result;
 }
 
 /// Verdict, basis and probability from what the search found.
@@ -137,21 +157,18 @@ bool probe_depth(const void* shape, const Vec3& origin, const Vec3& direction, d
   return true;
 }
 
-template <volume::BoundingVolume V>
-void make_contacts(const Encounter<V>& encounter, const math::Pose& pose_b_in_a, const Request& request,
+void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request,
                    Pair::Implementation& pair, Spending& spending) noexcept {
-  const Vec3 centre_b = pose_b_in_a * encounter.b().origin();
+  const Vec3 centre_b = meshes.pose().translation + meshes.origin_a();
   if (!spending.begin_contacts(request.max_contacts > 1 ? patch_finish_ns : single_finish_ns)) {
-    const Vec3 towards_a =
-        pair.previous_normal.isZero() ? Vec3(encounter.a().origin() - centre_b) : pair.previous_normal;
+    const Vec3 towards_a = pair.previous_normal.isZero() ? Vec3(meshes.origin_a() - centre_b) : pair.previous_normal;
     pair.quick_contact =
-        first_contact(encounter, pair.hits.pairs().front(), pair.a->is_solid() && pair.b->is_solid(), towards_a);
+        first_contact(meshes, pair.hits.pairs().front(), pair.a->is_solid() && pair.b->is_solid(), towards_a);
     pair.quick_contact.depth = 0.0;
     pair.answer.contacts = {&pair.quick_contact, 1};
     pair.answer.contacts_complete = false;
     return;
   }
-  for (TrianglePair& hit : pair.hits.pairs()) hit = {encounter.a().order()[hit.a], encounter.b().order()[hit.b]};
   PatchInput input;
   input.hits = pair.hits.pairs();
   input.vertices_a = pair.a->mesh().vertices();
@@ -161,7 +178,7 @@ void make_contacts(const Encounter<V>& encounter, const math::Pose& pose_b_in_a,
   input.pose_b_in_a = pose_b_in_a;
   input.solid_a = pair.a->is_solid();
   input.solid_b = pair.b->is_solid();
-  input.reference_a = encounter.a().origin();
+  input.reference_a = meshes.origin_a();
   input.reference_b = centre_b;
   if (!pair.previous_normal.isZero()) {
     input.previous_normal = &pair.previous_normal;
@@ -182,14 +199,26 @@ void make_contacts(const Encounter<V>& encounter, const math::Pose& pose_b_in_a,
 }
 
 template <volume::BoundingVolume V>
-void run_on(const tree::Hierarchy<V>& a, const tree::Hierarchy<V>& b, const math::Pose& pose_b_in_a,
-            const Request& request, Pair::Implementation& pair) noexcept {
+Encounter<V> encounter_of(const tree::Hierarchy<V>& a, const tree::Hierarchy<V>& b, const PosedMeshes& meshes,
+                          EstimatorKind estimator) noexcept {
+  return Encounter<V>(a, b, meshes.pose(), estimator);
+}
+
+wide::Encounter encounter_of(const tree::WideTree& a, const tree::WideTree& b, const PosedMeshes& meshes,
+                             EstimatorKind estimator) noexcept {
+  return wide::Encounter(a, b, meshes, estimator);
+}
+
+template <class Tree>
+void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const Request& request,
+            Pair::Implementation& pair) noexcept {
   Spending spending(request.budget);
   Answer& answer = pair.answer;
   answer = {};
   pair.hits.clear();
-  const Encounter<V> encounter(a, b, pose_b_in_a, request.estimator);
-  const SearchResult result = search(encounter, request, pair, spending);
+  const PosedMeshes meshes(pair.a->mesh(), pair.b->mesh(), a.origin(), b.origin(), pose_b_in_a);
+  const auto encounter = encounter_of(a, b, meshes, request.estimator);
+  const SearchResult result = search(encounter, meshes, request, pair, spending);
   const double candidate_probability =
       result.has_candidate && pair.hits.empty()
           ? static_cast<double>(encounter.probability(result.candidate.a, result.candidate.b))
@@ -201,7 +230,7 @@ void run_on(const tree::Hierarchy<V>& a, const tree::Hierarchy<V>& b, const math
     answer.cell_pair_probability = candidate_probability;
   }
   if (!pair.hits.empty() && request.max_contacts > 0) {
-    make_contacts(encounter, pose_b_in_a, request, pair, spending);
+    make_contacts(meshes, pose_b_in_a, request, pair, spending);
   } else {
     pair.previous_normal.setZero();
   }
@@ -233,6 +262,10 @@ Result<Pair> Pair::make(std::shared_ptr<const Shape> a, std::shared_ptr<const Sh
   if (options.slice_capacity < 64 || options.slice_capacity > (1U << 24U)) {
     return Error{"", "", "slice_capacity is " + std::to_string(options.slice_capacity), "choose 64 to 16777216"};
   }
+  if (wide::searches_for(options.instruction_set) == nullptr) {
+    return Error{"", "", "this processor, or this build, lacks the instructions asked for",
+                 "choose InstructionSet::best"};
+  }
   static_cast<void>(realtime::fastest_clock());  // calibrates now, so that no query has to
   return Pair(std::make_unique<Implementation>(std::move(a), std::move(b), options));
 }
@@ -250,10 +283,10 @@ const Answer& Pair::run(const math::Pose& pose_b_in_a, const Request& request) n
   }
   std::visit(
       [&](const auto& a) {
-        using Hierarchy = std::remove_cvref_t<decltype(a)>;
-        run_on(a, *std::get_if<Hierarchy>(&pair.b->data().hierarchy), pose_b_in_a, request, pair);
+        using Tree = std::remove_cvref_t<decltype(a)>;
+        run_on(a, *std::get_if<Tree>(&pair.b->data().tree), pose_b_in_a, request, pair);
       },
-      pair.a->data().hierarchy);
+      pair.a->data().tree);
   return pair.answer;
 }
 

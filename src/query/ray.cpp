@@ -1,11 +1,13 @@
 #include "odds/query/ray.hpp"
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <variant>
 
 #include "query/search.hpp"
 #include "query/shape_data.hpp"
+#include "query/wide_lookup.hpp"
 
 namespace odds::query {
 namespace {
@@ -59,19 +61,69 @@ std::optional<RayHit> cast(const tree::Hierarchy<V>& hierarchy, const Vec3& orig
   return nearest;
 }
 
+std::optional<RayHit> cast(const mesh::TriangleMesh& mesh, const tree::WideTree& tree, const Vec3& origin,
+                           const Vec3& direction, double length, std::uint64_t budget_nodes) noexcept {
+  volume::RaySegment segment = volume::RaySegment::make(origin, direction, length, tree.reach());
+  struct Open {
+    tree::ChildRef child;
+    float enter;
+  };
+  std::array<Open, (tree::wide_lanes - 1) * (tree::deepest_level + 2)> stack;
+  std::size_t size = 0;
+  stack[size++] = {tree.nodes()[0].child[0], 0.0F};
+  std::optional<RayHit> nearest;
+  for (std::uint64_t visited = 0; size != 0 && visited < budget_nodes; ++visited) {
+    const Open open = stack[--size];
+    if (open.enter > segment.length + segment.margin) continue;
+    if (!open.child.is_leaf()) {
+      const tree::WideNode& node = tree.nodes()[open.child.index()];
+      float enter[tree::wide_lanes];
+      const unsigned met = wide::lanes_met_by(node, segment, enter);
+      const std::size_t first = size;
+      for (unsigned lanes = met; lanes != 0; lanes &= lanes - 1U) {
+        const auto lane = static_cast<unsigned>(std::countr_zero(lanes));
+        // The nearest last, for it is visited first and shortens the segment.
+        std::size_t at = size++;
+        for (; at > first && stack[at - 1].enter < enter[lane]; --at) stack[at] = stack[at - 1];
+        stack[at] = {node.child[lane], enter[lane]};
+      }
+      continue;
+    }
+    const tree::WideLeaf& leaf = tree.leaves()[open.child.index()];
+    for (std::uint32_t t = 0; t < open.child.count(); ++t) {
+      const mesh::Triangle& triangle = mesh.triangles()[leaf.triangle[t]];
+      const tree::TriangleCorners corners = {mesh.vertices()[triangle[0]] - tree.origin(),
+                                             mesh.vertices()[triangle[1]] - tree.origin(),
+                                             mesh.vertices()[triangle[2]] - tree.origin()};
+      const double distance = distance_to(corners, origin, direction);
+      if (!(distance >= 0.0 && distance <= length)) continue;
+      if (nearest && distance >= nearest->distance) continue;
+      nearest = RayHit{distance, leaf.triangle[t]};
+      segment.length = static_cast<float>(distance * (1.0 + 1e-6));
+    }
+  }
+  return nearest;
+}
+
+template <volume::BoundingVolume V>
+std::optional<RayHit> cast(const mesh::TriangleMesh&, const tree::Hierarchy<V>& hierarchy, const Vec3& origin,
+                           const Vec3& direction, double length, std::uint64_t budget_nodes) noexcept {
+  return cast(hierarchy, origin, direction, length, budget_nodes);
+}
+
 }  // namespace
 
 std::optional<RayHit> cast_ray(const Shape& shape, const Vec3& origin, const Vec3& direction, double max_distance,
                                std::uint64_t budget_nodes) noexcept {
   if (!origin.allFinite() || !(std::abs(direction.squaredNorm() - 1.0) < 1e-6) || !(max_distance >= 0.0)) return {};
   return std::visit(
-      [&](const auto& hierarchy) -> std::optional<RayHit> {
-        const Vec3 local = origin - hierarchy.origin();
+      [&](const auto& tree) -> std::optional<RayHit> {
+        const Vec3 local = origin - tree.origin();
         // Nothing lies beyond the far side of the enclosing ball; this also makes an infinite length finite.
-        const double length = std::fmin(max_distance, (local.norm() + hierarchy.reach()) * (1.0 + 1e-9));
-        return cast(hierarchy, local, direction, length, budget_nodes);
+        const double length = std::fmin(max_distance, (local.norm() + tree.reach()) * (1.0 + 1e-9));
+        return cast(shape.mesh(), tree, local, direction, length, budget_nodes);
       },
-      shape.data().hierarchy);
+      shape.data().tree);
 }
 
 }  // namespace odds::query

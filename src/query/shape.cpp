@@ -1,6 +1,7 @@
 #include "odds/query/shape.hpp"
 
 #include <array>
+#include <bit>
 #include <chrono>
 #include <future>
 #include <string>
@@ -8,20 +9,21 @@
 #include "odds/mesh/enclosed_volume.hpp"
 #include "query/search.hpp"
 #include "query/shape_data.hpp"
+#include "query/wide_lookup.hpp"
 
 namespace odds::query {
 namespace {
 
 template <std::size_t... I>
-AnyHierarchy build_hierarchy(volume::Kind kind, const mesh::TriangleMesh& mesh, const tree::BuildOptions& options,
-                             const Progress& progress, std::index_sequence<I...>) {
-  AnyHierarchy hierarchy;
+AnyTree build_tree(volume::Kind kind, const mesh::TriangleMesh& mesh, const tree::BuildOptions& options,
+                   const Progress& progress, std::index_sequence<I...>) {
+  AnyTree tree;
   static_cast<void>(
       ((static_cast<std::size_t>(kind) == I
-            ? (hierarchy.emplace<I>(std::variant_alternative_t<I, AnyHierarchy>::build(mesh, options, progress)), true)
+            ? (tree.emplace<I>(std::variant_alternative_t<I, AnyTree>::build(mesh, options, progress)), true)
             : false) ||
        ...));
-  return hierarchy;
+  return tree;
 }
 
 template <volume::BoundingVolume V>
@@ -39,6 +41,28 @@ ShapeSummary summarise(const tree::Hierarchy<V>& hierarchy) {
     } else {
       ++inner;
       cells += hierarchy.statistics()[i].well_filled_cells;
+    }
+  }
+  summary.mean_leaf_triangles = static_cast<double>(summary.triangles) / static_cast<double>(summary.leaves);
+  summary.mean_well_filled_cells = inner == 0 ? 0.0 : cells / static_cast<double>(inner);
+  return summary;
+}
+
+ShapeSummary summarise(const tree::WideTree& tree) {
+  ShapeSummary summary;
+  summary.triangles = tree.triangle_count();
+  summary.nodes = tree.node_count();
+  summary.leaves = tree.leaf_count();
+  summary.depth = tree.levels();
+  summary.bytes = tree.bytes();
+  double cells = 0.0;
+  std::size_t inner = 0;
+  for (std::size_t node = 0; node < tree.node_count(); ++node) {
+    for (std::uint32_t lane = 0; lane < tree::wide_lanes; ++lane) {
+      const tree::ChildRef child = tree.nodes()[node].child[lane];
+      if (child.is_nothing() || child.is_leaf()) continue;
+      ++inner;
+      cells += tree.statistics(static_cast<tree::Slot>(node * tree::wide_lanes + lane)).well_filled_cells;
     }
   }
   summary.mean_leaf_triangles = static_cast<double>(summary.triangles) / static_cast<double>(summary.leaves);
@@ -75,8 +99,8 @@ struct Box {
 };
 
 template <volume::BoundingVolume V>
-std::size_t collect(const tree::Hierarchy<V>& hierarchy, const Box& box, std::span<std::uint32_t> found,
-                    std::uint64_t budget_nodes, bool& complete) noexcept {
+std::size_t collect(const mesh::TriangleMesh&, const tree::Hierarchy<V>& hierarchy, const Box& box,
+                    std::span<std::uint32_t> found, std::uint64_t budget_nodes, bool& complete) noexcept {
   const std::array<Vec3, 8> corners = box.corners();
   const V enclosing = V::fit(corners, box.axes);
   const double reach = hierarchy.reach() + box.center.norm() + box.half_extents.norm();
@@ -106,13 +130,54 @@ std::size_t collect(const tree::Hierarchy<V>& hierarchy, const Box& box, std::sp
   return count;
 }
 
+std::size_t collect(const mesh::TriangleMesh& mesh, const tree::WideTree& tree, const Box& box,
+                    std::span<std::uint32_t> found, std::uint64_t budget_nodes, bool& complete) noexcept {
+  const Vec3f center = box.center.cast<float>();
+  const Mat3f axes = box.axes.cast<float>();
+  const double largest = box.half_extents.maxCoeff();
+  const Vec3f half = (box.half_extents * (1.0 + 1e-6)).cast<float>();
+  const auto margin = static_cast<float>((tree.reach() + box.center.norm() + largest) * 32.0 * 0x1p-24);
+  std::array<tree::ChildRef, (tree::wide_lanes - 1) * (tree::deepest_level + 2)> stack;
+  std::size_t size = 0;
+  stack[size++] = tree.nodes()[0].child[0];
+  std::size_t count = 0;
+  std::uint64_t visited = 0;
+  complete = false;
+  while (size != 0) {
+    if (visited++ >= budget_nodes) return count;
+    const tree::ChildRef child = stack[--size];
+    if (!child.is_leaf()) {
+      const tree::WideNode& node = tree.nodes()[child.index()];
+      for (unsigned lanes = wide::lanes_in_box(node, center, axes, half, margin); lanes != 0; lanes &= lanes - 1U) {
+        stack[size++] = node.child[std::countr_zero(lanes)];
+      }
+      continue;
+    }
+    const tree::WideLeaf& leaf = tree.leaves()[child.index()];
+    for (std::uint32_t t = 0; t < child.count(); ++t) {
+      const mesh::Triangle& triangle = mesh.triangles()[leaf.triangle[t]];
+      if (!box.meets({mesh.vertices()[triangle[0]] - tree.origin(), mesh.vertices()[triangle[1]] - tree.origin(),
+                      mesh.vertices()[triangle[2]] - tree.origin()})) {
+        continue;
+      }
+      if (count == found.size()) return count;
+      found[count++] = leaf.triangle[t];
+    }
+  }
+  complete = true;
+  return count;
+}
+
 }  // namespace
 
 Result<std::shared_ptr<const Shape>> Shape::build(std::shared_ptr<const mesh::TriangleMesh> mesh,
                                                   const ShapeOptions& options, const Progress& progress) {
   if (!mesh) return Error{"", "", "no mesh was given", "pass a mesh that was made or read without an error"};
-  if (options.leaf_triangles < 1 || options.leaf_triangles > 16) {
-    return Error{mesh->name(), "", "leaf_triangles is " + std::to_string(options.leaf_triangles), "choose 1 to 16"};
+  const bool wide = options.volume == volume::Kind::wide;
+  const std::uint32_t most = wide ? tree::wide_lanes : 16;
+  if (options.leaf_triangles > most) {
+    return Error{mesh->name(), "", "leaf_triangles is " + std::to_string(options.leaf_triangles),
+                 "choose 1 to " + std::to_string(most) + ", or 0 for what suits the volume"};
   }
   if (!(options.tau > 0.0 && options.tau <= 1.0)) {
     return Error{mesh->name(), "", "tau is " + std::to_string(options.tau), "choose a value in (0, 1]"};
@@ -123,13 +188,14 @@ Result<std::shared_ptr<const Shape>> Shape::build(std::shared_ptr<const mesh::Tr
   const bool is_big = mesh->triangles().size() > 20000;
   auto solid = std::async(is_big ? std::launch::async | std::launch::deferred : std::launch::deferred,
                           [&mesh] { return closed_and_outward(*mesh); });
-  const tree::BuildOptions build_options{options.leaf_triangles, options.tau};
-  data->hierarchy = build_hierarchy(options.volume, *mesh, build_options, progress,
-                                    std::make_index_sequence<std::variant_size_v<AnyHierarchy>>());
-  data->solid = solid.get();
-  data->summary = std::visit([](const auto& hierarchy) { return summarise(hierarchy); }, data->hierarchy);
-  data->summary.build_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   data->options = options;
+  if (options.leaf_triangles == 0) data->options.leaf_triangles = wide ? tree::wide_lanes : 4;
+  const tree::BuildOptions build_options{data->options.leaf_triangles, options.tau};
+  data->tree = build_tree(options.volume, *mesh, build_options, progress,
+                          std::make_index_sequence<std::variant_size_v<AnyTree>>());
+  data->solid = solid.get();
+  data->summary = std::visit([](const auto& tree) { return summarise(tree); }, data->tree);
+  data->summary.build_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   data->mesh = std::move(mesh);
   return std::shared_ptr<const Shape>(new Shape(std::move(data)));
 }
@@ -149,11 +215,11 @@ std::size_t triangles_in_box(const Shape& shape, const Vec3& center, const Mat3&
   std::size_t count = 0;
   if (center.allFinite() && axes.allFinite() && half_extents.allFinite() && !found.empty()) {
     count = std::visit(
-        [&](const auto& hierarchy) {
-          return collect(hierarchy, Box{center - hierarchy.origin(), axes, half_extents.cwiseMax(0.0)}, found,
+        [&](const auto& tree) {
+          return collect(shape.mesh(), tree, Box{center - tree.origin(), axes, half_extents.cwiseMax(0.0)}, found,
                          budget_nodes, all);
         },
-        shape.data().hierarchy);
+        shape.data().tree);
   }
   if (complete != nullptr) *complete = all;
   return count;

@@ -6,6 +6,7 @@
 
 #include "odds/query/shape.hpp"
 #include "odds/tree/hierarchy.hpp"
+#include "odds/tree/wide_tree.hpp"
 #include "odds/volume/aabb.hpp"
 #include "odds/volume/hull.hpp"
 #include "odds/volume/kdop.hpp"
@@ -14,19 +15,23 @@
 
 namespace odds::query {
 
-/// In the order of volume::Kind.
-using AnyHierarchy =
-    std::variant<tree::Hierarchy<volume::Aabb>, tree::Hierarchy<volume::Obb>, tree::Hierarchy<volume::Sphere>,
-                 tree::Hierarchy<volume::Kdop14>, tree::Hierarchy<volume::Kdop18>, tree::Hierarchy<volume::Kdop26>,
-                 tree::Hierarchy<volume::Hull>>;
-static_assert(std::variant_size_v<AnyHierarchy> == volume::kind_names.size());
+template <class... V>
+struct Volumes {
+  using AnyTree = std::variant<tree::Hierarchy<V>..., tree::WideTree>;
+};
+
+/// The volumes of the generic framework, in the order of volume::Kind; the wide engine comes after them.
+using GenericVolumes =
+    Volumes<volume::Aabb, volume::Obb, volume::Sphere, volume::Kdop14, volume::Kdop18, volume::Kdop26, volume::Hull>;
+using AnyTree = GenericVolumes::AnyTree;
+static_assert(std::variant_size_v<AnyTree> == volume::kind_names.size());
 
 struct Shape::Data {
   std::shared_ptr<const mesh::TriangleMesh> mesh;
   ShapeOptions options;
   ShapeSummary summary;
   bool solid = false;  ///< closed, oriented outwards
-  AnyHierarchy hierarchy;
+  AnyTree tree;
 };
 
 }  // namespace odds::query

@@ -50,6 +50,8 @@ class Spending {
 
   /// Polls the clock if there is a deadline. False once the search should stop.
   [[nodiscard]] bool may_go_on() noexcept { return poll() < search_deadline_ns_ - writing_reserve_ns; }
+  /// The same, but looks at the clock only when `units` were spent since the last look.
+  [[nodiscard]] bool may_go_on_after(std::uint32_t units) noexcept { return unpolled_units_ < units || may_go_on(); }
   /// Whether there is time for a patch of contacts that takes up to `finishing_ns` from the moment that it hears that
   /// the time is up; if so, `may_make_contacts` says when that is.
   [[nodiscard]] bool begin_contacts(std::int64_t finishing_ns) noexcept {

@@ -129,7 +129,8 @@ std::vector<TriangleCorners> corners_about(const mesh::TriangleMesh& mesh, const
   return corners;
 }
 
-NodeSurface measure_surface(const Topology& topology, std::span<const TriangleCorners> corners) {
+NodeSurface measure_surface(const Topology& topology, std::span<const TriangleCorners> corners,
+                            std::span<const std::uint8_t> wanted) {
   NodeSurface surface;
   surface.statistics.resize(topology.nodes.size());
   surface.axes.resize(topology.nodes.size());
@@ -149,6 +150,7 @@ NodeSurface measure_surface(const Topology& topology, std::span<const TriangleCo
   }
   for_parts(topology.nodes.size(), 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
+      if (!wanted.empty() && wanted[i] == 0) continue;
       const TopologyNode& node = topology.nodes[i];
       surface.statistics[i].depth = node.depth;
       surface.statistics[i].height = node.height;

@@ -51,7 +51,9 @@ Names models_of(const std::string& folder, const std::string& concept_name) {
 }
 
 TEST(Lists, EveryBoundingVolumeHasItsHeaderAndItsName) {
-  EXPECT_EQ(models_of("include/odds/volume", "BoundingVolume"), as_file_names(volume::kind_names));
+  Names names = as_file_names(volume::kind_names);
+  names.erase("wide");  // an engine with volumes of its own, not a model of the concept
+  EXPECT_EQ(models_of("include/odds/volume", "BoundingVolume"), names);
 }
 
 TEST(Lists, EveryVolumeNameIsAKindAndBack) {

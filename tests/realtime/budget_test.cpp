@@ -52,7 +52,9 @@ TEST(Budget, EndsAtAnInjectedDeadlineWhateverIsAsked) {
           // once.
           const double allowed = (contacts > 0 ? 3.0 : 2.0) * step_ns * 1e-3;
           EXPECT_LE(answer.cost.overshoot_us, allowed) << volume::name(kind) << " method " << static_cast<int>(method);
-          EXPECT_LE(answer.cost.longest_unpolled_units, 4u) << "little work may pass between two polls";
+          // The wide engine tests 8 boxes or up to 64 pairs of triangles at once, each in a tenth of the time.
+          const std::uint32_t most = kind == volume::Kind::wide ? 112 : 4;
+          EXPECT_LE(answer.cost.longest_unpolled_units, most) << "little work may pass between two polls";
           EXPECT_TRUE(answer.probability >= 0.0 && answer.probability <= 1.0);
         }
       }

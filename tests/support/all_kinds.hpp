@@ -25,17 +25,17 @@ namespace odds::testing {
 
 namespace detail {
 
-template <class AnyHierarchy>
+template <class Volumes>
 struct VolumesOf;
 
 template <class... V>
-struct VolumesOf<std::variant<tree::Hierarchy<V>...>> {
+struct VolumesOf<query::Volumes<V...>> {
   using Types = ::testing::Types<V...>;
 };
 
 }  // namespace detail
 
-/// In the order of volume::Kind.
-using AllVolumes = detail::VolumesOf<query::AnyHierarchy>::Types;
+/// Of the generic framework, in the order of volume::Kind.
+using AllVolumes = detail::VolumesOf<query::GenericVolumes>::Types;
 
 }  // namespace odds::testing

@@ -100,7 +100,9 @@ TEST_P(PairOfSpheres, StopsAtAnInjectedDeadline) {
   const Answer& answer = at(1.99);
   EXPECT_LE(clock.readings(), 14);
   EXPECT_LE(answer.cost.overshoot_us, 1.0);
-  EXPECT_LE(answer.cost.longest_unpolled_units, 16u);
+  // The wide engine tests 8 boxes or up to 64 pairs of triangles at once, each in a tenth of the time.
+  const std::uint32_t most = std::get<0>(GetParam()) == volume::Kind::wide ? 112 : 16;
+  EXPECT_LE(answer.cost.longest_unpolled_units, most);
 }
 
 INSTANTIATE_TEST_SUITE_P(AllVolumesAndMethods, PairOfSpheres,

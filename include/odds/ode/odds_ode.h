@@ -47,17 +47,18 @@ typedef struct oddsMeshData* oddsMeshDataID;
 
 enum {
   ODDS_VOLUME_AABB = 0, /* axis-aligned boxes */
-  ODDS_VOLUME_OBB = 1,  /* oriented boxes (default) */
+  ODDS_VOLUME_OBB = 1,  /* oriented boxes */
   ODDS_VOLUME_SPHERE = 2,
   ODDS_VOLUME_KDOP14 = 3, /* slabs along 7 fixed directions */
   ODDS_VOLUME_KDOP18 = 4, /* 9 */
   ODDS_VOLUME_KDOP26 = 5, /* 13 */
-  ODDS_VOLUME_HULL = 6    /* convex hulls of at most 32 corners: least pairs, most time and memory for each */
+  ODDS_VOLUME_HULL = 6,   /* convex hulls of at most 32 corners: least pairs, most time and memory for each */
+  ODDS_VOLUME_WIDE = 7    /* the wide engine: boxes cut by slabs, eight tested at once (default) */
 };
 
 typedef struct oddsBuildParams {
   int volume;         /* ODDS_VOLUME_...; two meshes that meet must have the same one */
-  int leaf_triangles; /* most triangles in a leaf, 1 .. 16 */
+  int leaf_triangles; /* most triangles in a leaf, 1 .. 16 (wide: 8); 0: what suits the volume (default) */
   double tau;         /* filling from which a cell counts, in (0, 1] */
   const char* name;   /* stands in error messages; may be null */
 } oddsBuildParams;

@@ -12,10 +12,19 @@
 
 namespace odds::query {
 
+/// What the wide engine's searches run on. All give the same bits.
+enum class InstructionSet : std::uint8_t {
+  best,      ///< the widest that the program was built with and the processor has
+  avx2,      ///< x86, since 2013
+  sse2,      ///< every x86-64
+  portable,  ///< plain C++
+};
+
 struct PairOptions {
   std::uint32_t queue_capacity = 4096;   ///< pairs of nodes in the priority queue, 64 .. 2^20
   std::uint32_t slice_capacity = 16384;  ///< nodes of the test tree kept by the incremental method, 64 .. 2^24
   std::uint32_t hit_capacity = 256;      ///< intersecting triangle pairs kept for contacts, 8 .. 65536
+  InstructionSet instruction_set = InstructionSet::best;
 };
 
 /// A workspace for queries between two shapes. All memory is taken in `make`; `run` never allocates, locks, throws or
@@ -24,7 +33,7 @@ class Pair {
  public:
   struct Implementation;  // private to src/query
 
-  /// Refuses two shapes of unlike bounding volumes, and capacities out of range.
+  /// Refuses two shapes of unlike bounding volumes, capacities out of range, and instructions that are not there.
   static Result<Pair> make(std::shared_ptr<const Shape> a, std::shared_ptr<const Shape> b,
                            const PairOptions& options = {});
   ~Pair();

@@ -17,8 +17,8 @@ namespace odds::query {
 using Progress = std::function<void(double share)>;
 
 struct ShapeOptions {
-  volume::Kind volume = volume::Kind::obb;
-  std::uint32_t leaf_triangles = 4;  ///< most triangles in a leaf, 1 .. 16
+  volume::Kind volume = volume::Kind::wide;
+  std::uint32_t leaf_triangles = 0;  ///< most triangles in a leaf, 1 .. 16 (wide: 8); 0: 8 for wide, 4 for others
   double tau = 0.25;  ///< a cell is well filled from tau * MaxArea on, in (0, 1]; the book's value 1 is dead
                       ///< on smooth meshes (measured: 0-1 of 512 cells below the top levels)
 };

@@ -77,7 +77,7 @@ struct Scene {
       search;  ///< further directories for meshes; "${NAME}" stands for a variable of the environment
   Loop loop;
   query::Request query;
-  volume::Kind volume = volume::Kind::obb;
+  volume::Kind volume = volume::Kind::wide;
   ode::Solver solver = ode::Solver::exact;
   int solver_iterations = 20;
   std::uint32_t max_contacts = 64;  ///< of a step, all pairs together

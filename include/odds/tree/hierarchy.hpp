@@ -27,8 +27,10 @@ struct NodeSurface {
   std::vector<volume::PrincipalAxes> axes;
 };
 
-/// Area, centroid, normals, slab of every node of `topology`. `corners` in the order of the leaves.
-[[nodiscard]] NodeSurface measure_surface(const Topology& topology, std::span<const TriangleCorners> corners);
+/// Area, centroid, normals, slab of every node of `topology`, or of those for which `wanted` is not 0 if it is not
+/// empty. `corners` in the order of the leaves.
+[[nodiscard]] NodeSurface measure_surface(const Topology& topology, std::span<const TriangleCorners> corners,
+                                          std::span<const std::uint8_t> wanted = {});
 
 /// Fills in what relates the node's area to its bounding volume (m^3).
 void relate_area(NodeStatistics& node, double volume) noexcept;

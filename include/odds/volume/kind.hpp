@@ -9,10 +9,12 @@
 
 namespace odds::volume {
 
-enum class Kind : std::uint8_t { aabb, obb, sphere, kdop14, kdop18, kdop26, hull };
+/// `wide` is an engine of its own (boxes cut by slabs, eight to a node); the others are volumes of the generic
+/// framework.
+enum class Kind : std::uint8_t { aabb, obb, sphere, kdop14, kdop18, kdop26, hull, wide };
 
-inline constexpr std::array<std::string_view, 7> kind_names = {"aabb",   "obb",    "sphere", "kdop14",
-                                                               "kdop18", "kdop26", "hull"};
+inline constexpr std::array<std::string_view, 8> kind_names = {"aabb",   "obb",    "sphere", "kdop14",
+                                                               "kdop18", "kdop26", "hull",   "wide"};
 
 /// Further words that are understood, never written.
 inline constexpr std::array<std::pair<std::string_view, Kind>, 1> kind_aliases = {{{"kdop", Kind::kdop18}}};

@@ -1,0 +1,247 @@
+// Eight floats at a time: AVX2, two SSE registers, or plain loops. All three give the same bits: no fused multiply-add.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
+
+// Everything here must vanish into its caller: a function of its own, compiled with wider instructions than the
+// processor may have, could be the one that the linker keeps for all callers.
+#define ODDS_LANES_INLINE [[gnu::always_inline]] inline
+
+namespace odds::query::lanes {
+
+/// For each mask the lanes that it names, in order; the rest is filled with zeros.
+struct LaneOrder {
+  std::uint8_t of[256][8];
+};
+inline constexpr LaneOrder lane_order = [] {
+  LaneOrder order{};
+  for (unsigned mask = 0; mask < 256; ++mask) {
+    unsigned count = 0;
+    for (unsigned lane = 0; lane < 8; ++lane) {
+      if ((mask >> lane & 1U) != 0) order.of[mask][count++] = static_cast<std::uint8_t>(lane);
+    }
+  }
+  return order;
+}();
+
+#if defined(__AVX2__)
+struct Avx2 {
+  struct Float {
+    __m256 v;
+  };
+  static constexpr const char* name = "avx2";
+  ODDS_LANES_INLINE static Float load(const float* p) noexcept { return {_mm256_load_ps(p)}; }
+  ODDS_LANES_INLINE static void store(float* p, Float a) noexcept { _mm256_store_ps(p, a.v); }
+  ODDS_LANES_INLINE static Float all(float x) noexcept { return {_mm256_set1_ps(x)}; }
+  ODDS_LANES_INLINE static Float abs(Float a) noexcept { return {_mm256_andnot_ps(_mm256_set1_ps(-0.0F), a.v)}; }
+  ODDS_LANES_INLINE static Float divide(Float a, Float b) noexcept { return {_mm256_div_ps(a.v, b.v)}; }
+  /// Exponent of positive normal numbers, and mantissa - 1 in [0, 1).
+  ODDS_LANES_INLINE static void split(Float a, Float& exponent, Float& fraction) noexcept {
+    const __m256i bits = _mm256_castps_si256(a.v);
+    exponent.v = _mm256_cvtepi32_ps(_mm256_sub_epi32(_mm256_srli_epi32(bits, 23), _mm256_set1_epi32(127)));
+    const __m256i one = _mm256_set1_epi32(0x3F800000);
+    const __m256i mantissa = _mm256_and_si256(bits, _mm256_set1_epi32(0x007FFFFF));
+    fraction.v = _mm256_sub_ps(_mm256_castsi256_ps(_mm256_or_si256(mantissa, one)), _mm256_set1_ps(1.0F));
+  }
+  ODDS_LANES_INLINE static Float min(Float a, Float b) noexcept { return {_mm256_min_ps(a.v, b.v)}; }
+  ODDS_LANES_INLINE static Float max(Float a, Float b) noexcept { return {_mm256_max_ps(a.v, b.v)}; }
+  ODDS_LANES_INLINE static unsigned less_equal(Float a, Float b) noexcept {
+    return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(a.v, b.v, _CMP_LE_OQ)));
+  }
+  /// Writes `first` + lane for every lane of the mask, in order, to `to`, and anything to the rest of to[0 .. 8).
+  ODDS_LANES_INLINE static void write_lanes(std::uint32_t* to, std::uint32_t first, unsigned mask) noexcept {
+    const __m128i packed = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(lane_order.of[mask]));
+    const __m256i lanes = _mm256_add_epi32(_mm256_cvtepu8_epi32(packed), _mm256_set1_epi32(static_cast<int>(first)));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), lanes);
+  }
+  ODDS_LANES_INLINE static void write_all(std::uint32_t* to, std::uint32_t value) noexcept {
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_set1_epi32(static_cast<int>(value)));
+  }
+  /// Bits of the lanes whose highest bit is set.
+  ODDS_LANES_INLINE static unsigned highest_bits(const void* eight) noexcept {
+    return static_cast<unsigned>(_mm256_movemask_ps(_mm256_load_ps(static_cast<const float*>(eight))));
+  }
+  /// A lane with the least value.
+  ODDS_LANES_INLINE static unsigned least(Float a) noexcept {
+    __m256 m = _mm256_min_ps(a.v, _mm256_permute2f128_ps(a.v, a.v, 1));
+    m = _mm256_min_ps(m, _mm256_shuffle_ps(m, m, 0x4E));
+    m = _mm256_min_ps(m, _mm256_shuffle_ps(m, m, 0xB1));
+    return static_cast<unsigned>(
+        __builtin_ctz(static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(a.v, m, _CMP_LE_OQ))) | 0x100U));
+  }
+};
+ODDS_LANES_INLINE Avx2::Float operator+(Avx2::Float a, Avx2::Float b) noexcept { return {_mm256_add_ps(a.v, b.v)}; }
+ODDS_LANES_INLINE Avx2::Float operator-(Avx2::Float a, Avx2::Float b) noexcept { return {_mm256_sub_ps(a.v, b.v)}; }
+ODDS_LANES_INLINE Avx2::Float operator*(Avx2::Float a, Avx2::Float b) noexcept { return {_mm256_mul_ps(a.v, b.v)}; }
+#endif
+
+#if defined(__SSE2__)
+struct Sse2 {
+  struct Float {
+    __m128 lo, hi;
+  };
+  static constexpr const char* name = "sse2";
+  ODDS_LANES_INLINE static Float load(const float* p) noexcept { return {_mm_load_ps(p), _mm_load_ps(p + 4)}; }
+  ODDS_LANES_INLINE static void store(float* p, Float a) noexcept {
+    _mm_store_ps(p, a.lo);
+    _mm_store_ps(p + 4, a.hi);
+  }
+  ODDS_LANES_INLINE static Float all(float x) noexcept { return {_mm_set1_ps(x), _mm_set1_ps(x)}; }
+  ODDS_LANES_INLINE static Float abs(Float a) noexcept {
+    const __m128 sign = _mm_set1_ps(-0.0F);
+    return {_mm_andnot_ps(sign, a.lo), _mm_andnot_ps(sign, a.hi)};
+  }
+  ODDS_LANES_INLINE static Float divide(Float a, Float b) noexcept {
+    return {_mm_div_ps(a.lo, b.lo), _mm_div_ps(a.hi, b.hi)};
+  }
+  ODDS_LANES_INLINE static void split(Float a, Float& exponent, Float& fraction) noexcept {
+    split_four(a.lo, exponent.lo, fraction.lo);
+    split_four(a.hi, exponent.hi, fraction.hi);
+  }
+  ODDS_LANES_INLINE static void split_four(__m128 a, __m128& exponent, __m128& fraction) noexcept {
+    const __m128i bits = _mm_castps_si128(a);
+    exponent = _mm_cvtepi32_ps(_mm_sub_epi32(_mm_srli_epi32(bits, 23), _mm_set1_epi32(127)));
+    const __m128i mantissa = _mm_and_si128(bits, _mm_set1_epi32(0x007FFFFF));
+    fraction = _mm_sub_ps(_mm_castsi128_ps(_mm_or_si128(mantissa, _mm_set1_epi32(0x3F800000))), _mm_set1_ps(1.0F));
+  }
+  ODDS_LANES_INLINE static Float min(Float a, Float b) noexcept {
+    return {_mm_min_ps(a.lo, b.lo), _mm_min_ps(a.hi, b.hi)};
+  }
+  ODDS_LANES_INLINE static Float max(Float a, Float b) noexcept {
+    return {_mm_max_ps(a.lo, b.lo), _mm_max_ps(a.hi, b.hi)};
+  }
+  ODDS_LANES_INLINE static unsigned less_equal(Float a, Float b) noexcept {
+    return static_cast<unsigned>(_mm_movemask_ps(_mm_cmple_ps(a.lo, b.lo))) |
+           (static_cast<unsigned>(_mm_movemask_ps(_mm_cmple_ps(a.hi, b.hi))) << 4U);
+  }
+  ODDS_LANES_INLINE static void write_lanes(std::uint32_t* to, std::uint32_t first, unsigned mask) noexcept {
+    for (int i = 0; i < 8; ++i) to[i] = first + lane_order.of[mask][i];
+  }
+  ODDS_LANES_INLINE static void write_all(std::uint32_t* to, std::uint32_t value) noexcept {
+    for (int i = 0; i < 8; ++i) to[i] = value;
+  }
+  ODDS_LANES_INLINE static unsigned highest_bits(const void* eight) noexcept {
+    const auto* lanes = static_cast<const float*>(eight);
+    return static_cast<unsigned>(_mm_movemask_ps(_mm_load_ps(lanes))) |
+           (static_cast<unsigned>(_mm_movemask_ps(_mm_load_ps(lanes + 4))) << 4U);
+  }
+  ODDS_LANES_INLINE static unsigned least(Float a) noexcept {
+    __m128 m = _mm_min_ps(a.lo, a.hi);
+    m = _mm_min_ps(m, _mm_shuffle_ps(m, m, 0x4E));
+    m = _mm_min_ps(m, _mm_shuffle_ps(m, m, 0xB1));
+    return static_cast<unsigned>(__builtin_ctz(less_equal(a, {m, m}) | 0x100U));
+  }
+};
+ODDS_LANES_INLINE Sse2::Float operator+(Sse2::Float a, Sse2::Float b) noexcept {
+  return {_mm_add_ps(a.lo, b.lo), _mm_add_ps(a.hi, b.hi)};
+}
+ODDS_LANES_INLINE Sse2::Float operator-(Sse2::Float a, Sse2::Float b) noexcept {
+  return {_mm_sub_ps(a.lo, b.lo), _mm_sub_ps(a.hi, b.hi)};
+}
+ODDS_LANES_INLINE Sse2::Float operator*(Sse2::Float a, Sse2::Float b) noexcept {
+  return {_mm_mul_ps(a.lo, b.lo), _mm_mul_ps(a.hi, b.hi)};
+}
+#endif
+
+/// For every other processor; compilers make vector code of these loops where it has any.
+struct Portable {
+  struct Float {
+    float v[8];
+  };
+  static constexpr const char* name = "portable";
+  ODDS_LANES_INLINE static Float load(const float* p) noexcept {
+    Float result;
+    for (int i = 0; i < 8; ++i) result.v[i] = p[i];
+    return result;
+  }
+  ODDS_LANES_INLINE static void store(float* p, const Float& a) noexcept {
+    for (int i = 0; i < 8; ++i) p[i] = a.v[i];
+  }
+  ODDS_LANES_INLINE static Float all(float x) noexcept {
+    Float result;
+    for (float& lane : result.v) lane = x;
+    return result;
+  }
+  ODDS_LANES_INLINE static Float abs(const Float& a) noexcept {
+    Float result;
+    for (int i = 0; i < 8; ++i) result.v[i] = a.v[i] < 0.0F ? -a.v[i] : a.v[i];
+    return result;
+  }
+  ODDS_LANES_INLINE static Float divide(const Float& a, const Float& b) noexcept {
+    Float result;
+    for (int i = 0; i < 8; ++i) result.v[i] = a.v[i] / b.v[i];
+    return result;
+  }
+  ODDS_LANES_INLINE static void split(const Float& a, Float& exponent, Float& fraction) noexcept {
+    for (int i = 0; i < 8; ++i) {
+      const auto bits = std::bit_cast<std::uint32_t>(a.v[i]);
+      exponent.v[i] = static_cast<float>(static_cast<std::int32_t>(bits >> 23U) - 127);
+      fraction.v[i] = std::bit_cast<float>((bits & 0x007FFFFFU) | 0x3F800000U) - 1.0F;
+    }
+  }
+  ODDS_LANES_INLINE static Float min(const Float& a, const Float& b) noexcept {
+    Float result;
+    for (int i = 0; i < 8; ++i) result.v[i] = a.v[i] < b.v[i] ? a.v[i] : b.v[i];
+    return result;
+  }
+  ODDS_LANES_INLINE static Float max(const Float& a, const Float& b) noexcept {
+    Float result;
+    for (int i = 0; i < 8; ++i) result.v[i] = a.v[i] > b.v[i] ? a.v[i] : b.v[i];
+    return result;
+  }
+  ODDS_LANES_INLINE static unsigned less_equal(const Float& a, const Float& b) noexcept {
+    unsigned mask = 0;
+    for (int i = 0; i < 8; ++i) mask |= (a.v[i] <= b.v[i] ? 1U : 0U) << static_cast<unsigned>(i);
+    return mask;
+  }
+  ODDS_LANES_INLINE static void write_lanes(std::uint32_t* to, std::uint32_t first, unsigned mask) noexcept {
+    for (int i = 0; i < 8; ++i) to[i] = first + lane_order.of[mask][i];
+  }
+  ODDS_LANES_INLINE static void write_all(std::uint32_t* to, std::uint32_t value) noexcept {
+    for (int i = 0; i < 8; ++i) to[i] = value;
+  }
+  ODDS_LANES_INLINE static unsigned highest_bits(const void* eight) noexcept {
+    std::uint32_t lanes[8];
+    std::memcpy(lanes, eight, sizeof lanes);
+    unsigned mask = 0;
+    for (unsigned i = 0; i < 8; ++i) mask |= (lanes[i] >> 31U) << i;
+    return mask;
+  }
+  ODDS_LANES_INLINE static unsigned least(const Float& a) noexcept {
+    unsigned lane = 0;
+    for (unsigned i = 1; i < 8; ++i) lane = a.v[i] < a.v[lane] ? i : lane;
+    return lane;
+  }
+};
+ODDS_LANES_INLINE Portable::Float operator+(const Portable::Float& a, const Portable::Float& b) noexcept {
+  Portable::Float result;
+  for (int i = 0; i < 8; ++i) result.v[i] = a.v[i] + b.v[i];
+  return result;
+}
+ODDS_LANES_INLINE Portable::Float operator-(const Portable::Float& a, const Portable::Float& b) noexcept {
+  Portable::Float result;
+  for (int i = 0; i < 8; ++i) result.v[i] = a.v[i] - b.v[i];
+  return result;
+}
+ODDS_LANES_INLINE Portable::Float operator*(const Portable::Float& a, const Portable::Float& b) noexcept {
+  Portable::Float result;
+  for (int i = 0; i < 8; ++i) result.v[i] = a.v[i] * b.v[i];
+  return result;
+}
+
+/// log2 of positive normal numbers; absolute error < 0.01. See math::rough_log2.
+template <class L>
+ODDS_LANES_INLINE typename L::Float rough_log2(typename L::Float x) noexcept {
+  typename L::Float exponent;
+  typename L::Float fraction;
+  L::split(x, exponent, fraction);
+  return exponent + fraction * (L::all(1.33985F) - L::all(0.33985F) * fraction);
+}
+
+}  // namespace odds::query::lanes

@@ -1,0 +1,82 @@
+#include "query/wide_encounter.hpp"
+
+#include <cmath>
+
+#include "query/node_odds.hpp"
+
+namespace odds::query::wide {
+namespace {
+
+Turn make_turn(const volume::RelativePose& pose) noexcept {
+  const auto vector = [](const auto& v) { return Vector{v[0], v[1], v[2], 0.0F}; };
+  Turn turn;
+  for (int j = 0; j < 3; ++j) {
+    turn.column[j] = vector(pose.rotation.col(j));
+    turn.abs_column[j] = vector(pose.abs_rotation.col(j));
+  }
+  turn.t = vector(pose.translation);
+  return turn;
+}
+
+}  // namespace
+
+Encounter::Encounter(const tree::WideTree& a, const tree::WideTree& b, const PosedMeshes& meshes,
+                     EstimatorKind estimator) noexcept
+    : a_(a), b_(b), meshes_(meshes), nodes_{a.nodes(), b.nodes()}, estimator_(estimator) {
+  const math::Pose& pose = meshes.pose();
+  const double reach = a.reach() + b.reach();
+  far_apart_ = !(pose.translation.norm() <= reach * (1.0 + 1e-9));
+  relative_ = volume::RelativePose::make(pose, 2.0 * reach);
+  turns_[0] = make_turn(relative_);
+  turns_[1] = make_turn(volume::RelativePose::make(pose.inverse(), 2.0 * reach));
+  margin_ = relative_.margin;
+}
+
+void Encounter::shift(Slot slot_a, Slot slot_b, float shift[3]) const noexcept {
+  const tree::WideNode& node_a = a_.nodes()[slot_a / wide_lanes];
+  const tree::WideNode& node_b = b_.nodes()[slot_b / wide_lanes];
+  const std::uint32_t i = slot_a % wide_lanes;
+  const std::uint32_t j = slot_b % wide_lanes;
+  const Vec3 center_a(static_cast<double>(node_a.center[0][i]), static_cast<double>(node_a.center[1][i]),
+                      static_cast<double>(node_a.center[2][i]));
+  const Vec3 center_b(static_cast<double>(node_b.center[0][j]), static_cast<double>(node_b.center[1][j]),
+                      static_cast<double>(node_b.center[2][j]));
+  const Vec3 difference = meshes_.pose() * center_b - center_a;
+  for (int k = 0; k < 3; ++k) shift[k] = static_cast<float>(difference[k]);
+}
+
+bool Encounter::triangles_meet(std::uint32_t triangle_a, std::uint32_t triangle_b) const noexcept {
+  return meshes_.meet({triangle_a, triangle_b});
+}
+
+volume::Aabb Encounter::box(const tree::WideTree& tree, Slot slot) noexcept {
+  const tree::WideNode& node = tree.nodes()[slot / wide_lanes];
+  const std::uint32_t lane = slot % wide_lanes;
+  volume::Aabb box;
+  box.center_ = Vec3f(node.center[0][lane], node.center[1][lane], node.center[2][lane]);
+  box.half_ = Vec3f(node.half[0][lane], node.half[1][lane], node.half[2][lane]);
+  return box;
+}
+
+float Encounter::rank(Slot slot_a, Slot slot_b) const noexcept {
+  const volume::Aabb a = box(a_, slot_a);
+  const volume::Aabb b = box(b_, slot_b);
+  return met_rank({a_.statistics(slot_a), b_.statistics(slot_b), relative_.rotation, a.volume(), b.volume(),
+                   overlap_volume(a, b, relative_)},
+                  estimator_, {a_.levels(), b_.levels()});
+}
+
+float Encounter::probability(Slot slot_a, Slot slot_b) const noexcept {
+  const volume::Aabb a = box(a_, slot_a);
+  const volume::Aabb b = box(b_, slot_b);
+  return met_probability({a_.statistics(slot_a), b_.statistics(slot_b), relative_.rotation, a.volume(), b.volume(),
+                          overlap_volume(a, b, relative_)},
+                         estimator_, {a_.levels(), b_.levels()});
+}
+
+Contact Encounter::cell_contact(Slot slot_a, Slot slot_b) const noexcept {
+  return met_contact(a_.statistics(slot_a), b_.statistics(slot_b), box(a_, slot_a).radius(), box(b_, slot_b).radius(),
+                     meshes_.pose(), a_.origin(), static_cast<double>(probability(slot_a, slot_b)));
+}
+
+}  // namespace odds::query::wide

@@ -1,0 +1,58 @@
+// Two wide trees in one relative pose: what the wide searches ask besides their kernels.
+#pragma once
+
+#include <algorithm>
+
+#include "odds/query/answer.hpp"
+#include "odds/query/request.hpp"
+#include "odds/tree/wide_tree.hpp"
+#include "odds/volume/aabb.hpp"
+#include "query/posed_meshes.hpp"
+#include "query/wide_kernel.hpp"
+
+namespace odds::query::wide {
+
+/// Made once per query. Both trees and the posed meshes must outlive it.
+class Encounter {
+ public:
+  Encounter(const tree::WideTree& a, const tree::WideTree& b, const PosedMeshes& meshes,
+            EstimatorKind estimator) noexcept;
+
+  /// See query::Encounter::far_apart.
+  [[nodiscard]] bool far_apart() const noexcept { return far_apart_; }
+
+  [[nodiscard]] const tree::WideTree& a() const noexcept { return a_; }
+  [[nodiscard]] const tree::WideTree& b() const noexcept { return b_; }
+  /// Sides are 0 (A) and 1 (B).
+  [[nodiscard]] const WideNode* nodes(std::uint32_t side) const noexcept { return nodes_[side]; }
+  /// How the other tree's frame stands in this side's.
+  [[nodiscard]] const Turn& turn_into(std::uint32_t side) const noexcept { return turns_[side]; }
+  /// Covers the rounding of all tests of bounding volumes, metres.
+  [[nodiscard]] float margin() const noexcept { return margin_; }
+
+  /// Where the centre of B's slot stands from that of A's, in A's frame: in doubles, so that near pairs lose nothing.
+  void shift(Slot slot_a, Slot slot_b, float shift[3]) const noexcept;
+
+  /// The exact test of two triangles, given by their indices in the meshes.
+  [[nodiscard]] bool triangles_meet(std::uint32_t triangle_a, std::uint32_t triangle_b) const noexcept;
+
+  /// See query::Encounter.
+  [[nodiscard]] float rank(Slot slot_a, Slot slot_b) const noexcept;
+  [[nodiscard]] float probability(Slot slot_a, Slot slot_b) const noexcept;
+  [[nodiscard]] Contact cell_contact(Slot slot_a, Slot slot_b) const noexcept;
+
+ private:
+  [[nodiscard]] static volume::Aabb box(const tree::WideTree& tree, Slot slot) noexcept;
+
+  const tree::WideTree& a_;
+  const tree::WideTree& b_;
+  const PosedMeshes& meshes_;
+  volume::RelativePose relative_;
+  const WideNode* nodes_[2];
+  Turn turns_[2];
+  float margin_ = 0.0F;
+  bool far_apart_ = false;
+  EstimatorKind estimator_;
+};
+
+}  // namespace odds::query::wide

@@ -1,0 +1,323 @@
+// The two inner loops of the wide engine: one bounding volume against eight, and eight triangles against eight.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "odds/tree/wide_tree.hpp"
+#include "odds/volume/concept.hpp"
+#include "query/lanes.hpp"
+
+namespace odds::query::wide {
+
+using tree::Slot;
+using tree::wide_lanes;
+using tree::WideLeaf;
+using tree::WideNode;
+
+/// Four floats that the compiler keeps together; the last is not used.
+using Vector = float __attribute__((vector_size(16)));
+
+/// How the other tree's frame stands in this one's: x_this = u x_other + t. Plain floats.
+struct Turn {
+  Vector column[3];      ///< of u
+  Vector abs_column[3];  ///< |u|, rounded up
+  Vector t;              ///< metres
+};
+
+/// One lane's bounding volume, seen from the other tree's frame.
+struct TurnedBox {
+  Vector center;
+  Vector extent;  ///< of the box along this frame's axes
+  Vector normal;
+  float half[3];  ///< along its own axes, the columns of u
+  float offset;
+  float thickness;
+};
+
+ODDS_LANES_INLINE TurnedBox turn(const WideNode& node, std::uint32_t lane, const Turn& turn) noexcept {
+  TurnedBox box;
+  const Vector(&u)[3] = turn.column;
+  const Vector(&au)[3] = turn.abs_column;
+  for (int i = 0; i < 3; ++i) box.half[i] = node.half[i][lane];
+  box.center = ((u[0] * node.center[0][lane] + u[1] * node.center[1][lane]) + u[2] * node.center[2][lane]) + turn.t;
+  box.extent = (au[0] * box.half[0] + au[1] * box.half[1]) + au[2] * box.half[2];
+  box.normal = (u[0] * node.normal[0][lane] + u[1] * node.normal[1][lane]) + u[2] * node.normal[2][lane];
+  const Vector along = box.normal * turn.t;
+  box.offset = ((along[0] + along[1]) + along[2]) + node.offset[lane];
+  box.thickness = node.thickness[lane];
+  return box;
+}
+
+/// Size that decides which side to descend into: half the box's diagonal, squared.
+ODDS_LANES_INLINE float squared_radius(const WideNode& node, std::uint32_t lane) noexcept {
+  const float x = node.half[0][lane];
+  const float y = node.half[1][lane];
+  const float z = node.half[2][lane];
+  return x * x + y * y + z * z;
+}
+
+/// What one test of a bounding volume against eight lanes computes.
+template <class L>
+struct Gaps {
+  using F = typename L::Float;
+  F gap;        ///< metres; a lower bound of the distance to each lane, <= 0 where nothing separates
+  F own[3];     ///< gap along each axis of this frame
+  F turned[3];  ///< gap along each axis of the turned box
+  F half[3];    ///< of the lanes
+  F reach[3];   ///< of the lanes along the turned box's axes
+  F normal[3];  ///< of the lanes' slabs
+};
+
+/// Separating axes: the three of each box and the normals of both slabs (the nine edge pairs never paid). The gap along
+/// any axis of length at most 1 bounds the distance from below, up to the rounding that `margin` of the encounter
+/// covers.
+template <class L>
+ODDS_LANES_INLINE Gaps<L> gaps(const WideNode& node, const TurnedBox& box, const Turn& turn) noexcept {
+  using F = typename L::Float;
+  Gaps<L> found;
+  F d[3];
+  F c[3];
+  F(&h)[3] = found.half;
+  for (int i = 0; i < 3; ++i) {
+    c[i] = L::load(node.center[i]);
+    h[i] = L::load(node.half[i]);
+    d[i] = L::all(box.center[i]) - c[i];
+    found.own[i] = L::abs(d[i]) - (h[i] + L::all(box.extent[i]));
+  }
+  F gap = L::max(L::max(found.own[0], found.own[1]), found.own[2]);
+  {  // the box's slab
+    const F along = (L::all(box.normal[0]) * c[0] + L::all(box.normal[1]) * c[1]) + L::all(box.normal[2]) * c[2];
+    const F reach = (L::abs(L::all(box.normal[0])) * h[0] + L::abs(L::all(box.normal[1])) * h[1]) +
+                    L::abs(L::all(box.normal[2])) * h[2];
+    gap = L::max(gap, L::abs(along - L::all(box.offset)) - (reach + L::all(box.thickness)));
+  }
+  F(&n)[3] = found.normal;
+  for (int i = 0; i < 3; ++i) n[i] = L::load(node.normal[i]);
+  {  // the lanes' slabs
+    const F along = (n[0] * L::all(box.center[0]) + n[1] * L::all(box.center[1])) + n[2] * L::all(box.center[2]);
+    F reach = L::load(node.thickness);
+    for (int j = 0; j < 3; ++j) {
+      const F cosine =
+          (n[0] * L::all(turn.column[j][0]) + n[1] * L::all(turn.column[j][1])) + n[2] * L::all(turn.column[j][2]);
+      reach = reach + L::abs(cosine) * L::all(box.half[j]);
+    }
+    gap = L::max(gap, L::abs(along - L::load(node.offset)) - reach);
+  }
+  for (int j = 0; j < 3; ++j) {  // the box's own axes
+    const F along =
+        (d[0] * L::all(turn.column[j][0]) + d[1] * L::all(turn.column[j][1])) + d[2] * L::all(turn.column[j][2]);
+    found.reach[j] = (h[0] * L::all(turn.abs_column[j][0]) + h[1] * L::all(turn.abs_column[j][1])) +
+                     h[2] * L::all(turn.abs_column[j][2]);
+    found.turned[j] = L::abs(along) - (found.reach[j] + L::all(box.half[j]));
+    gap = L::max(gap, found.turned[j]);
+  }
+  found.gap = gap;
+  return found;
+}
+
+/// log2 of the kinematic rate of each overlapping lane, as probability::log_kinematic_rate gives it, but from what the
+/// test computed anyway: the overlap of boxes as in volume::box_overlap_volume, and the normals' spread as that of a
+/// surface which is symmetric about its slab's normal. Lanes that do not overlap get anything but NaN.
+template <class L>
+ODDS_LANES_INLINE typename L::Float ranks(const WideNode& node, const WideNode& other, std::uint32_t lane,
+                                          const TurnedBox& box, const Gaps<L>& found) noexcept {
+  using F = typename L::Float;
+  const float largest_half = std::max(std::max(box.half[0], box.half[1]), box.half[2]);
+  const float floor = volume::thickness_floor * largest_half;
+  const F lanes_floor = L::all(volume::thickness_floor) * L::max(L::max(found.half[0], found.half[1]), found.half[2]);
+  // No overlap is thinner than the thickness floor of the flatter volume.
+  const F least = L::max(L::min(L::all(floor), lanes_floor), L::all(1e-12F));
+  F here = L::all(1.0F);          // product of the overlaps along this frame's axes
+  F there = L::all(1.0F);         // along the turned box's
+  F lanes_volume = L::all(1.0F);  // an eighth
+  F enclosure = L::all(1.0F);     // of the lanes in the turned box's axes, an eighth
+  float box_volume = 1.0F;
+  float box_enclosure = 1.0F;
+  for (int i = 0; i < 3; ++i) {
+    const F none = L::all(0.0F);
+    const float extent = std::max(box.extent[i], floor);
+    const float half = std::max(box.half[i], floor);
+    const F lanes_half = L::max(found.half[i], lanes_floor);
+    const F reach = L::max(found.reach[i], lanes_floor);
+    here = here * L::max(L::min(none - found.own[i], L::all(2.0F) * L::min(lanes_half, L::all(extent))), least);
+    there = there * L::max(L::min(none - found.turned[i], L::all(2.0F) * L::min(reach, L::all(half))), least);
+    lanes_volume = lanes_volume * lanes_half;
+    enclosure = enclosure * reach;
+    box_volume *= half;
+    box_enclosure *= extent;
+  }
+  const F common = L::min(L::min(here * L::all(box_volume / box_enclosure), there * L::divide(lanes_volume, enclosure)),
+                          L::all(8.0F) * L::min(lanes_volume, L::all(box_volume)));
+  const F cosine = (found.normal[0] * L::all(box.normal[0]) + found.normal[1] * L::all(box.normal[1])) +
+                   found.normal[2] * L::all(box.normal[2]);
+  // Moments a I + b n n^T of both surfaces: tr(M_A M_B) = 3 aa' + ab' + ba' + bb' cos^2.
+  const F w = L::load(node.flatness);
+  const F a = L::all(0.5F) * (L::all(1.0F) - w);
+  const F b = w - a;
+  const float other_w = other.flatness[lane];
+  const float other_a = 0.5F * (1.0F - other_w);
+  const float other_b = other_w - other_a;
+  const F trace = a * L::all(3.0F * other_a + other_b) + b * (L::all(other_a) + L::all(other_b) * (cosine * cosine));
+  const F sine = L::max(L::all(1.0F) - trace, L::all(0.0F)) + L::all(1e-4F);
+  const F log_common = lanes::rough_log2<L>(L::max(common, L::all(1e-36F)));
+  return (L::load(node.log_density) + L::all(other.log_density[lane])) +
+         (log_common * L::all(2.0F / 3.0F) + lanes::rough_log2<L>(sine) * L::all(0.5F));
+}
+
+/// For each triangle of leaf B the triangles of leaf A that it may meet, as bits.
+struct LeafPairs {
+  std::uint8_t lanes_a[wide_lanes];
+  std::uint32_t rows = 0;    ///< bits of B's triangles with any
+  std::uint32_t tested = 0;  ///< pairs of triangles compared
+};
+
+template <class L>
+struct EightTriangles {
+  using F = typename L::Float;
+  F corner[3][3];  // [corner][axis]
+  F lower[3];
+  F upper[3];
+  F normal[3];
+  F tolerance;  // of a product with the normal
+
+  ODDS_LANES_INLINE void bound() noexcept {
+    for (int i = 0; i < 3; ++i) {
+      lower[i] = L::min(L::min(corner[0][i], corner[1][i]), corner[2][i]);
+      upper[i] = L::max(L::max(corner[0][i], corner[1][i]), corner[2][i]);
+    }
+  }
+  /// `delta`: error of a coordinate; `span`: bound of all coordinates.
+  ODDS_LANES_INLINE void find_planes(float delta, float span) noexcept {
+    F u[3];
+    F v[3];
+    F longest = L::all(0.0F);
+    for (int i = 0; i < 3; ++i) {
+      u[i] = corner[1][i] - corner[0][i];
+      v[i] = corner[2][i] - corner[0][i];
+      longest = L::max(longest, L::max(L::abs(u[i]), L::abs(v[i])));
+    }
+    normal[0] = u[1] * v[2] - u[2] * v[1];
+    normal[1] = u[2] * v[0] - u[0] * v[2];
+    normal[2] = u[0] * v[1] - u[1] * v[0];
+    // A normal's component errs by 9 delta E, a difference of points by 2 delta and is at most 2 span long: the sum of
+    // three products errs by less than 32 delta E (2 span + E), their own rounding included.
+    tolerance = L::all(32.0F * delta) * longest * (L::all(2.0F * span) + longest);
+  }
+};
+
+/// One triangle against eight: false lanes are certainly apart.
+template <class L>
+ODDS_LANES_INLINE unsigned may_meet(const EightTriangles<L>& a, const float b[3][3], const float lower[3],
+                                    const float upper[3], const float normal[3], float tolerance,
+                                    float delta) noexcept {
+  using F = typename L::Float;
+  unsigned mask = 0xFFU;
+  for (int i = 0; i < 3; ++i) {
+    mask &= L::less_equal(a.lower[i], L::all(upper[i] + delta)) & L::less_equal(L::all(lower[i] - delta), a.upper[i]);
+  }
+  if (mask == 0) return 0;
+  F low = L::all(0.0F);
+  F high = low;
+  for (int k = 0; k < 3; ++k) {  // A's corners from B's plane
+    F height = L::all(normal[0]) * (a.corner[k][0] - L::all(b[0][0]));
+    height = height + L::all(normal[1]) * (a.corner[k][1] - L::all(b[0][1]));
+    height = height + L::all(normal[2]) * (a.corner[k][2] - L::all(b[0][2]));
+    low = k == 0 ? height : L::min(low, height);
+    high = k == 0 ? height : L::max(high, height);
+  }
+  mask &= L::less_equal(low, L::all(tolerance)) & L::less_equal(L::all(-tolerance), high);
+  if (mask == 0) return 0;
+  for (int k = 0; k < 3; ++k) {  // B's corners from A's planes
+    F height = a.normal[0] * (L::all(b[k][0]) - a.corner[0][0]);
+    height = height + a.normal[1] * (L::all(b[k][1]) - a.corner[0][1]);
+    height = height + a.normal[2] * (L::all(b[k][2]) - a.corner[0][2]);
+    low = k == 0 ? height : L::min(low, height);
+    high = k == 0 ? height : L::max(high, height);
+  }
+  return mask & L::less_equal(low, a.tolerance) & L::less_equal(L::all(0.0F) - a.tolerance, high);
+}
+
+/// Pairs of triangles of two leaves that no box, no plane separates. `shift`: where B's leaf centre stands from A's, in
+/// A's frame; `margin` as in `gaps`.
+template <class L>
+ODDS_LANES_INLINE LeafPairs leaf_pairs(const WideLeaf& leaf_a, const WideLeaf& leaf_b, const WideNode& node_a,
+                                       std::uint32_t lane_a, const WideNode& node_b, std::uint32_t lane_b,
+                                       const Turn& turn, const float shift[3], float margin) noexcept {
+  using F = typename L::Float;
+  LeafPairs found;
+  EightTriangles<L> b;
+  for (int k = 0; k < 3; ++k) {
+    F x[3];
+    for (int i = 0; i < 3; ++i) x[i] = L::load(leaf_b.corner[k][i]);
+    for (int i = 0; i < 3; ++i) {
+      b.corner[k][i] =
+          ((L::all(turn.column[0][i]) * x[0] + L::all(turn.column[1][i]) * x[1]) + L::all(turn.column[2][i]) * x[2]) +
+          L::all(shift[i]);
+    }
+  }
+  b.bound();
+  // All coordinates are within `span` of A's centre, and each errs by at most `delta`: half a rounding of A, half of B
+  // and of the rotation times the box, three products and sums.
+  float span = 0.0F;
+  float half_a[3];
+  for (int i = 0; i < 3; ++i) {
+    half_a[i] = node_a.half[i][lane_a];
+    const float extent =
+        (turn.abs_column[0][i] * node_b.half[0][lane_b] + turn.abs_column[1][i] * node_b.half[1][lane_b]) +
+        turn.abs_column[2][i] * node_b.half[2][lane_b];
+    const float here = half_a[i] + 2.0F * extent;
+    span = here > span ? here : span;
+  }
+  span += margin;
+  const float delta = 12.0F * 0x1p-24F * span;
+  // B's triangles that come near A's box.
+  unsigned rows = (2U << (node_b.child[lane_b].count() - 1U)) - 1U;
+  for (int i = 0; i < 3; ++i) {
+    rows &=
+        L::less_equal(b.lower[i], L::all(half_a[i] + delta)) & L::less_equal(L::all(-half_a[i] - delta), b.upper[i]);
+  }
+  if (rows == 0) return found;
+  EightTriangles<L> a;
+  for (int k = 0; k < 3; ++k) {
+    for (int i = 0; i < 3; ++i) a.corner[k][i] = L::load(leaf_a.corner[k][i]);
+  }
+  a.bound();
+  a.find_planes(delta, span);
+  b.find_planes(delta, span);
+  alignas(64) float corners[3][3][wide_lanes];
+  alignas(64) float lower[3][wide_lanes];
+  alignas(64) float upper[3][wide_lanes];
+  alignas(64) float normal[3][wide_lanes];
+  alignas(64) float tolerance[wide_lanes];
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) L::store(corners[k][i], b.corner[k][i]);
+    L::store(lower[i], b.lower[i]);
+    L::store(upper[i], b.upper[i]);
+    L::store(normal[i], b.normal[i]);
+  }
+  L::store(tolerance, b.tolerance);
+  const std::uint32_t count_a = node_a.child[lane_a].count();
+  const unsigned lanes_a = (2U << (count_a - 1U)) - 1U;
+  for (unsigned left = rows; left != 0; left &= left - 1U) {
+    const auto row = static_cast<unsigned>(__builtin_ctz(left));
+    float one[3][3];
+    float one_lower[3];
+    float one_upper[3];
+    float one_normal[3];
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < 3; ++k) one[k][i] = corners[k][i][row];
+      one_lower[i] = lower[i][row];
+      one_upper[i] = upper[i][row];
+      one_normal[i] = normal[i][row];
+    }
+    const unsigned met = lanes_a & may_meet<L>(a, one, one_lower, one_upper, one_normal, tolerance[row], 2.0F * delta);
+    found.tested += count_a;
+    if (met == 0) continue;
+    found.lanes_a[row] = static_cast<std::uint8_t>(met);
+    found.rows |= 1U << row;
+  }
+  return found;
+}
+
+}  // namespace odds::query::wide

@@ -1,0 +1,48 @@
+// The searches for every processor of the family, and the choice among all.
+#include "query/wide_search_template.hpp"
+
+namespace odds::query::wide {
+
+namespace {
+
+const Searches* sse2_searches() noexcept {
+#if defined(__SSE2__)
+  static constexpr Searches searches = searches_of<lanes::Sse2>();
+  return &searches;
+#else
+  return nullptr;
+#endif
+}
+
+const Searches* portable_searches() noexcept {
+  static constexpr Searches searches = searches_of<lanes::Portable>();
+  return &searches;
+}
+
+const Searches* avx2_searches_here() noexcept {
+#if defined(__x86_64__) || defined(__i386__)
+  return __builtin_cpu_supports("avx2") ? avx2_searches() : nullptr;
+#else
+  return nullptr;
+#endif
+}
+
+}  // namespace
+
+const Searches* searches_for(InstructionSet set) noexcept {
+  switch (set) {
+    case InstructionSet::avx2:
+      return avx2_searches_here();
+    case InstructionSet::sse2:
+      return sse2_searches();
+    case InstructionSet::portable:
+      return portable_searches();
+    case InstructionSet::best:
+      break;
+  }
+  if (const Searches* searches = avx2_searches_here()) return searches;
+  if (const Searches* searches = sse2_searches()) return searches;
+  return portable_searches();
+}
+
+}  // namespace odds::query::wide

@@ -1,0 +1,34 @@
+// The searches of the wide engine: depth-first and time-critical, compiled once for each instruction set.
+#pragma once
+
+#include "odds/query/pair.hpp"
+#include "odds/query/request.hpp"
+#include "query/search.hpp"
+#include "query/wide_encounter.hpp"
+
+namespace odds::query::wide {
+
+/// All that a search reads and writes.
+struct Task {
+  const Encounter& encounter;
+  const Request& request;
+  std::uint32_t wanted;  ///< hits after which the search may stop
+  BucketQueue& queue;
+  HitList& hits;  ///< triangles by their indices in the meshes
+  Spending& spending;
+  SearchResult& result;
+};
+
+/// One instruction set's searches. Each starts from the pair of roots, which is known to overlap.
+struct Searches {
+  const char* instruction_set;
+  void (*depth_first)(Task& task, Slot slot_a, Slot slot_b) noexcept;
+  void (*time_critical)(Task& task) noexcept;
+};
+
+/// Null where the program was not built with them.
+[[nodiscard]] const Searches* avx2_searches() noexcept;
+/// Null where the program was not built with them or this processor lacks them.
+[[nodiscard]] const Searches* searches_for(InstructionSet set) noexcept;
+
+}  // namespace odds::query::wide

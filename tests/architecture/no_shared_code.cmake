@@ -1,0 +1,18 @@
+# cmake -DNM=... -DOBJECTS=... -P: the objects compiled for newer processors define no function that other objects could
+# define, too. The linker keeps one of several, and if it kept theirs, older processors would run it.
+foreach(object IN LISTS OBJECTS)
+  if(NOT object MATCHES "wide_search_avx2")
+    continue()
+  endif()
+  set(found TRUE)
+  execute_process(COMMAND ${NM} -C ${object} OUTPUT_VARIABLE symbols COMMAND_ERROR_IS_FATAL ANY)
+  string(REPLACE "\n" ";" symbols "${symbols}")
+  foreach(symbol IN LISTS symbols)
+    if(symbol MATCHES " [WV] " AND NOT symbol MATCHES "lanes::Avx2|DW\\.ref\\.|__clang_call_terminate|_tsan|_asan|_ubsan")
+      message(SEND_ERROR "${object} defines a function that others share: ${symbol}")
+    endif()
+  endforeach()
+endforeach()
+if(NOT found)
+  message(FATAL_ERROR "no object of wide_search_avx2 among ${OBJECTS}")
+endif()

@@ -1,0 +1,68 @@
+// The wide engine's three instruction sets do the same work and give the same bits.
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <memory>
+#include <optional>
+
+#include "odds/math/random.hpp"
+#include "odds/query/pair.hpp"
+#include "support/near_poses.hpp"
+#include "support/shapes.hpp"
+
+namespace odds::query {
+namespace {
+
+std::optional<Pair> pair_on(InstructionSet set, const std::shared_ptr<const Shape>& a,
+                            const std::shared_ptr<const Shape>& b) {
+  auto pair = Pair::make(a, b, {.instruction_set = set});
+  if (!pair.ok()) return std::nullopt;
+  return std::move(pair).value();
+}
+
+void expect_same(const Answer& expected, const Answer& answer) {
+  ASSERT_EQ(answer.verdict, expected.verdict);
+  ASSERT_EQ(answer.basis, expected.basis);
+  ASSERT_EQ(std::bit_cast<std::uint64_t>(answer.probability), std::bit_cast<std::uint64_t>(expected.probability));
+  ASSERT_EQ(answer.cost.node_pairs, expected.cost.node_pairs);
+  ASSERT_EQ(answer.cost.triangle_pairs, expected.cost.triangle_pairs);
+  ASSERT_EQ(answer.contacts.size(), expected.contacts.size());
+  for (std::size_t i = 0; i < answer.contacts.size(); ++i) {
+    ASSERT_EQ(answer.contacts[i].triangle_a, expected.contacts[i].triangle_a);
+    ASSERT_EQ(answer.contacts[i].position, expected.contacts[i].position);
+  }
+}
+
+TEST(InstructionSets, GiveTheSameBitsForEveryMethodAndBudget) {
+  const auto a = Shape::build(testing::wavy_sphere(24)).value();
+  const auto b = Shape::build(testing::wavy_sphere(15)).value();
+  std::optional<Pair> portable = pair_on(InstructionSet::portable, a, b);
+  ASSERT_TRUE(portable.has_value());
+  int others = 0;
+  for (const InstructionSet set : {InstructionSet::sse2, InstructionSet::avx2}) {
+    std::optional<Pair> pair = pair_on(set, a, b);
+    if (!pair) continue;  // not on this processor
+    ++others;
+    math::Random random(5);
+    for (int i = 0; i < 200; ++i) {
+      const math::Pose pose{random.rotation().toRotationMatrix(), (1.9 + 0.2 * random.uniform()) * random.direction()};
+      Request request;
+      request.method = static_cast<Method>(i % 3);
+      request.max_contacts = i % 4;
+      if (i % 5 == 0) request.budget = Budget::work(static_cast<std::uint64_t>(64 + 7 * i));
+      if (i % 7 == 0) request.estimator = EstimatorKind::cells;
+      portable->reset();
+      pair->reset();
+      expect_same(portable->run(pose, request), pair->run(pose, request));
+      if (HasFatalFailure()) FAIL() << "pose " << i;
+    }
+  }
+#if defined(__x86_64__)
+  EXPECT_GE(others, 1);  // every x86-64 has SSE2
+#else
+  EXPECT_EQ(others, 0);
+#endif
+}
+
+}  // namespace
+}  // namespace odds::query
