@@ -24,6 +24,7 @@ class HitList {
     return size_ >= std::min<std::size_t>(wanted, pairs_.size());
   }
   [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
   void add(TrianglePair pair) noexcept {
     if (size_ < pairs_.size()) pairs_[size_++] = pair;
   }

@@ -11,7 +11,7 @@
 #include "query/first_contact.hpp"
 #include "query/search.hpp"
 #include "query/shape_data.hpp"
-#include "query/wide_search.hpp"
+#include "query/wide/searches.hpp"
 
 namespace odds::query {
 
@@ -22,7 +22,8 @@ struct Pair::Implementation {
         b(std::move(shape_b)),
         queue(options.queue_capacity),
         hits(options.hit_capacity),
-        slice(options.slice_capacity),
+        slice(a->volume() == volume::Kind::wide ? 1 : options.slice_capacity),
+        front(a->volume() == volume::Kind::wide ? options.slice_capacity : 1),
         patches(options.hit_capacity),
         wide(wide::searches_for(options.instruction_set)) {}
 
@@ -30,7 +31,8 @@ struct Pair::Implementation {
   std::shared_ptr<const Shape> b;
   BucketQueue queue;
   HitList hits;
-  BottomSlice slice;
+  BottomSlice slice;         ///< of the incremental method with volumes of the generic framework
+  wide::KineticFront front;  ///< of the same with the wide engine
   bool has_witness = false;
   TrianglePair witness;  ///< the pair of triangles that proved the last incremental hit
   PatchBuilder patches;
@@ -115,9 +117,14 @@ SearchResult search(const wide::Encounter& encounter, const PosedMeshes& meshes,
     pair.wide->time_critical(task);
     return result;
   }
-  if (request.method == Method::incremental && witness_suffices(meshes, wanted, pair, spending, result)) return result;
-  pair.wide->depth_first(task, tree::WideTree::root, tree::WideTree::root);
-  if (request.method == Method::incremental) remember_witness(pair);
+  if (request.method == Method::exact) {
+    pair.wide->depth_first(task, tree::WideTree::root, tree::WideTree::root);
+    return result;
+  }
+  if (witness_suffices(meshes, wanted, pair, spending, result)) return result;
+  pair.front.move_to(meshes.pose(), encounter.b().reach());
+  pair.wide->incremental(task, pair.front);
+  remember_witness(pair);
   return result;
 }
 
@@ -290,12 +297,16 @@ const Answer& Pair::run(const math::Pose& pose_b_in_a, const Request& request) n
   return pair.answer;
 }
 
-std::uint32_t Pair::slice_size() const noexcept { return implementation_->slice.size(); }
+std::uint32_t Pair::slice_size() const noexcept {
+  if (implementation_->a->volume() != volume::Kind::wide) return implementation_->slice.size();
+  return std::max(implementation_->front.size(), 1U);
+}
 const Shape& Pair::a() const noexcept { return *implementation_->a; }
 const Shape& Pair::b() const noexcept { return *implementation_->b; }
 void Pair::reset() noexcept {
   implementation_->answer = {};
   implementation_->slice.reset();
+  implementation_->front.reset();
   implementation_->previous_normal.setZero();
   implementation_->has_witness = false;
 }

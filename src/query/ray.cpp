@@ -7,7 +7,7 @@
 
 #include "query/search.hpp"
 #include "query/shape_data.hpp"
-#include "query/wide_lookup.hpp"
+#include "query/wide/lookup.hpp"
 
 namespace odds::query {
 namespace {

@@ -9,7 +9,7 @@
 #include "odds/mesh/enclosed_volume.hpp"
 #include "query/search.hpp"
 #include "query/shape_data.hpp"
-#include "query/wide_lookup.hpp"
+#include "query/wide/lookup.hpp"
 
 namespace odds::query {
 namespace {

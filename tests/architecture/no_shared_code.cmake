@@ -1,7 +1,7 @@
 # cmake -DNM=... -DOBJECTS=... -P: the objects compiled for newer processors define no function that other objects could
 # define, too. The linker keeps one of several, and if it kept theirs, older processors would run it.
 foreach(object IN LISTS OBJECTS)
-  if(NOT object MATCHES "wide_search_avx2")
+  if(NOT object MATCHES "searches_avx2")
     continue()
   endif()
   set(found TRUE)
@@ -14,5 +14,5 @@ foreach(object IN LISTS OBJECTS)
   endforeach()
 endforeach()
 if(NOT found)
-  message(FATAL_ERROR "no object of wide_search_avx2 among ${OBJECTS}")
+  message(FATAL_ERROR "no object of searches_avx2 among ${OBJECTS}")
 endif()

@@ -37,7 +37,7 @@ TEST(Inspect, JsonHoldsTheSameFigures) {
   EXPECT_EQ(json["faults"]["duplicate_triangles"]["examples"], nlohmann::json::array({4}));
   EXPECT_EQ(json["faults"]["degenerate_triangles"]["examples"], nlohmann::json::array({5}));
   EXPECT_EQ(json["faults"]["unused_vertices"]["count"], 1);
-  EXPECT_EQ(json["hierarchy"]["bounding_volume"], "obb");
+  EXPECT_EQ(json["hierarchy"]["bounding_volume"], "wide");
   EXPECT_GT(json["hierarchy"]["nodes"], 0);
 }
 

@@ -2,11 +2,12 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "odds/tree/wide_tree.hpp"
 #include "odds/volume/concept.hpp"
-#include "query/lanes.hpp"
+#include "query/wide/lanes.hpp"
 
 namespace odds::query::wide {
 
@@ -206,118 +207,195 @@ struct EightTriangles {
   }
 };
 
-/// One triangle against eight: false lanes are certainly apart.
+/// B's triangles one by one, for tests against eight of A at once.
 template <class L>
-ODDS_LANES_INLINE unsigned may_meet(const EightTriangles<L>& a, const float b[3][3], const float lower[3],
-                                    const float upper[3], const float normal[3], float tolerance,
-                                    float delta) noexcept {
-  using F = typename L::Float;
-  unsigned mask = 0xFFU;
-  for (int i = 0; i < 3; ++i) {
-    mask &= L::less_equal(a.lower[i], L::all(upper[i] + delta)) & L::less_equal(L::all(lower[i] - delta), a.upper[i]);
-  }
-  if (mask == 0) return 0;
-  F low = L::all(0.0F);
-  F high = low;
-  for (int k = 0; k < 3; ++k) {  // A's corners from B's plane
-    F height = L::all(normal[0]) * (a.corner[k][0] - L::all(b[0][0]));
-    height = height + L::all(normal[1]) * (a.corner[k][1] - L::all(b[0][1]));
-    height = height + L::all(normal[2]) * (a.corner[k][2] - L::all(b[0][2]));
-    low = k == 0 ? height : L::min(low, height);
-    high = k == 0 ? height : L::max(high, height);
-  }
-  mask &= L::less_equal(low, L::all(tolerance)) & L::less_equal(L::all(-tolerance), high);
-  if (mask == 0) return 0;
-  for (int k = 0; k < 3; ++k) {  // B's corners from A's planes
-    F height = a.normal[0] * (L::all(b[k][0]) - a.corner[0][0]);
-    height = height + a.normal[1] * (L::all(b[k][1]) - a.corner[0][1]);
-    height = height + a.normal[2] * (L::all(b[k][2]) - a.corner[0][2]);
-    low = k == 0 ? height : L::min(low, height);
-    high = k == 0 ? height : L::max(high, height);
-  }
-  return mask & L::less_equal(low, a.tolerance) & L::less_equal(L::all(0.0F) - a.tolerance, high);
-}
-
-/// Pairs of triangles of two leaves that no box, no plane separates. `shift`: where B's leaf centre stands from A's, in
-/// A's frame; `margin` as in `gaps`.
-template <class L>
-ODDS_LANES_INLINE LeafPairs leaf_pairs(const WideLeaf& leaf_a, const WideLeaf& leaf_b, const WideNode& node_a,
-                                       std::uint32_t lane_a, const WideNode& node_b, std::uint32_t lane_b,
-                                       const Turn& turn, const float shift[3], float margin) noexcept {
-  using F = typename L::Float;
-  LeafPairs found;
-  EightTriangles<L> b;
-  for (int k = 0; k < 3; ++k) {
-    F x[3];
-    for (int i = 0; i < 3; ++i) x[i] = L::load(leaf_b.corner[k][i]);
-    for (int i = 0; i < 3; ++i) {
-      b.corner[k][i] =
-          ((L::all(turn.column[0][i]) * x[0] + L::all(turn.column[1][i]) * x[1]) + L::all(turn.column[2][i]) * x[2]) +
-          L::all(shift[i]);
-    }
-  }
-  b.bound();
-  // All coordinates are within `span` of A's centre, and each errs by at most `delta`: half a rounding of A, half of B
-  // and of the rotation times the box, three products and sums.
-  float span = 0.0F;
-  float half_a[3];
-  for (int i = 0; i < 3; ++i) {
-    half_a[i] = node_a.half[i][lane_a];
-    const float extent =
-        (turn.abs_column[0][i] * node_b.half[0][lane_b] + turn.abs_column[1][i] * node_b.half[1][lane_b]) +
-        turn.abs_column[2][i] * node_b.half[2][lane_b];
-    const float here = half_a[i] + 2.0F * extent;
-    span = here > span ? here : span;
-  }
-  span += margin;
-  const float delta = 12.0F * 0x1p-24F * span;
-  // B's triangles that come near A's box.
-  unsigned rows = (2U << (node_b.child[lane_b].count() - 1U)) - 1U;
-  for (int i = 0; i < 3; ++i) {
-    rows &=
-        L::less_equal(b.lower[i], L::all(half_a[i] + delta)) & L::less_equal(L::all(-half_a[i] - delta), b.upper[i]);
-  }
-  if (rows == 0) return found;
-  EightTriangles<L> a;
-  for (int k = 0; k < 3; ++k) {
-    for (int i = 0; i < 3; ++i) a.corner[k][i] = L::load(leaf_a.corner[k][i]);
-  }
-  a.bound();
-  a.find_planes(delta, span);
-  b.find_planes(delta, span);
-  alignas(64) float corners[3][3][wide_lanes];
+struct Rows {
+  alignas(64) float corner[3][3][wide_lanes];
   alignas(64) float lower[3][wide_lanes];
   alignas(64) float upper[3][wide_lanes];
   alignas(64) float normal[3][wide_lanes];
   alignas(64) float tolerance[wide_lanes];
-  for (int i = 0; i < 3; ++i) {
-    for (int k = 0; k < 3; ++k) L::store(corners[k][i], b.corner[k][i]);
-    L::store(lower[i], b.lower[i]);
-    L::store(upper[i], b.upper[i]);
-    L::store(normal[i], b.normal[i]);
+
+  ODDS_LANES_INLINE explicit Rows(const EightTriangles<L>& b) noexcept {
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < 3; ++k) L::store(corner[k][i], b.corner[k][i]);
+      L::store(lower[i], b.lower[i]);
+      L::store(upper[i], b.upper[i]);
+      L::store(normal[i], b.normal[i]);
+    }
+    L::store(tolerance, b.tolerance);
   }
-  L::store(tolerance, b.tolerance);
+};
+
+/// How far A's corners stay from the plane of one of B's triangles, times the length of its normal; 0 or less where
+/// they are on both sides.
+template <class L>
+ODDS_LANES_INLINE typename L::Float plane_gap_of_b(const EightTriangles<L>& a, const Rows<L>& b,
+                                                   unsigned row) noexcept {
+  using F = typename L::Float;
+  F low = L::all(0.0F);
+  F high = low;
+  for (int k = 0; k < 3; ++k) {
+    F height = L::all(b.normal[0][row]) * (a.corner[k][0] - L::all(b.corner[0][0][row]));
+    height = height + L::all(b.normal[1][row]) * (a.corner[k][1] - L::all(b.corner[0][1][row]));
+    height = height + L::all(b.normal[2][row]) * (a.corner[k][2] - L::all(b.corner[0][2][row]));
+    low = k == 0 ? height : L::min(low, height);
+    high = k == 0 ? height : L::max(high, height);
+  }
+  return L::max(low, L::all(0.0F) - high);
+}
+
+/// The same of B's corners from the planes of A's triangles.
+template <class L>
+ODDS_LANES_INLINE typename L::Float plane_gap_of_a(const EightTriangles<L>& a, const Rows<L>& b,
+                                                   unsigned row) noexcept {
+  using F = typename L::Float;
+  F low = L::all(0.0F);
+  F high = low;
+  for (int k = 0; k < 3; ++k) {
+    F height = a.normal[0] * (L::all(b.corner[k][0][row]) - a.corner[0][0]);
+    height = height + a.normal[1] * (L::all(b.corner[k][1][row]) - a.corner[0][1]);
+    height = height + a.normal[2] * (L::all(b.corner[k][2][row]) - a.corner[0][2]);
+    low = k == 0 ? height : L::min(low, height);
+    high = k == 0 ? height : L::max(high, height);
+  }
+  return L::max(low, L::all(0.0F) - high);
+}
+
+/// One triangle against eight: false lanes are certainly apart. `slack`: error of a difference of coordinates.
+template <class L>
+ODDS_LANES_INLINE unsigned may_meet(const EightTriangles<L>& a, const Rows<L>& b, unsigned row, float slack) noexcept {
+  unsigned mask = 0xFFU;
+  for (int i = 0; i < 3; ++i) {
+    mask &= L::less_equal(a.lower[i], L::all(b.upper[i][row] + slack)) &
+            L::less_equal(L::all(b.lower[i][row] - slack), a.upper[i]);
+  }
+  if (mask == 0) return 0;
+  mask &= L::less_equal(plane_gap_of_b<L>(a, b, row), L::all(b.tolerance[row]));
+  if (mask == 0) return 0;
+  return mask & L::less_equal(plane_gap_of_a<L>(a, b, row), a.tolerance);
+}
+
+/// Two leaves in A's frame, about the centre of A's lane.
+template <class L>
+struct TwoLeaves {
+  EightTriangles<L> a;
+  EightTriangles<L> b;
+  float delta;  ///< error of a coordinate
+  float span;   ///< bound of all coordinates
+  unsigned lanes_a;
+  unsigned lanes_b;
+};
+
+/// `shift`: where B's leaf centre stands from A's, in A's frame; `margin`: that of the encounter. A's corners and all
+/// planes are left to the caller.
+template <class L>
+ODDS_LANES_INLINE void place_b(TwoLeaves<L>& leaves, const WideLeaf& leaf_b, const WideNode& node_a,
+                               std::uint32_t lane_a, const WideNode& node_b, std::uint32_t lane_b, const Turn& turn,
+                               const float shift[3], float margin) noexcept {
+  using F = typename L::Float;
+  for (int k = 0; k < 3; ++k) {
+    F x[3];
+    for (int i = 0; i < 3; ++i) x[i] = L::load(leaf_b.corner[k][i]);
+    for (int i = 0; i < 3; ++i) {
+      leaves.b.corner[k][i] =
+          ((L::all(turn.column[0][i]) * x[0] + L::all(turn.column[1][i]) * x[1]) + L::all(turn.column[2][i]) * x[2]) +
+          L::all(shift[i]);
+    }
+  }
+  leaves.b.bound();
+  // B's box reaches at most this far from A's centre, and each coordinate errs by at most `delta`: half a rounding of
+  // A, half of B and of the rotation times the box, three products and sums.
+  float span = 0.0F;
+  for (int i = 0; i < 3; ++i) {
+    const float extent =
+        (turn.abs_column[0][i] * node_b.half[0][lane_b] + turn.abs_column[1][i] * node_b.half[1][lane_b]) +
+        turn.abs_column[2][i] * node_b.half[2][lane_b];
+    const float away = shift[i] < 0.0F ? -shift[i] : shift[i];
+    span = std::max(span, std::max(node_a.half[i][lane_a], away + extent));
+  }
+  leaves.span = span + margin;
+  leaves.delta = 12.0F * 0x1p-24F * leaves.span;
+  leaves.lanes_a = (2U << (node_a.child[lane_a].count() - 1U)) - 1U;
+  leaves.lanes_b = (2U << (node_b.child[lane_b].count() - 1U)) - 1U;
+}
+
+template <class L>
+ODDS_LANES_INLINE void place_a(TwoLeaves<L>& leaves, const WideLeaf& leaf_a) noexcept {
+  for (int k = 0; k < 3; ++k) {
+    for (int i = 0; i < 3; ++i) leaves.a.corner[k][i] = L::load(leaf_a.corner[k][i]);
+  }
+  leaves.a.bound();
+  leaves.a.find_planes(leaves.delta, leaves.span);
+  leaves.b.find_planes(leaves.delta, leaves.span);
+}
+
+/// Pairs of triangles of two leaves that no box, no plane separates.
+template <class L>
+ODDS_LANES_INLINE LeafPairs leaf_pairs(const WideLeaf& leaf_a, const WideLeaf& leaf_b, const WideNode& node_a,
+                                       std::uint32_t lane_a, const WideNode& node_b, std::uint32_t lane_b,
+                                       const Turn& turn, const float shift[3], float margin) noexcept {
+  LeafPairs found;
+  TwoLeaves<L> leaves;
+  place_b(leaves, leaf_b, node_a, lane_a, node_b, lane_b, turn, shift, margin);
+  const float delta = leaves.delta;
+  unsigned rows = leaves.lanes_b;
+  for (int i = 0; i < 3; ++i) {  // only B's triangles that come near A's box
+    const float half = node_a.half[i][lane_a] + delta;
+    rows &= L::less_equal(leaves.b.lower[i], L::all(half)) & L::less_equal(L::all(-half), leaves.b.upper[i]);
+  }
+  if (rows == 0) return found;
+  place_a(leaves, leaf_a);
+  const Rows<L> b(leaves.b);
   const std::uint32_t count_a = node_a.child[lane_a].count();
-  const unsigned lanes_a = (2U << (count_a - 1U)) - 1U;
   for (unsigned left = rows; left != 0; left &= left - 1U) {
     const auto row = static_cast<unsigned>(__builtin_ctz(left));
-    float one[3][3];
-    float one_lower[3];
-    float one_upper[3];
-    float one_normal[3];
-    for (int i = 0; i < 3; ++i) {
-      for (int k = 0; k < 3; ++k) one[k][i] = corners[k][i][row];
-      one_lower[i] = lower[i][row];
-      one_upper[i] = upper[i][row];
-      one_normal[i] = normal[i][row];
-    }
-    const unsigned met = lanes_a & may_meet<L>(a, one, one_lower, one_upper, one_normal, tolerance[row], 2.0F * delta);
+    const unsigned met = leaves.lanes_a & may_meet<L>(leaves.a, b, row, 2.0F * delta);
     found.tested += count_a;
     if (met == 0) continue;
     found.lanes_a[row] = static_cast<std::uint8_t>(met);
     found.rows |= 1U << row;
   }
   return found;
+}
+
+/// A lower bound of the distance between the triangles of two leaves, from their boxes and planes; 0 or less says
+/// nothing. Metres.
+template <class L>
+ODDS_LANES_INLINE float leaf_gap(const WideLeaf& leaf_a, const WideLeaf& leaf_b, const WideNode& node_a,
+                                 std::uint32_t lane_a, const WideNode& node_b, std::uint32_t lane_b, const Turn& turn,
+                                 const float shift[3], float margin) noexcept {
+  using F = typename L::Float;
+  TwoLeaves<L> leaves;
+  place_b(leaves, leaf_b, node_a, lane_a, node_b, lane_b, turn, shift, margin);
+  place_a(leaves, leaf_a);
+  const Rows<L> b(leaves.b);
+  const EightTriangles<L>& a = leaves.a;
+  // Lengths of normals from above, by the sum of their parts.
+  const F length_a = (L::abs(a.normal[0]) + L::abs(a.normal[1])) + L::abs(a.normal[2]);
+  const F inverse_a = L::divide(L::all(1.0F), L::max(length_a, L::all(1e-30F)));
+  const F slack = L::all(2.0F * leaves.delta);
+  F least = L::all(1e30F);
+  for (unsigned row = 0; row < node_b.child[lane_b].count(); ++row) {
+    F gap = L::all(b.lower[0][row]) - a.upper[0];
+    for (int i = 0; i < 3; ++i) {
+      gap = L::max(gap, L::max(L::all(b.lower[i][row]) - a.upper[i], a.lower[i] - L::all(b.upper[i][row])));
+    }
+    gap = gap - slack;
+    const float parts = (std::abs(b.normal[0][row]) + std::abs(b.normal[1][row])) + std::abs(b.normal[2][row]);
+    if (parts > 1e-30F) {
+      const F low_high = plane_gap_of_b<L>(a, b, row) - L::all(b.tolerance[row]);
+      gap = L::max(gap, low_high * L::all(0.999999F / parts));
+    }
+    const F planes_a = plane_gap_of_a<L>(a, b, row) - a.tolerance;
+    gap = L::max(gap, planes_a * inverse_a * L::all(0.999999F));
+    least = L::min(least, gap);
+  }
+  alignas(64) float of[wide_lanes];
+  L::store(of, least);
+  float smallest = of[0];
+  for (std::uint32_t lane = 1; lane < node_a.child[lane_a].count(); ++lane) smallest = std::min(smallest, of[lane]);
+  return smallest;
 }
 
 }  // namespace odds::query::wide

@@ -1,7 +1,7 @@
 // Compiled with AVX2 where the compiler knows it; called only where the processor has it.
-#include "query/wide_search.hpp"
+#include "query/wide/searches.hpp"
 #if defined(__AVX2__)
-#include "query/wide_search_template.hpp"
+#include "query/wide/searches_of.hpp"
 #endif
 
 namespace odds::query::wide {

@@ -1,5 +1,5 @@
 // The searches for every processor of the family, and the choice among all.
-#include "query/wide_search_template.hpp"
+#include "query/wide/searches_of.hpp"
 
 namespace odds::query::wide {
 

@@ -4,7 +4,8 @@
 #include "odds/query/pair.hpp"
 #include "odds/query/request.hpp"
 #include "query/search.hpp"
-#include "query/wide_encounter.hpp"
+#include "query/wide/encounter.hpp"
+#include "query/wide/kinetic_front.hpp"
 
 namespace odds::query::wide {
 
@@ -24,6 +25,8 @@ struct Searches {
   const char* instruction_set;
   void (*depth_first)(Task& task, Slot slot_a, Slot slot_b) noexcept;
   void (*time_critical)(Task& task) noexcept;
+  /// From what the front knows; the front has been moved to the encounter's pose.
+  void (*incremental)(Task& task, KineticFront& front) noexcept;
 };
 
 /// Null where the program was not built with them.

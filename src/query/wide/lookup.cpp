@@ -1,4 +1,4 @@
-#include "query/wide_lookup.hpp"
+#include "query/wide/lookup.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,7 @@
 #include "odds/tree/wide_tree.hpp"
 #include "odds/volume/aabb.hpp"
 #include "query/posed_meshes.hpp"
-#include "query/wide_kernel.hpp"
+#include "query/wide/kernel.hpp"
 
 namespace odds::query::wide {
 

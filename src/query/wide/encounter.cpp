@@ -1,4 +1,4 @@
-#include "query/wide_encounter.hpp"
+#include "query/wide/encounter.hpp"
 
 #include <cmath>
 

@@ -1,0 +1,97 @@
+// The exact search: as Algorithm 4.2, two pairs at a time.
+#pragma once
+
+#include "query/wide/opening.hpp"
+
+namespace odds::query::wide {
+
+/// Two pairs are opened at a time: each waits for its numbers most of its time, and neither waits for the other. What
+/// remains is kept without branches that nobody could predict.
+template <class L>
+class DepthFirst {
+ public:
+  static void run(Task& task, Slot start_a, Slot start_b) noexcept {
+    DepthFirst search(task);
+    search.run(start_a, start_b);
+  }
+
+ private:
+  explicit DepthFirst(Task& task) noexcept : task_(task), met_(task.encounter) {}
+
+  void run(Slot start_a, Slot start_b) noexcept {
+    const bool leaves = met_.nodes(0)[start_a / wide_lanes].child[start_a % wide_lanes].is_leaf() &&
+                        met_.nodes(1)[start_b / wide_lanes].child[start_b % wide_lanes].is_leaf();
+    SlotPairs& start = leaves ? leaf_pairs_ : open_;
+    start.of[0][0] = start_a;
+    start.of[1][0] = start_b;
+    start.size = 1;
+    while (open_.size != 0 || leaf_pairs_.size != 0) {
+      if (leaf_pairs_.size >= leaf_batch || open_.size == 0) {
+        if (!visit_leaf_pairs()) return;
+        continue;
+      }
+      if (!task_.spending.may_go_on_after(units_between_polls) || !task_.spending.allows(2 * wide_lanes)) return stop();
+      const Expanded<L> first = expand<L>(met_, open_.take());
+      if (open_.size != 0) {
+        const Expanded<L> second = expand<L>(met_, open_.take());
+        task_.spending.spend_node_pairs(2 * wide_lanes);
+        keep(second);
+      } else {
+        task_.spending.spend_node_pairs(wide_lanes);
+      }
+      keep(first);
+    }
+  }
+
+  /// The deepest overlap is pushed last and so visited first: it is where a hit is found soonest.
+  ODDS_LANES_INLINE void keep(const Expanded<L>& expanded) noexcept {
+    if (expanded.leaf_lanes != 0) leaf_pairs_.add(expanded, expanded.leaf_lanes);
+    const unsigned inner = expanded.lanes & ~expanded.leaf_lanes;
+    const unsigned deepest = 1U << L::least(expanded.gaps);
+    open_.add(expanded, inner & ~deepest);
+    open_.add(expanded, inner & deepest);
+  }
+
+  bool visit_leaf_pairs() noexcept {
+    while (leaf_pairs_.size != 0) {
+      if (!task_.spending.may_go_on_after(units_between_polls) || !task_.spending.allows(wide_lanes * wide_lanes)) {
+        stop();
+        return false;
+      }
+      const SlotPair pair = leaf_pairs_.take();
+      if (visit_leaves<L>(task_, pair.of[0], pair.of[1])) continue;
+      if (task_.result.ended == Progressed::spent) {
+        consider(task_.result, {pair.of[0], pair.of[1], met_.rank(pair.of[0], pair.of[1])});
+        consider_newest(open_);
+      }
+      return false;
+    }
+    return true;
+  }
+
+  void stop() noexcept {
+    task_.result.ended = Progressed::spent;
+    consider_newest(leaf_pairs_);
+    consider_newest(open_);
+  }
+
+  void consider_newest(const SlotPairs& pairs) noexcept {
+    constexpr std::size_t estimated_at_most = 4;  // each estimate costs about as much as a node
+    for (std::size_t n = 0; n < estimated_at_most && n < pairs.size; ++n) {
+      const Slot a = pairs.of[0][pairs.size - 1 - n];
+      const Slot b = pairs.of[1][pairs.size - 1 - n];
+      consider(task_.result, {a, b, met_.rank(a, b)});
+    }
+  }
+
+  static constexpr std::size_t leaf_batch = 1;
+
+  Task& task_;
+  const Encounter& met_;
+  Slot open_slots_[2][wide_stack_capacity];
+  Slot leaf_slots_[2][leaf_batch + 4 * wide_lanes];
+  SlotPairs open_{{open_slots_[0], open_slots_[1]}};
+  SlotPairs leaf_pairs_{{leaf_slots_[0], leaf_slots_[1]}};
+};
+
+}  // namespace odds::query::wide

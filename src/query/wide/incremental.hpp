@@ -1,0 +1,133 @@
+// The incremental search: from a kinetic front.
+#pragma once
+
+#include "query/wide/opening.hpp"
+
+namespace odds::query::wide {
+
+/// Looks at what has expired in the front, and goes down from there. As exact as a search from the roots: every pair of
+/// triangles is below a lane that was apart by more than the motion since, or is looked at.
+template <class L>
+class Incremental {
+ public:
+  static void run(Task& task, KineticFront& front) noexcept {
+    Incremental search(task, front);
+    search.run();
+    front.note_end();
+  }
+
+ private:
+  Incremental(Task& task, KineticFront& front) noexcept : task_(task), met_(task.encounter), front_(front) {}
+
+  void run() noexcept {
+    const std::uint32_t kept = front_.size();
+    for (std::uint32_t i = 0; i < kept; ++i) {
+      if (!front_.expired(i)) continue;
+      if (!may_go_on()) return;
+      KineticFront::Entry& entry = front_.entry(i);
+      if (is_leaf_pair(entry.a, entry.b)) {
+        front_.set_expiry(i, KineticFront::at_once);
+        double expiry = KineticFront::at_once;
+        if (!test_leaves(entry.a, entry.b, expiry)) return;
+        front_.set_expiry(i, expiry);
+      } else {
+        front_.set_expiry(i, open(entry));
+      }
+      if (!go_down()) return;
+    }
+  }
+
+  [[nodiscard]] bool may_go_on() noexcept {
+    if (task_.spending.may_go_on_after(units_between_polls) && task_.spending.allows(wide_lanes * wide_lanes)) {
+      return true;
+    }
+    task_.result.ended = Progressed::spent;
+    return false;
+  }
+
+  [[nodiscard]] bool is_leaf_pair(Slot a, Slot b) const noexcept {
+    return met_.nodes(0)[a / wide_lanes].child[a % wide_lanes].is_leaf() &&
+           met_.nodes(1)[b / wide_lanes].child[b % wide_lanes].is_leaf();
+  }
+
+  /// Puts the lanes that overlap and were not open on the stack; returns when the others must be looked at again.
+  double open(KineticFront::Entry& entry) noexcept {
+    const Expanded<L> expanded = expand<L>(met_, {{entry.a, entry.b}});
+    task_.spending.spend_node_pairs(wide_lanes);
+    stack_.add(expanded, expanded.lanes & ~entry.opened);
+    entry.opened |= expanded.lanes;
+    alignas(64) float gap[wide_lanes];
+    L::store(gap, expanded.gaps);
+    float least = 1e30F;  // empty lanes are farther
+    for (std::uint32_t lane = 0; lane < wide_lanes; ++lane) {
+      if ((entry.opened >> lane & 1U) == 0) least = std::min(least, gap[lane]);
+    }
+    return front_.travelled() + static_cast<double>(least) - static_cast<double>(met_.margin());
+  }
+
+  /// Down from the stack. False ends the search; what it did not look into is kept as expired.
+  bool go_down() noexcept {
+    while (stack_.size != 0) {
+      if (!may_go_on()) return leave();
+      const SlotPair pair = stack_.take();
+      KineticFront::Entry entry{pair.of[0], pair.of[1], 0};
+      double expiry = KineticFront::at_once;
+      bool goes_on = true;
+      if (is_leaf_pair(entry.a, entry.b)) {
+        goes_on = test_leaves(entry.a, entry.b, expiry);
+      } else {
+        expiry = open(entry);
+      }
+      front_.add(entry, expiry);
+      if (!goes_on) return leave();
+    }
+    return true;
+  }
+
+  bool leave() noexcept {
+    if (task_.result.ended == Progressed::spent) {
+      for (std::size_t n = 0; n < 4 && n < stack_.size; ++n) {
+        const Slot a = stack_.of[0][stack_.size - 1 - n];
+        const Slot b = stack_.of[1][stack_.size - 1 - n];
+        consider(task_.result, {a, b, met_.rank(a, b)});
+      }
+    }
+    while (stack_.size != 0) {
+      const SlotPair pair = stack_.take();
+      front_.add({pair.of[0], pair.of[1], 0}, KineticFront::at_once);
+    }
+    return false;
+  }
+
+  bool test_leaves(Slot a, Slot b, double& expiry) noexcept {
+    const std::size_t hits = task_.hits.size();
+    if (!visit_leaves<L>(task_, a, b)) {
+      if (task_.result.ended == Progressed::spent) consider(task_.result, {a, b, met_.rank(a, b)});
+      return false;
+    }
+    if (task_.hits.size() == hits) {
+      const float gap = gap_of_leaves(a, b);
+      if (gap > 0.0F) expiry = front_.travelled() + static_cast<double>(gap);
+    }
+    return true;
+  }
+
+  [[nodiscard]] float gap_of_leaves(Slot slot_a, Slot slot_b) const noexcept {
+    const WideNode& node_a = met_.nodes(0)[slot_a / wide_lanes];
+    const WideNode& node_b = met_.nodes(1)[slot_b / wide_lanes];
+    const std::uint32_t lane_a = slot_a % wide_lanes;
+    const std::uint32_t lane_b = slot_b % wide_lanes;
+    float shift[3];
+    met_.shift(slot_a, slot_b, shift);
+    return leaf_gap<L>(met_.a().leaves()[node_a.child[lane_a].index()], met_.b().leaves()[node_b.child[lane_b].index()],
+                       node_a, lane_a, node_b, lane_b, met_.turn_into(0), shift, met_.margin());
+  }
+
+  Task& task_;
+  const Encounter& met_;
+  KineticFront& front_;
+  Slot slots_[2][wide_stack_capacity];
+  SlotPairs stack_{{slots_[0], slots_[1]}};
+};
+
+}  // namespace odds::query::wide

@@ -1,0 +1,117 @@
+// What all searches of the wide engine do with a pair of slots: open it, or test the triangles of two leaves.
+#pragma once
+
+#include <bit>
+
+#include "query/wide/searches.hpp"
+
+namespace odds::query::wide {
+
+/// Two pairs push at most sixteen, at most once a level of either tree.
+inline constexpr std::size_t wide_stack_capacity = 2 * wide_lanes * 2 * (tree::deepest_level + 2);
+/// Work units between two looks at the clock: some 100 ns.
+inline constexpr std::uint32_t units_between_polls = 32;
+
+/// Tests all triangles of two leaves. False ends the search (the result says why).
+template <class L>
+ODDS_LANES_INLINE bool visit_leaves(Task& task, Slot slot_a, Slot slot_b) noexcept {
+  const Encounter& met = task.encounter;
+  const WideNode& node_a = met.a().nodes()[slot_a / wide_lanes];
+  const WideNode& node_b = met.b().nodes()[slot_b / wide_lanes];
+  const std::uint32_t lane_a = slot_a % wide_lanes;
+  const std::uint32_t lane_b = slot_b % wide_lanes;
+  const WideLeaf& leaf_a = met.a().leaves()[node_a.child[lane_a].index()];
+  const WideLeaf& leaf_b = met.b().leaves()[node_b.child[lane_b].index()];
+  float shift[3];
+  met.shift(slot_a, slot_b, shift);
+  const LeafPairs pairs =
+      leaf_pairs<L>(leaf_a, leaf_b, node_a, lane_a, node_b, lane_b, met.turn_into(0), shift, met.margin());
+  task.spending.spend_triangle_pairs(pairs.tested);
+  for (unsigned rows = pairs.rows; rows != 0; rows &= rows - 1U) {
+    const auto row = static_cast<unsigned>(std::countr_zero(rows));
+    for (unsigned lanes = pairs.lanes_a[row]; lanes != 0; lanes &= lanes - 1U) {
+      const std::uint32_t a = leaf_a.triangle[std::countr_zero(lanes)];
+      const std::uint32_t b = leaf_b.triangle[row];
+      if (!task.spending.allows(1) || !task.spending.may_go_on()) {
+        task.result.ended = Progressed::spent;
+        return false;
+      }
+      task.spending.spend_triangle_pairs(1);
+      if (!met.triangles_meet(a, b)) continue;
+      if (task.hits.empty() && task.wanted > 1) task.spending.keep_time_for_contacts();
+      task.hits.add({a, b});
+      if (task.hits.full(task.wanted)) {
+        task.result.ended = Progressed::enough;
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+/// Two slots, by side.
+struct SlotPair {
+  Slot of[2];
+};
+
+/// The lanes of one side's node whose volumes overlap the other side's slot.
+template <class L>
+struct Expanded {
+  std::uint32_t side;  ///< whose node was opened
+  Slot first;          ///< slot of its first lane
+  Slot other;          ///< the other side's
+  unsigned lanes;
+  unsigned leaf_lanes;  ///< of those the ones that make a pair of leaves
+  typename L::Float gaps;
+  typename L::Float ranks;  ///< if asked for
+};
+
+/// -1 for a leaf, which cannot be opened.
+ODDS_LANES_INLINE float opening_size(const WideNode& node, std::uint32_t lane) noexcept {
+  const float size = squared_radius(node, lane);
+  return node.child[lane].is_leaf() ? -1.0F : size;
+}
+
+/// Opens the larger of both, or the one that is no leaf. Not both may be leaves. Without branches on which side it is:
+/// nobody could predict them.
+template <class L, bool ranked = false>
+ODDS_LANES_INLINE Expanded<L> expand(const Encounter& met, const SlotPair& pair) noexcept {
+  const WideNode* nodes[2] = {met.nodes(0) + pair.of[0] / wide_lanes, met.nodes(1) + pair.of[1] / wide_lanes};
+  const std::uint32_t lanes[2] = {pair.of[0] % wide_lanes, pair.of[1] % wide_lanes};
+  const std::uint32_t side = opening_size(*nodes[0], lanes[0]) >= opening_size(*nodes[1], lanes[1]) ? 0 : 1;
+  const Turn& into = met.turn_into(side);
+  const std::uint32_t opened = nodes[side]->child[lanes[side]].index();
+  const TurnedBox box = turn(*nodes[1 - side], lanes[1 - side], into);
+  const Gaps<L> found = gaps<L>(met.nodes(side)[opened], box, into);
+  const WideNode& node = met.nodes(side)[opened];
+  const unsigned overlapping = L::less_equal(found.gap, L::all(met.margin()));
+  const unsigned other_is_leaf = nodes[1 - side]->child[lanes[1 - side]].is_leaf() ? 0xFFU : 0U;
+  Expanded<L> expanded{side,
+                       opened * wide_lanes,
+                       pair.of[1 - side],
+                       overlapping,
+                       overlapping & L::highest_bits(node.child) & other_is_leaf,
+                       found.gap,
+                       found.gap};
+  if constexpr (ranked) expanded.ranks = ranks<L>(node, *nodes[1 - side], lanes[1 - side], box, found);
+  return expanded;
+}
+
+/// Open pairs, newest last, each side's slots in one array.
+struct SlotPairs {
+  Slot* of[2];
+  std::size_t size = 0;
+
+  template <class L>
+  ODDS_LANES_INLINE void add(const Expanded<L>& expanded, unsigned lanes) noexcept {
+    L::write_lanes(of[expanded.side] + size, expanded.first, lanes);
+    L::write_all(of[1 - expanded.side] + size, expanded.other);
+    size += static_cast<std::size_t>(std::popcount(lanes));
+  }
+  ODDS_LANES_INLINE SlotPair take() noexcept {
+    --size;
+    return {{of[0][size], of[1][size]}};
+  }
+};
+
+}  // namespace odds::query::wide

@@ -1,0 +1,15 @@
+// All searches for one instruction set, for the files that compile them; nobody else includes this.
+#pragma once
+
+#include "query/wide/depth_first.hpp"
+#include "query/wide/incremental.hpp"
+#include "query/wide/time_critical.hpp"
+
+namespace odds::query::wide {
+
+template <class L>
+constexpr Searches searches_of() noexcept {
+  return {L::name, &DepthFirst<L>::run, &TimeCritical<L>::run, &Incremental<L>::run};
+}
+
+}  // namespace odds::query::wide
