@@ -111,7 +111,7 @@ int collide_ray(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int s
   const Vec3 origin(start[0], start[1], start[2]);
   const Vec3 direction(along[0], along[1], along[2]);
   const double length = dGeomRayGetLength(o2);
-  if (!pose || !origin.allFinite() || !(std::abs(direction.squaredNorm() - 1.0) < 1e-3) || !(length >= 0.0)) {
+  if (!pose || !is_position(origin) || !(std::abs(direction.squaredNorm() - 1.0) < 1e-3) || !(length >= 0.0)) {
     count(statistics().bad_poses);
     return 0;
   }

@@ -72,7 +72,7 @@ int collide_sphere(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, in
   const dReal* p = dGeomGetPosition(o2);
   const Vec3 world_center(p[0], p[1], p[2]);
   const double radius = dGeomSphereGetRadius(o2);
-  if (!pose || !world_center.allFinite() || !(radius < dInfinity)) {
+  if (!pose || !is_position(world_center) || !(radius < dInfinity)) {
     count(statistics().bad_poses);
     return 0;
   }

@@ -72,6 +72,8 @@ GeomData* find_data(dGeomID geom, const char* caller) noexcept {
   return nullptr;
 }
 
+bool is_position(const Vec3& point) noexcept { return (point.array().abs() <= farthest_position).all(); }
+
 std::optional<math::Pose> world_pose(dGeomID geom) noexcept {
   if (dGeomGetClass(geom) == dHeightfieldClass) {
     const Partner* partner = partner_table().find(geom);
@@ -82,7 +84,7 @@ std::optional<math::Pose> world_pose(dGeomID geom) noexcept {
   math::Pose pose;
   pose.translation = Vec3(p[0], p[1], p[2]);
   pose.rotation << r[0], r[1], r[2], r[4], r[5], r[6], r[8], r[9], r[10];
-  if (!(pose.translation.cwiseAbs().maxCoeff() <= farthest_position)) return std::nullopt;
+  if (!is_position(pose.translation)) return std::nullopt;
   if (pose.is_rigid(exact_enough)) return pose;
   if (!pose.is_rigid(repairable)) return std::nullopt;
   pose.rotation = Quat(pose.rotation).normalized().toRotationMatrix();

@@ -48,6 +48,9 @@ struct GeomData {
 /// The data of any geom, or null with the last error set if it is neither one of ours nor has a mesh that stands in.
 [[nodiscard]] GeomData* find_data(dGeomID geom, const char* caller) noexcept;
 
+/// Whether a point is finite and no farther than 1e15 m from the origin.
+[[nodiscard]] bool is_position(const Vec3& point) noexcept;
+
 /// The world pose, offsets and transforms included; the rotation is made orthonormal if ODE's is slightly off. Nothing
 /// if it is not finite, farther than 1e15 m, or no rotation.
 [[nodiscard]] std::optional<math::Pose> world_pose(dGeomID geom) noexcept;

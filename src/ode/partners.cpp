@@ -11,9 +11,8 @@
 #include "ode/statistics.hpp"
 
 namespace odds::ode {
-namespace {
 
-Settings leave_all_to_the_other() noexcept {
+Settings neutral_settings() noexcept {
   Settings settings;
   settings.budget_us = std::numeric_limits<double>::infinity();
   settings.work_units = 0;
@@ -23,10 +22,8 @@ Settings leave_all_to_the_other() noexcept {
   return settings;
 }
 
-}  // namespace
-
 Settings& partner_settings() noexcept {
-  static Settings only = leave_all_to_the_other();
+  static Settings only = neutral_settings();
   return only;
 }
 

@@ -52,6 +52,8 @@ class PartnerTable {
 /// The settings of geoms that stand in for others: they leave every decision to the other geom of a pair. A takeover
 /// changes them for the geoms adopted from then on.
 [[nodiscard]] Settings& partner_settings() noexcept;
+/// What they are without a takeover.
+[[nodiscard]] Settings neutral_settings() noexcept;
 
 /// A partner with a mesh and these settings, not yet in the table. May throw std::bad_alloc.
 [[nodiscard]] std::unique_ptr<Partner> make_partner(dGeomID geom, std::shared_ptr<const PreparedMesh> mesh);

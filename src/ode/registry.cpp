@@ -11,6 +11,7 @@
 #include "ode/geom_data.hpp"
 #include "ode/last_error.hpp"
 #include "ode/partners.hpp"
+#include "ode/takeover.hpp"
 
 namespace odds::ode {
 namespace {
@@ -69,7 +70,28 @@ void fill_table(int class_number) noexcept {
   dSetColliderOverride(dRayClass, dRayClass, &mark_generation);
 }
 
+void register_and_fill(Registry& state) noexcept {
+  if (state.class_number < 0 || !table_is_ours()) state.class_number = register_class();
+  live_class.store(state.class_number, std::memory_order_release);
+  fill_table(state.class_number);
+  install_takeover();
+  static_cast<void>(realtime::fastest_clock());  // calibrates now, not in the first collision
+}
+
 }  // namespace
+
+bool hold_again() noexcept {
+  try {
+    const std::lock_guard lock(registry().mutex);
+    Registry& state = registry();
+    if (state.count == 0 || table_is_ours()) return true;
+    if (dInitODE2(0) == 0) return false;
+    register_and_fill(state);
+    return true;
+  } catch (...) {
+    return false;
+  }
+}
 
 dColliderFn* collider_for(int other) noexcept {
   switch (other) {
@@ -113,12 +135,7 @@ int oddsInitODE(unsigned flags) noexcept {
       return 0;
     }
     Registry& state = registry();
-    if (state.count++ == 0) {
-      if (state.class_number < 0 || !table_is_ours()) state.class_number = register_class();
-      live_class.store(state.class_number, std::memory_order_release);
-      fill_table(state.class_number);
-      static_cast<void>(odds::realtime::fastest_clock());  // calibrates now, not in the first collision
-    }
+    if (state.count++ == 0) register_and_fill(state);
     return 1;
   } catch (...) {
     set_last_error("oddsInitODE: the lock of the class registry failed");

@@ -13,9 +13,8 @@ namespace odds::architecture {
 /// The layer of a folder, from the ground up. An include goes to a lower layer or stays in its folder.
 inline std::optional<int> layer_of(std::string_view folder) {
   constexpr std::pair<std::string_view, int> layers[] = {
-      {"math", 0},        {"mesh", 1},  {"primitive", 1}, {"realtime", 1}, {"volume", 2}, {"tree", 3},
-      {"probability", 4}, {"query", 5}, {"ode", 6},       {"haptics", 7},  {"scene", 8},  {"report", 8},
-      {"tool", 9},
+      {"math", 0},  {"mesh", 1}, {"primitive", 1}, {"realtime", 1}, {"volume", 2}, {"tree", 3}, {"probability", 4},
+      {"query", 5}, {"ode", 6},  {"haptics", 7},   {"scene", 8},    {"report", 8}, {"tool", 9}, {"preload", 9},
   };
   for (const auto& [name, layer] : layers) {
     if (name == folder) return layer;
@@ -57,8 +56,8 @@ inline std::optional<Include> include_of(std::string_view line) {
   return Include{line.substr(1, end - 1), angled};
 }
 
-/// The room that an include leads to: of "odds/query/pair.hpp" and of the private "query/search.hpp" it is "query"; of a
-/// name without a folder the includer's own; empty for what is not ours.
+/// The room that an include leads to: of "odds/query/pair.hpp" and of the private "query/search.hpp" it is "query"; of
+/// a name without a folder the includer's own; empty for what is not ours.
 inline std::string_view target_of(const Include& include, std::string_view own_folder) {
   std::string_view name = include.name;
   const bool is_public = name.starts_with("odds/");
@@ -72,7 +71,8 @@ inline std::string_view target_of(const Include& include, std::string_view own_f
 inline bool is_private_dependency(std::string_view include) {
   constexpr std::string_view prefixes[] = {"toml++", "toml.hpp", "nlohmann/", "CLI/",
                                            "fmt/",   "ccd/",     "zlib.h",    "readerwriterqueue/"};
-  return std::any_of(std::begin(prefixes), std::end(prefixes), [&](auto prefix) { return include.starts_with(prefix); });
+  return std::any_of(std::begin(prefixes), std::end(prefixes),
+                     [&](auto prefix) { return include.starts_with(prefix); });
 }
 
 /// Everything wrong with the includes of one file of include/ or src/.

@@ -82,7 +82,7 @@ TEST(ContactPatchHard, MoreHitsThanRoomStillGiveTheNormal) {
   ContactScene scene{Body::box(0.2, 0.5, 0.248, 40), Body::box(1.0, 1.2, 0.3, 40), shift(-0.03, 0.02, -0.274 + 1e-4)};
   scene.find_hits();
   ASSERT_GT(scene.hits.size(), 300u);
-  for (const std::size_t room : {8, 16, 64, 256}) {
+  for (const std::size_t room : {8U, 16U, 64U, 256U}) {
     PatchBuilder small(room);
     const auto contacts = small.build(scene.input());
     ASSERT_FALSE(contacts.empty());

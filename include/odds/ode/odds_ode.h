@@ -218,6 +218,41 @@ typedef struct oddsAnswer {
 /* The last collision of a pair of two geoms of this class, in either order. 0 if they never collided. */
 int oddsGetLastAnswer(dGeomID g1, dGeomID g2, oddsAnswer* answer) ODDS_NOTHROW;
 
+/* ---- Takeover --------------------------------------------------------------------------------------------------- */
+
+/* Which collisions of a dTriMesh are taken over. */
+enum {
+  ODDS_TAKE_TRIMESH = 1, /* with another dTriMesh */
+  ODDS_TAKE_SPHERE = 2,
+  ODDS_TAKE_BOX = 4,
+  ODDS_TAKE_CAPSULE = 8,
+  ODDS_TAKE_CYLINDER = 16,
+  ODDS_TAKE_PLANE = 32,
+  ODDS_TAKE_RAY = 64,
+  ODDS_TAKE_CONVEX = 128, /* with those that oddsRegisterConvex made known */
+  ODDS_TAKE_ALL = 255
+};
+
+typedef struct oddsTakeOverParams {
+  unsigned partners;        /* ODDS_TAKE_..., added up; default all */
+  double budget_us;         /* of one collision, > 0; default 100 */
+  unsigned long work_units; /* 0: no limit (default) */
+  int max_contacts;         /* 0 .. 8; default 8 */
+} oddsTakeOverParams;
+void oddsTakeOverParamsInit(oddsTakeOverParams* params) ODDS_NOTHROW;
+
+/* From now on dCollide answers for every dTriMesh, also those that exist, as it does for geoms of this class; nothing
+ * in the client changes. A set-up function. It holds ODE initialised (as oddsInitODE does), so that pairs of dInitODE
+ * and dCloseODE do not undo it; a program that closes ODE once too often must call it again after dInitODE. `params`
+ * may be null (defaults); the settings hold for the geoms that become known from then on, a second call replaces those
+ * of the first. A dTriMesh is read when it is prepared, or else at its first collision, and counted. Left to ODE's own
+ * collider, and counted (fallbacks): a dTriMesh with a callback, one that cannot be read or was changed since, a convex
+ * that was not made known. Returns 1, or 0 with an error. */
+int oddsTakeOverTriMesh(const oddsTakeOverParams* params) ODDS_NOTHROW;
+
+/* Puts ODE's own colliders back. 0 if nothing was taken over, or if this build of ODE hides its colliders. */
+int oddsGiveBackTriMesh(void) ODDS_NOTHROW;
+
 /* Counts since the start of the process or the last oddsResetStats, over all geoms and threads. */
 typedef struct oddsStats {
   unsigned long long queries;        /* collisions between two geoms of this class */

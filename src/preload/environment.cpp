@@ -1,0 +1,75 @@
+// Reading the environment variables, with a sentence for each mistake.
+#include "preload/environment.hpp"
+
+#include <array>
+#include <cstdlib>
+#include <string_view>
+
+namespace odds::preload {
+namespace {
+
+struct PartnerName {
+  std::string_view name;
+  unsigned bit;
+};
+
+constexpr std::array<PartnerName, 9> partner_names = {{{"all", ODDS_TAKE_ALL},
+                                                       {"trimesh", ODDS_TAKE_TRIMESH},
+                                                       {"sphere", ODDS_TAKE_SPHERE},
+                                                       {"box", ODDS_TAKE_BOX},
+                                                       {"capsule", ODDS_TAKE_CAPSULE},
+                                                       {"cylinder", ODDS_TAKE_CYLINDER},
+                                                       {"plane", ODDS_TAKE_PLANE},
+                                                       {"ray", ODDS_TAKE_RAY},
+                                                       {"convex", ODDS_TAKE_CONVEX}}};
+
+// A number in [least, most] into `value`; otherwise it stays, and the mistake is noted.
+template <class Number>
+void read_number(const char* name, double least, double most, Number& value, std::vector<std::string>& mistakes) {
+  const char* text = std::getenv(name);
+  if (text == nullptr || *text == '\0') return;
+  char* end = nullptr;
+  const double number = std::strtod(text, &end);
+  if (*end == '\0' && number >= least && number <= most) {
+    value = static_cast<Number>(number);
+    return;
+  }
+  mistakes.push_back(std::string(name) + "=" + text + " is not a number in range; the default is used");
+}
+
+unsigned read_partners(const char* text, std::vector<std::string>& mistakes) {
+  unsigned bits = 0;
+  std::string_view rest = text;
+  while (!rest.empty()) {
+    const std::size_t comma = rest.find(',');
+    const std::string_view word = rest.substr(0, comma);
+    rest = comma == std::string_view::npos ? std::string_view() : rest.substr(comma + 1);
+    unsigned found = 0;
+    for (const PartnerName& partner : partner_names) found |= partner.name == word ? partner.bit : 0u;
+    if (found == 0) {
+      mistakes.push_back("ODDS_PARTNERS: \"" + std::string(word) +
+                         "\" is unknown and left out; use all, or trimesh, sphere, box, capsule, cylinder, plane, ray, "
+                         "convex with commas");
+    }
+    bits |= found;
+  }
+  return bits != 0 ? bits : static_cast<unsigned>(ODDS_TAKE_ALL);
+}
+
+}  // namespace
+
+Environment read_environment() {
+  Environment environment;
+  oddsTakeOverParamsInit(&environment.takeover);
+  if (const char* partners = std::getenv("ODDS_PARTNERS")) {
+    environment.takeover.partners = read_partners(partners, environment.mistakes);
+  }
+  read_number("ODDS_BUDGET_US", 1e-3, 1e12, environment.takeover.budget_us, environment.mistakes);
+  read_number("ODDS_WORK_UNITS", 0, 1e15, environment.takeover.work_units, environment.mistakes);
+  read_number("ODDS_MAX_CONTACTS", 0, 8, environment.takeover.max_contacts, environment.mistakes);
+  const char* report = std::getenv("ODDS_REPORT");
+  environment.report = report != nullptr && *report != '\0' ? report : "-";
+  return environment;
+}
+
+}  // namespace odds::preload

@@ -1,0 +1,158 @@
+// The functions of ODE that libodds_preload.so puts itself in front of: a program that runs under LD_PRELOAD gets a
+// takeover of its dTriMesh geoms without being changed or built anew. Hierarchies are built where the program makes its
+// meshes, not where they collide.
+#include <cstdio>
+#include <exception>
+#include <fstream>
+
+#include "ode/takeover.hpp"
+#include "preload/environment.hpp"
+#include "preload/exit_page.hpp"
+#include "preload/real_functions.hpp"
+
+namespace odds::preload {
+namespace {
+
+// What our own library does with ODE comes here too; it is not the program's doing.
+thread_local bool inside = false;
+
+struct Inside {
+  Inside() noexcept { inside = true; }
+  ~Inside() { inside = false; }
+  Inside(const Inside&) = delete;
+  Inside& operator=(const Inside&) = delete;
+};
+
+// Reads the environment once; says the page when the program ends.
+class Session {
+ public:
+  Session() : environment_(read_environment()) {
+    for (const std::string& mistake : environment_.mistakes) {
+      std::fprintf(stderr, "warning: libodds_preload: %s\n", mistake.c_str());
+    }
+    ode::observe_takeover(&note_collision);
+  }
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+  ~Session() {
+    try {
+      say();
+    } catch (const std::exception& error) {
+      std::fprintf(stderr, "warning: libodds_preload: no report: %s\n", error.what());
+    }
+  }
+  void take_over() noexcept {
+    if (oddsTakeOverTriMesh(&environment_.takeover) == 0) {
+      std::fprintf(stderr, "warning: libodds_preload: no takeover: %s\n", oddsGetLastError());
+    }
+  }
+
+ private:
+  void say() const {
+    if (environment_.report == "off") return;
+    const std::string page = exit_page();
+    if (environment_.report == "-") {
+      std::fputs(page.c_str(), stderr);
+      return;
+    }
+    std::ofstream file(environment_.report);
+    file << page;
+    if (!file.flush()) {
+      std::fprintf(stderr, "warning: libodds_preload: %s cannot be written; set ODDS_REPORT to another file\n%s",
+                   environment_.report.c_str(), page.c_str());
+    }
+  }
+
+  Environment environment_;
+};
+
+Session& session() {
+  static Session only;
+  return only;
+}
+
+// After every initialisation, so that a takeover outlives a real close of ODE.
+void after_init() noexcept {
+  if (inside) return;
+  const Inside guard;
+  try {
+    session().take_over();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "warning: libodds_preload: no takeover: %s\n", error.what());
+  }
+}
+
+void after_mesh(dGeomID trimesh) noexcept {
+  if (inside || trimesh == nullptr || dGeomTriMeshGetData(trimesh) == nullptr) return;
+  const Inside guard;
+  oddsForgetGeom(trimesh);
+  oddsPrepareTriMesh(trimesh, nullptr);  // what cannot be prepared is left to ODE, and counted
+}
+
+void after_convex(dGeomID convex, const dReal* points, unsigned point_count, const unsigned* polygons,
+                  unsigned face_count) noexcept {
+  if (inside || convex == nullptr) return;
+  const Inside guard;
+  oddsForgetGeom(convex);
+  oddsRegisterConvex(convex, points, point_count, polygons, face_count);
+}
+
+}  // namespace
+}  // namespace odds::preload
+
+using odds::preload::real;
+
+extern "C" {
+
+void dInitODE(void) {
+  static const auto next = real<void()>("dInitODE");
+  next();
+  odds::preload::after_init();
+}
+
+int dInitODE2(unsigned int flags) {
+  static const auto next = real<int(unsigned)>("dInitODE2");
+  const int result = next(flags);
+  if (result != 0) odds::preload::after_init();
+  return result;
+}
+
+dGeomID dCreateTriMesh(dSpaceID space, dTriMeshDataID data, dTriCallback* callback, dTriArrayCallback* array_callback,
+                       dTriRayCallback* ray_callback) {
+  static const auto next = real<decltype(dCreateTriMesh)>("dCreateTriMesh");
+  const dGeomID geom = next(space, data, callback, array_callback, ray_callback);
+  odds::preload::after_mesh(geom);
+  return geom;
+}
+
+void dGeomTriMeshSetData(dGeomID geom, dTriMeshDataID data) {
+  static const auto next = real<decltype(dGeomTriMeshSetData)>("dGeomTriMeshSetData");
+  next(geom, data);
+  odds::preload::after_mesh(geom);
+}
+
+dGeomID dCreateConvex(dSpaceID space, const dReal* planes, unsigned int plane_count, const dReal* points,
+                      unsigned int point_count, const unsigned int* polygons) {
+  static const auto next = real<decltype(dCreateConvex)>("dCreateConvex");
+  const dGeomID geom = next(space, planes, plane_count, points, point_count, polygons);
+  odds::preload::after_convex(geom, points, point_count, polygons, plane_count);
+  return geom;
+}
+
+void dGeomSetConvex(dGeomID geom, const dReal* planes, unsigned int plane_count, const dReal* points,
+                    unsigned int point_count, const unsigned int* polygons) {
+  static const auto next = real<decltype(dGeomSetConvex)>("dGeomSetConvex");
+  next(geom, planes, plane_count, points, point_count, polygons);
+  odds::preload::after_convex(geom, points, point_count, polygons, plane_count);
+}
+
+void dGeomDestroy(dGeomID geom) {
+  static const auto next = real<decltype(dGeomDestroy)>("dGeomDestroy");
+  if (geom != nullptr && !odds::preload::inside) {
+    const odds::preload::Inside guard;
+    oddsForgetGeom(geom);
+  }
+  next(geom);
+}
+
+}  // extern "C"

@@ -1,0 +1,89 @@
+// The preload library in a program that knows nothing of it.
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "ode/ode_fixture.hpp"
+
+namespace odds::test {
+namespace {
+
+struct ClientRun {
+  std::string output;  // both streams
+  int status = -1;
+  double moved_mm = -1.0;
+  int contacts = -1;
+  int sideways = -1;
+};
+
+class Preload : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (std::string(ODDS_PRELOAD).empty()) GTEST_SKIP() << "not for this system, or a sanitizer must be loaded first";
+    page = std::filesystem::path(::testing::TempDir()) /
+           ("odds_preload_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) + ".txt");
+  }
+  void TearDown() override { std::filesystem::remove(page); }
+
+  // The client with these variables in its environment.
+  static ClientRun run(const std::string& variables, bool preloaded) {
+    ClientRun result;
+    std::ostringstream command;
+    command << "env " << variables;
+    if (preloaded) command << " LD_PRELOAD=\"" ODDS_PRELOAD "\"";
+    command << " \"" ODDS_PRELOAD_CLIENT "\" 2>&1";
+    FILE* pipe = popen(command.str().c_str(), "r");
+    if (pipe == nullptr) return result;
+    char line[512];
+    while (std::fgets(line, sizeof line, pipe) != nullptr) {
+      result.output += line;
+      std::sscanf(line, "moved_mm %lf contacts %d sideways %d", &result.moved_mm, &result.contacts, &result.sideways);
+    }
+    result.status = pclose(pipe);
+    return result;
+  }
+  [[nodiscard]] std::string read_page() const {
+    std::ifstream file(page);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+  std::filesystem::path page;
+};
+
+TEST_F(Preload, BricksOfAnUnchangedProgramStandAndThePageCountsThem) {
+  const ClientRun alone = run("ODDS_REPORT=off", false);
+  ASSERT_EQ(alone.status, 0) << alone.output;
+  EXPECT_GT(alone.sideways, 0) << "ODE's own collider: the reason for all this";
+  const ClientRun with = run("ODDS_BUDGET_US=1e9 ODDS_REPORT=" + page.string(), true);
+  ASSERT_EQ(with.status, 0) << with.output;
+  EXPECT_EQ(with.sideways, 0);
+  EXPECT_GT(with.contacts, 4000);
+  EXPECT_LT(with.moved_mm, 1.0);
+  EXPECT_LT(with.moved_mm, alone.moved_mm);
+  const std::string text = read_page();
+  EXPECT_NE(text.find("dTriMesh"), std::string::npos) << text;
+  EXPECT_NE(text.find("p99.9 us"), std::string::npos) << text;
+  EXPECT_NE(text.find("prepared inside the loop: 0 meshes"), std::string::npos) << text;
+}
+
+TEST_F(Preload, PartnersThatAreNotTakenStayWithOde) {
+  const ClientRun alone = run("ODDS_REPORT=off", false);
+  const ClientRun with = run("ODDS_PARTNERS=sphere,ray ODDS_REPORT=-", true);
+  ASSERT_EQ(with.status, 0) << with.output;
+  EXPECT_EQ(with.contacts, alone.contacts);
+  EXPECT_EQ(with.moved_mm, alone.moved_mm);
+}
+
+TEST_F(Preload, MistakesInTheEnvironmentAreToldAndHarmless) {
+  const ClientRun with = run("ODDS_BUDGET_US=soon ODDS_PARTNERS=trimesh,teapot ODDS_REPORT=/nowhere/at/all", true);
+  ASSERT_EQ(with.status, 0) << with.output;
+  EXPECT_NE(with.output.find("ODDS_BUDGET_US=soon"), std::string::npos) << with.output;
+  EXPECT_NE(with.output.find("teapot"), std::string::npos) << with.output;
+  EXPECT_NE(with.output.find("/nowhere/at/all cannot be written"), std::string::npos) << with.output;
+  EXPECT_NE(with.output.find("collisions of dTriMesh geoms"), std::string::npos) << "then it goes to standard error";
+  EXPECT_EQ(with.sideways, 0);
+}
+
+}  // namespace
+}  // namespace odds::test
