@@ -60,7 +60,7 @@ struct Simulation {
 
 int main() {
   dInitODE2(0);
-  dAllocateODEDataForThread(dAllocateMaskAll);
+  dAllocateODEDataForThread(static_cast<unsigned>(dAllocateMaskAll));
   double farthest = 0.0;
   {
     Simulation simulation;
