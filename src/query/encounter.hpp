@@ -132,9 +132,9 @@ class Encounter {
   }
 
   /// Where, in which direction and how deep the surfaces of the pair most probably meet, in A's mesh frame.
-  [[nodiscard]] Contact cell_contact(std::uint32_t i, std::uint32_t j) const noexcept {
+  [[nodiscard]] Contact cell_contact(std::uint32_t i, std::uint32_t j, double met_with) const noexcept {
     return met_contact(a_.statistics()[i], b_.statistics()[j], a_.nodes()[i].radius, b_.nodes()[j].radius, b_in_a_,
-                       a_.origin(), static_cast<double>(probability(i, j)));
+                       a_.origin(), met_with);
   }
 
   [[nodiscard]] const tree::Hierarchy<V>& a() const noexcept { return a_; }

@@ -233,7 +233,7 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
   judge(result, candidate_probability, request, !pair.hits.empty(), answer);
   if (result.has_candidate && answer.basis != Basis::proved) {
     answer.has_cell_pair = true;
-    answer.cell_pair = encounter.cell_contact(result.candidate.a, result.candidate.b);
+    answer.cell_pair = encounter.cell_contact(result.candidate.a, result.candidate.b, candidate_probability);
     answer.cell_pair_probability = candidate_probability;
   }
   if (!pair.hits.empty() && request.max_contacts > 0) {

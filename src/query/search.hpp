@@ -62,12 +62,17 @@ void search_depth_first(const Encounter<V>& encounter, NodePair start, std::uint
   }
 }
 
-/// The bucket of a pair: log2 of its expected crossings per remaining cost, in quarters. The expectation is capped, so
-/// that among nearly certain pairs the newest and deepest come first instead of all coarse ones.
-[[nodiscard]] inline std::uint32_t bucket_of(float rank, int levels_left) noexcept {
-  constexpr float highest = 0.5F;
-  const float value = std::min(rank, highest) - math::rough_log2(static_cast<double>(levels_left + 2));
+/// Expectations above this count as this, so that among nearly certain pairs the newest and deepest come first instead
+/// of all coarse ones; log2.
+inline constexpr float highest_rank = 0.5F;
+
+/// The bucket of log2 of a pair's expected crossings per remaining cost, in quarters.
+[[nodiscard]] inline std::uint32_t bucket_of_value(float value) noexcept {
   return static_cast<std::uint32_t>(std::clamp(60.0F + 4.0F * value, 0.0F, 63.0F));
+}
+
+[[nodiscard]] inline std::uint32_t bucket_of(float rank, int levels_left) noexcept {
+  return bucket_of_value(std::min(rank, highest_rank) - math::rough_log2(static_cast<double>(levels_left + 2)));
 }
 
 /// Algorithm 4.3. Ends on proof (`wanted` hits, or nothing left), on k_min pairs with p >= p_min, or with the budget.

@@ -52,6 +52,16 @@ class Spending {
   [[nodiscard]] bool may_go_on() noexcept { return poll() < search_deadline_ns_ - writing_reserve_ns; }
   /// The same, but looks at the clock only when `units` were spent since the last look.
   [[nodiscard]] bool may_go_on_after(std::uint32_t units) noexcept { return unpolled_units_ < units || may_go_on(); }
+  /// A search that changes its manner after a start has up to this share of time and work for it, and these units.
+  void begin_start(double share, std::uint64_t most_units) noexcept {
+    const auto of_budget = static_cast<std::uint64_t>(share * static_cast<double>(units_left_));
+    start_units_end_ = units_left_ - std::min(std::min(of_budget, most_units), units_left_);
+    if (timed_) start_deadline_ns_ = start_ns_ + static_cast<std::int64_t>(share * static_cast<double>(allowance_ns()));
+  }
+  [[nodiscard]] bool start_may_go_on_after(std::uint32_t units) noexcept {
+    if (units_left_ <= start_units_end_) return false;
+    return unpolled_units_ < units || poll() < start_deadline_ns_;
+  }
   /// Whether there is time for a patch of contacts that takes up to `finishing_ns` from the moment that it hears that
   /// the time is up; if so, `may_make_contacts` says when that is.
   [[nodiscard]] bool begin_contacts(std::int64_t finishing_ns) noexcept {
@@ -80,7 +90,7 @@ class Spending {
   }
 
   /// What the writing of the answer takes at most, after the search has stopped.
-  static constexpr std::int64_t writing_reserve_ns = 300;
+  static constexpr std::int64_t writing_reserve_ns = 400;
   /// Of the time, for the search, once a hit was found and contacts are wanted.
   static constexpr double search_share = 0.5;
 
@@ -107,6 +117,8 @@ class Spending {
   std::int64_t start_ns_;
   std::int64_t deadline_ns_ = std::numeric_limits<std::int64_t>::max();
   std::int64_t search_deadline_ns_ = std::numeric_limits<std::int64_t>::max();
+  std::int64_t start_deadline_ns_ = std::numeric_limits<std::int64_t>::max();
+  std::uint64_t start_units_end_ = 0;
   std::int64_t contacts_deadline_ns_ = std::numeric_limits<std::int64_t>::max();
   realtime::StallLedger ledger_;
   std::uint64_t units_left_;

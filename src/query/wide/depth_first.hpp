@@ -7,7 +7,9 @@ namespace odds::query::wide {
 
 /// Two pairs are opened at a time: each waits for its numbers most of its time, and neither waits for the other. What
 /// remains is kept without branches that nobody could predict.
-template <class L>
+///
+/// As the start of another search (`ranked`) it ends early, keeps the ranks of what is open, and leaves it to that.
+template <class L, bool ranked = false>
 class DepthFirst {
  public:
   static void run(Task& task, Slot start_a, Slot start_b) noexcept {
@@ -15,8 +17,10 @@ class DepthFirst {
     search.run(start_a, start_b);
   }
 
- private:
   explicit DepthFirst(Task& task) noexcept : task_(task), met_(task.encounter) {}
+
+  [[nodiscard]] const SlotPairs& open() const noexcept { return open_; }
+  [[nodiscard]] const SlotPairs& leaf_pairs() const noexcept { return leaf_pairs_; }
 
   void run(Slot start_a, Slot start_b) noexcept {
     const bool leaves = met_.nodes(0)[start_a / wide_lanes].child[start_a % wide_lanes].is_leaf() &&
@@ -25,15 +29,19 @@ class DepthFirst {
     start.of[0][0] = start_a;
     start.of[1][0] = start_b;
     start.size = 1;
+    if constexpr (ranked) open_.ranks[0] = 0.0F;
     while (open_.size != 0 || leaf_pairs_.size != 0) {
+      if constexpr (ranked) {
+        if (!task_.spending.start_may_go_on_after(units_between_polls)) return;
+      }
       if (leaf_pairs_.size >= leaf_batch || open_.size == 0) {
         if (!visit_leaf_pairs()) return;
         continue;
       }
       if (!task_.spending.may_go_on_after(units_between_polls) || !task_.spending.allows(2 * wide_lanes)) return stop();
-      const Expanded<L> first = expand<L>(met_, open_.take());
+      const Expanded<L> first = expand<L, ranked>(met_, open_.take());
       if (open_.size != 0) {
-        const Expanded<L> second = expand<L>(met_, open_.take());
+        const Expanded<L> second = expand<L, ranked>(met_, open_.take());
         task_.spending.spend_node_pairs(2 * wide_lanes);
         keep(second);
       } else {
@@ -43,13 +51,14 @@ class DepthFirst {
     }
   }
 
+ private:
   /// The deepest overlap is pushed last and so visited first: it is where a hit is found soonest.
   ODDS_LANES_INLINE void keep(const Expanded<L>& expanded) noexcept {
-    if (expanded.leaf_lanes != 0) leaf_pairs_.add(expanded, expanded.leaf_lanes);
+    if (expanded.leaf_lanes != 0) leaf_pairs_.add<false>(expanded, expanded.leaf_lanes);
     const unsigned inner = expanded.lanes & ~expanded.leaf_lanes;
     const unsigned deepest = 1U << L::least(expanded.gaps);
-    open_.add(expanded, inner & ~deepest);
-    open_.add(expanded, inner & deepest);
+    open_.add<ranked>(expanded, inner & ~deepest);
+    open_.add<ranked>(expanded, inner & deepest);
   }
 
   bool visit_leaf_pairs() noexcept {
@@ -61,8 +70,7 @@ class DepthFirst {
       const SlotPair pair = leaf_pairs_.take();
       if (visit_leaves<L>(task_, pair.of[0], pair.of[1])) continue;
       if (task_.result.ended == Progressed::spent) {
-        consider(task_.result, {pair.of[0], pair.of[1], met_.rank(pair.of[0], pair.of[1])});
-        consider_newest(open_);
+        consider(task_.result, {pair.of[0], pair.of[1], 0.0F});
       }
       return false;
     }
@@ -75,13 +83,9 @@ class DepthFirst {
     consider_newest(open_);
   }
 
+  /// Of what is open the newest lies deepest, in trees and in the other body.
   void consider_newest(const SlotPairs& pairs) noexcept {
-    constexpr std::size_t estimated_at_most = 4;  // each estimate costs about as much as a node
-    for (std::size_t n = 0; n < estimated_at_most && n < pairs.size; ++n) {
-      const Slot a = pairs.of[0][pairs.size - 1 - n];
-      const Slot b = pairs.of[1][pairs.size - 1 - n];
-      consider(task_.result, {a, b, met_.rank(a, b)});
-    }
+    if (pairs.size != 0) consider(task_.result, {pairs.of[0][pairs.size - 1], pairs.of[1][pairs.size - 1], 0.0F});
   }
 
   static constexpr std::size_t leaf_batch = 1;
@@ -90,7 +94,8 @@ class DepthFirst {
   const Encounter& met_;
   Slot open_slots_[2][wide_stack_capacity];
   Slot leaf_slots_[2][leaf_batch + 4 * wide_lanes];
-  SlotPairs open_{{open_slots_[0], open_slots_[1]}};
+  float ranks_[ranked ? wide_stack_capacity : 1];
+  SlotPairs open_{{open_slots_[0], open_slots_[1]}, ranks_};
   SlotPairs leaf_pairs_{{leaf_slots_[0], leaf_slots_[1]}};
 };
 

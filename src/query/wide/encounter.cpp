@@ -74,9 +74,9 @@ float Encounter::probability(Slot slot_a, Slot slot_b) const noexcept {
                          estimator_, {a_.levels(), b_.levels()});
 }
 
-Contact Encounter::cell_contact(Slot slot_a, Slot slot_b) const noexcept {
+Contact Encounter::cell_contact(Slot slot_a, Slot slot_b, double probability) const noexcept {
   return met_contact(a_.statistics(slot_a), b_.statistics(slot_b), box(a_, slot_a).radius(), box(b_, slot_b).radius(),
-                     meshes_.pose(), a_.origin(), static_cast<double>(probability(slot_a, slot_b)));
+                     meshes_.pose(), a_.origin(), probability);
 }
 
 }  // namespace odds::query::wide

@@ -39,7 +39,7 @@ class Encounter {
   /// See query::Encounter.
   [[nodiscard]] float rank(Slot slot_a, Slot slot_b) const noexcept;
   [[nodiscard]] float probability(Slot slot_a, Slot slot_b) const noexcept;
-  [[nodiscard]] Contact cell_contact(Slot slot_a, Slot slot_b) const noexcept;
+  [[nodiscard]] Contact cell_contact(Slot slot_a, Slot slot_b, double probability) const noexcept;
 
  private:
   [[nodiscard]] static volume::Aabb box(const tree::WideTree& tree, Slot slot) noexcept;

@@ -54,7 +54,7 @@ class Incremental {
   double open(KineticFront::Entry& entry) noexcept {
     const Expanded<L> expanded = expand<L>(met_, {{entry.a, entry.b}});
     task_.spending.spend_node_pairs(wide_lanes);
-    stack_.add(expanded, expanded.lanes & ~entry.opened);
+    stack_.add<false>(expanded, expanded.lanes & ~entry.opened);
     entry.opened |= expanded.lanes;
     alignas(64) float gap[wide_lanes];
     L::store(gap, expanded.gaps);
@@ -86,10 +86,8 @@ class Incremental {
 
   bool leave() noexcept {
     if (task_.result.ended == Progressed::spent) {
-      for (std::size_t n = 0; n < 4 && n < stack_.size; ++n) {
-        const Slot a = stack_.of[0][stack_.size - 1 - n];
-        const Slot b = stack_.of[1][stack_.size - 1 - n];
-        consider(task_.result, {a, b, met_.rank(a, b)});
+      if (stack_.size != 0) {
+        consider(task_.result, {stack_.of[0][stack_.size - 1], stack_.of[1][stack_.size - 1], 0.0F});
       }
     }
     while (stack_.size != 0) {
@@ -102,7 +100,7 @@ class Incremental {
   bool test_leaves(Slot a, Slot b, double& expiry) noexcept {
     const std::size_t hits = task_.hits.size();
     if (!visit_leaves<L>(task_, a, b)) {
-      if (task_.result.ended == Progressed::spent) consider(task_.result, {a, b, met_.rank(a, b)});
+      if (task_.result.ended == Progressed::spent) consider(task_.result, {a, b, 0.0F});
       return false;
     }
     if (task_.hits.size() == hits) {

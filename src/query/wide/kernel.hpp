@@ -6,7 +6,6 @@
 #include <cstdint>
 
 #include "odds/tree/wide_tree.hpp"
-#include "odds/volume/concept.hpp"
 #include "query/wide/lanes.hpp"
 
 namespace odds::query::wide {
@@ -58,42 +57,29 @@ ODDS_LANES_INLINE float squared_radius(const WideNode& node, std::uint32_t lane)
   return x * x + y * y + z * z;
 }
 
-/// What one test of a bounding volume against eight lanes computes.
-template <class L>
-struct Gaps {
-  using F = typename L::Float;
-  F gap;        ///< metres; a lower bound of the distance to each lane, <= 0 where nothing separates
-  F own[3];     ///< gap along each axis of this frame
-  F turned[3];  ///< gap along each axis of the turned box
-  F half[3];    ///< of the lanes
-  F reach[3];   ///< of the lanes along the turned box's axes
-  F normal[3];  ///< of the lanes' slabs
-};
-
 /// Separating axes: the three of each box and the normals of both slabs (the nine edge pairs never paid). The gap along
 /// any axis of length at most 1 bounds the distance from below, up to the rounding that `margin` of the encounter
 /// covers.
 template <class L>
-ODDS_LANES_INLINE Gaps<L> gaps(const WideNode& node, const TurnedBox& box, const Turn& turn) noexcept {
+ODDS_LANES_INLINE typename L::Float gaps(const WideNode& node, const TurnedBox& box, const Turn& turn) noexcept {
   using F = typename L::Float;
-  Gaps<L> found;
   F d[3];
   F c[3];
-  F(&h)[3] = found.half;
+  F h[3];
   for (int i = 0; i < 3; ++i) {
     c[i] = L::load(node.center[i]);
     h[i] = L::load(node.half[i]);
     d[i] = L::all(box.center[i]) - c[i];
-    found.own[i] = L::abs(d[i]) - (h[i] + L::all(box.extent[i]));
   }
-  F gap = L::max(L::max(found.own[0], found.own[1]), found.own[2]);
+  F gap = L::abs(d[0]) - (h[0] + L::all(box.extent[0]));  // this frame's axes
+  for (int i = 1; i < 3; ++i) gap = L::max(gap, L::abs(d[i]) - (h[i] + L::all(box.extent[i])));
   {  // the box's slab
     const F along = (L::all(box.normal[0]) * c[0] + L::all(box.normal[1]) * c[1]) + L::all(box.normal[2]) * c[2];
     const F reach = (L::abs(L::all(box.normal[0])) * h[0] + L::abs(L::all(box.normal[1])) * h[1]) +
                     L::abs(L::all(box.normal[2])) * h[2];
     gap = L::max(gap, L::abs(along - L::all(box.offset)) - (reach + L::all(box.thickness)));
   }
-  F(&n)[3] = found.normal;
+  F n[3];
   for (int i = 0; i < 3; ++i) n[i] = L::load(node.normal[i]);
   {  // the lanes' slabs
     const F along = (n[0] * L::all(box.center[0]) + n[1] * L::all(box.center[1])) + n[2] * L::all(box.center[2]);
@@ -108,62 +94,23 @@ ODDS_LANES_INLINE Gaps<L> gaps(const WideNode& node, const TurnedBox& box, const
   for (int j = 0; j < 3; ++j) {  // the box's own axes
     const F along =
         (d[0] * L::all(turn.column[j][0]) + d[1] * L::all(turn.column[j][1])) + d[2] * L::all(turn.column[j][2]);
-    found.reach[j] = (h[0] * L::all(turn.abs_column[j][0]) + h[1] * L::all(turn.abs_column[j][1])) +
-                     h[2] * L::all(turn.abs_column[j][2]);
-    found.turned[j] = L::abs(along) - (found.reach[j] + L::all(box.half[j]));
-    gap = L::max(gap, found.turned[j]);
+    const F reach = (h[0] * L::all(turn.abs_column[j][0]) + h[1] * L::all(turn.abs_column[j][1])) +
+                    h[2] * L::all(turn.abs_column[j][2]);
+    gap = L::max(gap, L::abs(along) - (reach + L::all(box.half[j])));
   }
-  found.gap = gap;
-  return found;
+  return gap;
 }
 
-/// log2 of the kinematic rate of each overlapping lane, as probability::log_kinematic_rate gives it, but from what the
-/// test computed anyway: the overlap of boxes as in volume::box_overlap_volume, and the normals' spread as that of a
-/// surface which is symmetric about its slab's normal. Lanes that do not overlap get anything but NaN.
+/// What orders a search: log2 of how deep the volumes of each lane overlap along the axis that nearly separates them,
+/// relative to how thick both surfaces are. Surfaces that fill their slabs evenly meet with a probability that grows
+/// with it; on near-contact poses it leads to a hit in fewer steps than the kinematic rate does, at a fifth of its
+/// cost. Lanes that do not overlap get a very negative number.
 template <class L>
-ODDS_LANES_INLINE typename L::Float ranks(const WideNode& node, const WideNode& other, std::uint32_t lane,
-                                          const TurnedBox& box, const Gaps<L>& found) noexcept {
-  using F = typename L::Float;
-  const float largest_half = std::max(std::max(box.half[0], box.half[1]), box.half[2]);
-  const float floor = volume::thickness_floor * largest_half;
-  const F lanes_floor = L::all(volume::thickness_floor) * L::max(L::max(found.half[0], found.half[1]), found.half[2]);
-  // No overlap is thinner than the thickness floor of the flatter volume.
-  const F least = L::max(L::min(L::all(floor), lanes_floor), L::all(1e-12F));
-  F here = L::all(1.0F);          // product of the overlaps along this frame's axes
-  F there = L::all(1.0F);         // along the turned box's
-  F lanes_volume = L::all(1.0F);  // an eighth
-  F enclosure = L::all(1.0F);     // of the lanes in the turned box's axes, an eighth
-  float box_volume = 1.0F;
-  float box_enclosure = 1.0F;
-  for (int i = 0; i < 3; ++i) {
-    const F none = L::all(0.0F);
-    const float extent = std::max(box.extent[i], floor);
-    const float half = std::max(box.half[i], floor);
-    const F lanes_half = L::max(found.half[i], lanes_floor);
-    const F reach = L::max(found.reach[i], lanes_floor);
-    here = here * L::max(L::min(none - found.own[i], L::all(2.0F) * L::min(lanes_half, L::all(extent))), least);
-    there = there * L::max(L::min(none - found.turned[i], L::all(2.0F) * L::min(reach, L::all(half))), least);
-    lanes_volume = lanes_volume * lanes_half;
-    enclosure = enclosure * reach;
-    box_volume *= half;
-    box_enclosure *= extent;
-  }
-  const F common = L::min(L::min(here * L::all(box_volume / box_enclosure), there * L::divide(lanes_volume, enclosure)),
-                          L::all(8.0F) * L::min(lanes_volume, L::all(box_volume)));
-  const F cosine = (found.normal[0] * L::all(box.normal[0]) + found.normal[1] * L::all(box.normal[1])) +
-                   found.normal[2] * L::all(box.normal[2]);
-  // Moments a I + b n n^T of both surfaces: tr(M_A M_B) = 3 aa' + ab' + ba' + bb' cos^2.
-  const F w = L::load(node.flatness);
-  const F a = L::all(0.5F) * (L::all(1.0F) - w);
-  const F b = w - a;
-  const float other_w = other.flatness[lane];
-  const float other_a = 0.5F * (1.0F - other_w);
-  const float other_b = other_w - other_a;
-  const F trace = a * L::all(3.0F * other_a + other_b) + b * (L::all(other_a) + L::all(other_b) * (cosine * cosine));
-  const F sine = L::max(L::all(1.0F) - trace, L::all(0.0F)) + L::all(1e-4F);
-  const F log_common = lanes::rough_log2<L>(L::max(common, L::all(1e-36F)));
-  return (L::load(node.log_density) + L::all(other.log_density[lane])) +
-         (log_common * L::all(2.0F / 3.0F) + lanes::rough_log2<L>(sine) * L::all(0.5F));
+ODDS_LANES_INLINE typename L::Float ranks(const WideNode& node, const TurnedBox& box, typename L::Float gap) noexcept {
+  constexpr float least = 1e-30F;
+  const typename L::Float depth = L::max(L::all(0.0F) - gap, L::all(least));
+  const typename L::Float thickness = L::max(L::load(node.thickness) + L::all(box.thickness), L::all(least));
+  return lanes::rough_log2<L>(L::divide(depth, thickness));
 }
 
 /// For each triangle of leaf B the triangles of leaf A that it may meet, as bits.

@@ -10,7 +10,7 @@ namespace odds::query::wide {
 /// Two pairs push at most sixteen, at most once a level of either tree.
 inline constexpr std::size_t wide_stack_capacity = 2 * wide_lanes * 2 * (tree::deepest_level + 2);
 /// Work units between two looks at the clock: some 100 ns.
-inline constexpr std::uint32_t units_between_polls = 32;
+inline constexpr std::uint32_t units_between_polls = 16;
 
 /// Tests all triangles of two leaves. False ends the search (the result says why).
 template <class L>
@@ -82,30 +82,32 @@ ODDS_LANES_INLINE Expanded<L> expand(const Encounter& met, const SlotPair& pair)
   const Turn& into = met.turn_into(side);
   const std::uint32_t opened = nodes[side]->child[lanes[side]].index();
   const TurnedBox box = turn(*nodes[1 - side], lanes[1 - side], into);
-  const Gaps<L> found = gaps<L>(met.nodes(side)[opened], box, into);
+  const typename L::Float gap = gaps<L>(met.nodes(side)[opened], box, into);
   const WideNode& node = met.nodes(side)[opened];
-  const unsigned overlapping = L::less_equal(found.gap, L::all(met.margin()));
+  const unsigned overlapping = L::less_equal(gap, L::all(met.margin()));
   const unsigned other_is_leaf = nodes[1 - side]->child[lanes[1 - side]].is_leaf() ? 0xFFU : 0U;
   Expanded<L> expanded{side,
                        opened * wide_lanes,
                        pair.of[1 - side],
                        overlapping,
                        overlapping & L::highest_bits(node.child) & other_is_leaf,
-                       found.gap,
-                       found.gap};
-  if constexpr (ranked) expanded.ranks = ranks<L>(node, *nodes[1 - side], lanes[1 - side], box, found);
+                       gap,
+                       gap};
+  if constexpr (ranked) expanded.ranks = ranks<L>(node, box, gap);
   return expanded;
 }
 
 /// Open pairs, newest last, each side's slots in one array.
 struct SlotPairs {
   Slot* of[2];
+  float* ranks = nullptr;  ///< of each pair, if they are wanted
   std::size_t size = 0;
 
-  template <class L>
+  template <bool ranked, class L>
   ODDS_LANES_INLINE void add(const Expanded<L>& expanded, unsigned lanes) noexcept {
     L::write_lanes(of[expanded.side] + size, expanded.first, lanes);
     L::write_all(of[1 - expanded.side] + size, expanded.other);
+    if constexpr (ranked) L::write_some(ranks + size, expanded.ranks, lanes);
     size += static_cast<std::size_t>(std::popcount(lanes));
   }
   ODDS_LANES_INLINE SlotPair take() noexcept {

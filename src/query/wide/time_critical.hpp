@@ -6,6 +6,10 @@
 namespace odds::query::wide {
 
 /// Likeliest pair first. Ends on proof, on k_min pairs with p >= p_min, or with the budget.
+///
+/// It starts depth-first: most queries are proved that way before a queue has paid for itself (on cars of 60,000
+/// triangles near contact, a queue from the beginning costs 1.5 times as much and proves 81 % within 5 us instead of
+/// 93 %). What the start leaves open goes into the queue. Without a start if pairs are to be counted by probability.
 template <class L>
 class TimeCritical {
  public:
@@ -19,7 +23,11 @@ class TimeCritical {
 
   void run() noexcept {
     task_.queue.clear();
-    push({tree::WideTree::root, tree::WideTree::root, 0.0F});
+    if (task_.request.p_min < 1.0 || task_.request.polygon_free) {
+      task_.queue.push(0, {tree::WideTree::root, tree::WideTree::root, 0.0F});
+    } else if (!start()) {
+      return;
+    }
     while (!task_.queue.empty() && !finished_) {
       if (!task_.spending.may_go_on_after(units_between_polls)) {
         finish(Progressed::spent);
@@ -27,7 +35,29 @@ class TimeCritical {
       }
       visit(task_.queue.pop());
     }
-    if (task_.result.ended != Progressed::finished && !task_.queue.empty()) consider(task_.result, task_.queue.top());
+    if (task_.result.ended != Progressed::spent) return;
+    if (!task_.queue.empty()) consider(task_.result, task_.queue.top());
+  }
+
+  /// False: the search has ended.
+  bool start() noexcept {
+    constexpr double share = 0.6;
+    constexpr std::uint64_t most_units = 4096;
+    task_.spending.begin_start(share, most_units);
+    DepthFirst<L, true> search(task_);
+    search.run(tree::WideTree::root, tree::WideTree::root);
+    if (task_.result.ended != Progressed::finished) return false;
+    keep(search.open());
+    keep(search.leaf_pairs());
+    return !task_.queue.empty();
+  }
+
+  void keep(const SlotPairs& pairs) noexcept {
+    for (std::size_t i = 0; i < pairs.size; ++i) {
+      const NodePair pair{pairs.of[0][i], pairs.of[1][i], pairs.ranks == nullptr ? highest_rank : pairs.ranks[i]};
+      add(pair, log_cost.of[std::min<std::uint32_t>(levels_left(pair), log_cost.most)]);
+      if (finished_) return;
+    }
   }
 
   void finish(Progressed how) noexcept {
@@ -36,32 +66,57 @@ class TimeCritical {
   }
 
   [[nodiscard]] std::uint32_t levels_left(const NodePair& pair) const noexcept {
-    return met_.a().nodes()[pair.a / wide_lanes].child[pair.a % wide_lanes].height() +
-           met_.b().nodes()[pair.b / wide_lanes].child[pair.b % wide_lanes].height();
-  }
-
-  void push(const NodePair& pair) noexcept {
-    task_.queue.push(bucket_of(pair.rank, 3 * static_cast<int>(levels_left(pair))), pair);
+    return met_.nodes(0)[pair.a / wide_lanes].child[pair.a % wide_lanes].height() +
+           met_.nodes(1)[pair.b / wide_lanes].child[pair.b % wide_lanes].height();
   }
 
   void visit(const NodePair& pair) noexcept {
-    if (levels_left(pair) == 0) return visit_leaf_pair(pair);
+    const std::uint32_t levels = levels_left(pair);
+    if (levels == 0) return visit_leaf_pair(pair);
     if (!task_.spending.allows(wide_lanes)) {
       consider(task_.result, pair);
       return finish(Progressed::spent);
     }
     const Expanded<L> expanded = expand<L, true>(met_, {{pair.a, pair.b}});
     task_.spending.spend_node_pairs(wide_lanes);
+    meet_lanes(expanded, levels);
+  }
+
+  void meet_lanes(const Expanded<L>& expanded, std::uint32_t levels) noexcept {
     alignas(64) float rank[wide_lanes];
     L::store(rank, expanded.ranks);
+    const float cost = log_cost.of[std::min<std::uint32_t>(levels - 1, log_cost.most)];
+    NodePair child;
+    (expanded.side == 0 ? child.b : child.a) = expanded.other;
+    Slot& opened = expanded.side == 0 ? child.a : child.b;
     for (unsigned lanes = expanded.lanes; lanes != 0 && !finished_; lanes &= lanes - 1U) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
-      NodePair child = expanded.side == 0 ? NodePair{expanded.first + lane, pair.b, rank[lane]}
-                                          : NodePair{pair.a, expanded.first + lane, rank[lane]};
-      if (task_.request.estimator == EstimatorKind::cells) child.rank = met_.rank(child.a, child.b);
-      meet(child);
+      opened = expanded.first + lane;
+      child.rank = task_.request.estimator == EstimatorKind::kinematic ? rank[lane] : met_.rank(child.a, child.b);
+      meet(child, cost);
     }
   }
+
+  /// log2 of what is left to do below a pair: each level of eight lanes is worth three of two.
+  struct LogCost {
+    static constexpr std::uint32_t most = 2 * tree::ChildRef::highest;
+    float of[most + 1];
+  };
+  static constexpr LogCost log_cost = [] {
+    LogCost cost{};
+    for (std::uint32_t levels = 0; levels <= LogCost::most; ++levels) {
+      // log2(x) = 2 / ln 2 * artanh((x / 2^n - 1) / (x / 2^n + 1)) + n
+      double x = 3.0 * levels + 2.0;
+      double log = 0.0;
+      for (; x >= 2.0; x /= 2.0) log += 1.0;
+      const double y = (x - 1.0) / (x + 1.0);
+      double power = y;
+      double sum = 0.0;
+      for (int k = 1; k < 30; k += 2, power *= y * y) sum += power / k;
+      cost.of[levels] = static_cast<float>(log + 2.0 * sum / 0.69314718055994531);
+    }
+    return cost;
+  }();
 
   void visit_leaf_pair(const NodePair& pair) noexcept {
     if (task_.request.polygon_free) {
@@ -83,7 +138,7 @@ class TimeCritical {
     finished_ = true;
   }
 
-  void meet(const NodePair& pair) noexcept {
+  void meet(const NodePair& pair, float cost) noexcept {
     if (task_.request.p_min < 1.0) {
       const float p = met_.probability(pair.a, pair.b);
       if (static_cast<double>(p) >= task_.request.p_min) {
@@ -95,7 +150,11 @@ class TimeCritical {
         }
       }
     }
-    if (!task_.queue.full()) return push(pair);
+    add(pair, cost);
+  }
+
+  void add(const NodePair& pair, float cost) noexcept {
+    if (!task_.queue.full()) return task_.queue.push(bucket_of_value(std::min(pair.rank, highest_rank) - cost), pair);
     // Nothing is dropped: what finds no room is searched to its end at once.
     task_.spending.note_full_queue();
     if (task_.request.polygon_free) {
