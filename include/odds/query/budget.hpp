@@ -10,7 +10,8 @@ namespace odds::query {
 
 /// The limit of one query. Both limits may be set; the first one reached ends the query.
 /// Microseconds are wall time from the call of `run` to its return, contacts included, and not repeatable. Work units
-/// (one per pair of nodes visited, one per pair of triangles tested) give the same bits on every run.
+/// (one per pair of nodes visited, one per pair of triangles tested, as Cost counts them) give the same bits on every
+/// run.
 struct Budget {
   double microseconds = std::numeric_limits<double>::infinity();         ///< > 0; infinity: no limit
   std::uint64_t work_units = std::numeric_limits<std::uint64_t>::max();  ///< > 0; max: no limit

@@ -63,7 +63,7 @@ class DepthFirst {
 
   bool visit_leaf_pairs() noexcept {
     while (leaf_pairs_.size != 0) {
-      if (!task_.spending.may_go_on_after(units_between_polls) || !task_.spending.allows(wide_lanes * wide_lanes)) {
+      if (!task_.spending.may_go_on_after(units_between_polls) || !task_.spending.allows(wide_lanes)) {
         stop();
         return false;
       }

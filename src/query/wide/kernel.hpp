@@ -117,7 +117,7 @@ ODDS_LANES_INLINE typename L::Float ranks(const WideNode& node, const TurnedBox&
 struct LeafPairs {
   std::uint8_t lanes_a[wide_lanes];
   std::uint32_t rows = 0;    ///< bits of B's triangles with any
-  std::uint32_t tested = 0;  ///< pairs of triangles compared
+  std::uint32_t tested = 0;  ///< of B's triangles compared with all of A's at once
 };
 
 template <class L>
@@ -294,11 +294,10 @@ ODDS_LANES_INLINE LeafPairs leaf_pairs(const WideLeaf& leaf_a, const WideLeaf& l
   if (rows == 0) return found;
   place_a(leaves, leaf_a);
   const Rows<L> b(leaves.b);
-  const std::uint32_t count_a = node_a.child[lane_a].count();
   for (unsigned left = rows; left != 0; left &= left - 1U) {
     const auto row = static_cast<unsigned>(__builtin_ctz(left));
     const unsigned met = leaves.lanes_a & may_meet<L>(leaves.a, b, row, 2.0F * delta);
-    found.tested += count_a;
+    ++found.tested;
     if (met == 0) continue;
     found.lanes_a[row] = static_cast<std::uint8_t>(met);
     found.rows |= 1U << row;

@@ -129,7 +129,7 @@ class TimeCritical {
       }
       return;
     }
-    if (!task_.spending.allows(wide_lanes * wide_lanes)) {
+    if (!task_.spending.allows(wide_lanes)) {
       consider(task_.result, pair);
       return finish(Progressed::spent);
     }
