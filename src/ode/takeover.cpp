@@ -28,7 +28,7 @@ bool has_callbacks(dGeomID trimesh) noexcept {
 
 // The mesh of a dTriMesh that we may answer for, or null.
 GeomData* ours(dGeomID trimesh) noexcept {
-  return has_callbacks(trimesh) ? nullptr : mesh_of_partner(trimesh, volume::Kind::obb);
+  return has_callbacks(trimesh) ? nullptr : mesh_of_partner(trimesh, volume::Kind::wide);
 }
 
 bool can_answer(dGeomID o1, dGeomID o2) noexcept {

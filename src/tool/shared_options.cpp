@@ -28,7 +28,7 @@ void add_shape_options(CLI::App& command, query::ShapeOptions& options) {
     names += (names.empty() ? "" : ", ") + std::string(word);
     if (volume::name(kind) != word) names += " for " + std::string(volume::name(kind));
   }
-  add_choice(command, "--bv", options.volume, kinds, "bounding volume: " + names + " (default obb)");
+  add_choice(command, "--bv", options.volume, kinds, "bounding volume: " + names + " (default wide)");
   command.add_option("--tau", options.tau, "share of the greatest area from which on a cell is well filled, (0, 1]")
       ->check(share_of_one());
 }

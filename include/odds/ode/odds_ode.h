@@ -63,7 +63,7 @@ typedef struct oddsBuildParams {
   const char* name;   /* stands in error messages; may be null */
 } oddsBuildParams;
 
-/* Fills in the defaults: OBB, 4 triangles, tau 0.25, no name. */
+/* Fills in the defaults: the wide engine, as many triangles as suit it, tau 0.25, no name. */
 void oddsBuildParamsInit(oddsBuildParams* params) ODDS_NOTHROW;
 
 /* An empty container. Build once, share among any number of geoms. */
