@@ -297,6 +297,44 @@ const Answer& Pair::run(const math::Pose& pose_b_in_a, const Request& request) n
   return pair.answer;
 }
 
+DistanceAnswer Pair::distance(const math::Pose& pose_b_in_a, const DistanceRequest& request) const noexcept {
+  const Implementation& pair = *implementation_;
+  DistanceAnswer answer;
+  const auto* a = std::get_if<tree::WideTree>(&pair.a->data().tree);
+  const auto* b = std::get_if<tree::WideTree>(&pair.b->data().tree);
+  if (a == nullptr || b == nullptr || !pose_b_in_a.is_rigid(tolerances::pose_orthonormality) ||
+      !(request.within >= 0.0) || !(request.budget.microseconds > 0.0) || request.budget.work_units == 0) {
+    return answer;
+  }
+  Spending spending(request.budget);
+  const PosedMeshes meshes(pair.a->mesh(), pair.b->mesh(), a->origin(), b->origin(), pose_b_in_a);
+  const double apart = meshes.pose().translation.norm();
+  const double reach = a->reach() + b->reach();
+  answer.lower = std::max(0.0, apart - reach * (1.0 + 1e-12));
+  // No two points are farther apart than this, so the nearest are not.
+  const double farthest = (apart + reach) * (1.0 + 1e-6);
+  if (answer.lower > request.within) {
+    answer.lower = request.within;
+    answer.proved = true;
+  } else if (apart <= 1000.0 * reach && std::isfinite(farthest)) {
+    const wide::Encounter encounter(*a, *b, meshes, EstimatorKind::kinematic);
+    wide::NearestTask task{encounter, spending, std::min(request.within, farthest)};
+    pair.wide->nearest(task);
+    answer.proved = task.finished;
+    if (task.found) {
+      answer.upper = task.bound;
+      answer.on_a = task.points.on_a + a->origin();
+      answer.on_b = task.points.on_b + a->origin();
+      answer.triangle_a = task.triangles.a;
+      answer.triangle_b = task.triangles.b;
+    }
+    answer.lower = std::max(answer.lower, task.finished ? task.bound : std::min(task.lower, task.bound));
+    answer.lower = std::min(answer.lower, answer.upper);
+  }
+  answer.cost = spending.close();
+  return answer;
+}
+
 std::uint32_t Pair::slice_size() const noexcept {
   if (implementation_->a->volume() != volume::Kind::wide) return implementation_->slice.size();
   return std::max(implementation_->front.size(), 1U);

@@ -15,6 +15,7 @@
 #include "tool/command.hpp"
 #include "tool/mesh_argument.hpp"
 #include "tool/output_file.hpp"
+#include "tool/pair_argument.hpp"
 #include "tool/poses_csv.hpp"
 #include "tool/progress_line.hpp"
 #include "tool/shared_options.hpp"
@@ -23,36 +24,14 @@ namespace odds::tool {
 namespace {
 
 struct QueryOptions {
-  std::string mesh_a;
-  std::string mesh_b;
-  double scale_a = 1.0;
-  double scale_b = 1.0;
+  PairArgument pair;
   std::string poses;
   std::string out;
-  query::ShapeOptions shape;
   query::Request request;
   double budget_us = 0.0;  ///< 0: not given
   std::uint64_t work = 0;  ///< 0: not given
   std::uint32_t repeat = 1;
 };
-
-Result<std::shared_ptr<const query::Shape>> build(const std::string& argument, double scale,
-                                                  const query::ShapeOptions& options) {
-  Result<mesh::TriangleMesh> mesh = load_mesh(argument, scale);
-  if (!mesh.ok()) return mesh.error();
-  ProgressLine progress("building " + argument);
-  return query::Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(mesh).value()), options,
-                             [&](double share) { progress.show(share); });
-}
-
-Result<query::Pair> prepare(const QueryOptions& options) {
-  const auto a = build(options.mesh_a, options.scale_a, options.shape);
-  if (!a.ok()) return a.error();
-  const bool twins = options.mesh_a == options.mesh_b && options.scale_a == options.scale_b;
-  const auto b = twins ? a : build(options.mesh_b, options.scale_b, options.shape);
-  if (!b.ok()) return b.error();
-  return query::Pair::make(a.value(), b.value());
-}
 
 /// Answers pose after pose and takes the time of each query alone.
 class Session {
@@ -99,12 +78,12 @@ class Session {
 int run(const QueryOptions& options) {
   const Result<std::vector<math::Pose>> poses = read_poses(options.poses);
   if (!poses.ok()) return fail(poses.error());
-  if (const auto error = refuse_overwriting(options.out, {options.poses, options.mesh_a, options.mesh_b})) {
+  if (const auto error = refuse_overwriting(options.out, {options.poses, options.pair.mesh_a, options.pair.mesh_b})) {
     return fail(*error);
   }
   Result<OutputFile> out = OutputFile::open(options.out);
   if (!out.ok()) return fail(out.error());
-  Result<query::Pair> pair = prepare(options);
+  Result<query::Pair> pair = make_pair(options.pair);
   if (!pair.ok()) return fail(pair.error());
 
   query::Request request = options.request;
@@ -133,8 +112,8 @@ int run(const QueryOptions& options) {
 void add_query(CLI::App& app, Action& action) {
   const auto options = std::make_shared<QueryOptions>();
   CLI::App* command = app.add_subcommand("query", "Answer whether A and B meet, for each pose of B in A's frame");
-  command->add_option("A", options->mesh_a, "mesh: " + mesh_argument_help())->required();
-  command->add_option("B", options->mesh_b, "mesh, as A")->required();
+  command->add_option("A", options->pair.mesh_a, "mesh: " + mesh_argument_help())->required();
+  command->add_option("B", options->pair.mesh_b, "mesh, as A")->required();
   command->add_option("--poses", options->poses, "CSV with columns x,y,z (metres), qw,qx,qy,qz: pose of B in A's frame")
       ->required();
   command->add_option("--out", options->out, "CSV of answers, rows counted from 0 as the poses; - for standard output")
@@ -146,7 +125,7 @@ void add_query(CLI::App& app, Action& action) {
   const std::map<std::string, query::EstimatorKind> estimators = {{"cells", query::EstimatorKind::cells},
                                                                   {"kinematic", query::EstimatorKind::kinematic}};
   add_choice(*command, "--estimator", options->request.estimator, estimators, "cells or kinematic (default)");
-  add_shape_options(*command, options->shape);
+  add_shape_options(*command, options->pair.shape);
   CLI::Option* budget = command->add_option("--budget-us", options->budget_us, "microseconds for one query, > 0");
   budget->check(positive_and_finite());
   command->add_option("--work", options->work, "work units for one query, > 0: repeatable bit for bit")
@@ -163,8 +142,8 @@ void add_query(CLI::App& app, Action& action) {
                     "judge leaves by probability, not by their triangles");
   command->add_option("--repeat", options->repeat, "run each query so often and take the median time, 1 .. 10000")
       ->check(whole_number(1, 10000));
-  command->add_option("--scale-a", options->scale_a, "metres per unit of A's file")->check(positive_and_finite());
-  command->add_option("--scale-b", options->scale_b, "metres per unit of B's file")->check(positive_and_finite());
+  command->add_option("--scale-a", options->pair.scale_a, "metres per unit of A's file")->check(positive_and_finite());
+  command->add_option("--scale-b", options->pair.scale_b, "metres per unit of B's file")->check(positive_and_finite());
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }
 

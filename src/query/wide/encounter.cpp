@@ -1,8 +1,10 @@
 #include "query/wide/encounter.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "query/node_odds.hpp"
+#include "query/wide/searches.hpp"
 
 namespace odds::query::wide {
 namespace {
@@ -24,8 +26,9 @@ Encounter::Encounter(const tree::WideTree& a, const tree::WideTree& b, const Pos
                      EstimatorKind estimator) noexcept
     : a_(a), b_(b), meshes_(meshes), nodes_{a.nodes(), b.nodes()}, estimator_(estimator) {
   const math::Pose& pose = meshes.pose();
-  const double reach = a.reach() + b.reach();
-  far_apart_ = !(pose.translation.norm() <= reach * (1.0 + 1e-9));
+  // Bodies that are farther apart than their own sizes are only asked for their distance.
+  const double reach = std::max(a.reach() + b.reach(), pose.translation.norm());
+  far_apart_ = !(pose.translation.norm() <= (a.reach() + b.reach()) * (1.0 + 1e-9));
   relative_ = volume::RelativePose::make(pose, 2.0 * reach);
   turns_[0] = make_turn(relative_);
   turns_[1] = make_turn(volume::RelativePose::make(pose.inverse(), 2.0 * reach));
@@ -47,6 +50,18 @@ void Encounter::shift(Slot slot_a, Slot slot_b, float shift[3]) const noexcept {
 
 bool Encounter::triangles_meet(std::uint32_t triangle_a, std::uint32_t triangle_b) const noexcept {
   return meshes_.meet({triangle_a, triangle_b});
+}
+
+void Encounter::bring_nearer(std::uint32_t triangle_a, std::uint32_t triangle_b, NearestTask& task) const noexcept {
+  const tree::TriangleCorners a = meshes_.corners_a(triangle_a);
+  const tree::TriangleCorners b = meshes_.corners_b(triangle_b);
+  const primitive::ClosestPoints points = primitive::closest_points(a.data(), b.data());
+  const double distance = std::sqrt(points.squared_distance);
+  if (!(distance < task.bound) && (task.found || !(distance <= task.bound))) return;
+  task.bound = distance;
+  task.found = true;
+  task.points = points;
+  task.triangles = {triangle_a, triangle_b};
 }
 
 volume::Aabb Encounter::box(const tree::WideTree& tree, Slot slot) noexcept {

@@ -12,6 +12,8 @@
 
 namespace odds::query::wide {
 
+struct NearestTask;
+
 /// Made once per query. Both trees and the posed meshes must outlive it.
 class Encounter {
  public:
@@ -35,6 +37,9 @@ class Encounter {
 
   /// The exact test of two triangles, given by their indices in the meshes.
   [[nodiscard]] bool triangles_meet(std::uint32_t triangle_a, std::uint32_t triangle_b) const noexcept;
+
+  /// Keeps the nearest points of two triangles in the task if they are nearer than its bound.
+  void bring_nearer(std::uint32_t triangle_a, std::uint32_t triangle_b, NearestTask& task) const noexcept;
 
   /// See query::Encounter.
   [[nodiscard]] float rank(Slot slot_a, Slot slot_b) const noexcept;

@@ -59,8 +59,9 @@ ODDS_LANES_INLINE float squared_radius(const WideNode& node, std::uint32_t lane)
 
 /// Separating axes: the three of each box and the normals of both slabs (the nine edge pairs never paid). The gap along
 /// any axis of length at most 1 bounds the distance from below, up to the rounding that `margin` of the encounter
-/// covers.
-template <class L>
+/// covers. `far`: the three gaps of each frame's axes also count together, as the legs of a distance; for boxes that
+/// are apart by more than their sizes that is what bounds it.
+template <class L, bool far = false>
 ODDS_LANES_INLINE typename L::Float gaps(const WideNode& node, const TurnedBox& box, const Turn& turn) noexcept {
   using F = typename L::Float;
   F d[3];
@@ -72,7 +73,14 @@ ODDS_LANES_INLINE typename L::Float gaps(const WideNode& node, const TurnedBox& 
     d[i] = L::all(box.center[i]) - c[i];
   }
   F gap = L::abs(d[0]) - (h[0] + L::all(box.extent[0]));  // this frame's axes
-  for (int i = 1; i < 3; ++i) gap = L::max(gap, L::abs(d[i]) - (h[i] + L::all(box.extent[i])));
+  const F none = L::all(0.0F);
+  F squares = L::max(gap, none) * L::max(gap, none);
+  for (int i = 1; i < 3; ++i) {
+    const F one = L::abs(d[i]) - (h[i] + L::all(box.extent[i]));
+    gap = L::max(gap, one);
+    if constexpr (far) squares = squares + L::max(one, none) * L::max(one, none);
+  }
+  if constexpr (far) gap = L::max(gap, L::root(squares) * L::all(0.999999F));
   {  // the box's slab
     const F along = (L::all(box.normal[0]) * c[0] + L::all(box.normal[1]) * c[1]) + L::all(box.normal[2]) * c[2];
     const F reach = (L::abs(L::all(box.normal[0])) * h[0] + L::abs(L::all(box.normal[1])) * h[1]) +
@@ -96,8 +104,12 @@ ODDS_LANES_INLINE typename L::Float gaps(const WideNode& node, const TurnedBox& 
         (d[0] * L::all(turn.column[j][0]) + d[1] * L::all(turn.column[j][1])) + d[2] * L::all(turn.column[j][2]);
     const F reach = (h[0] * L::all(turn.abs_column[j][0]) + h[1] * L::all(turn.abs_column[j][1])) +
                     h[2] * L::all(turn.abs_column[j][2]);
-    gap = L::max(gap, L::abs(along) - (reach + L::all(box.half[j])));
+    const F one = L::abs(along) - (reach + L::all(box.half[j]));
+    gap = L::max(gap, one);
+    if constexpr (far)
+      squares = j == 0 ? L::max(one, none) * L::max(one, none) : squares + L::max(one, none) * L::max(one, none);
   }
+  if constexpr (far) gap = L::max(gap, L::root(squares) * L::all(0.999999F));
   return gap;
 }
 
@@ -305,38 +317,50 @@ ODDS_LANES_INLINE LeafPairs leaf_pairs(const WideLeaf& leaf_a, const WideLeaf& l
   return found;
 }
 
-/// A lower bound of the distance between the triangles of two leaves, from their boxes and planes; 0 or less says
-/// nothing. Metres.
+/// For each of B's triangles (rows) and A's (lanes) a lower bound of their distance, from boxes and planes; 0 or less
+/// says nothing. Metres. Lanes and rows beyond the leaves' counts say nothing.
 template <class L>
-ODDS_LANES_INLINE float leaf_gap(const WideLeaf& leaf_a, const WideLeaf& leaf_b, const WideNode& node_a,
-                                 std::uint32_t lane_a, const WideNode& node_b, std::uint32_t lane_b, const Turn& turn,
-                                 const float shift[3], float margin) noexcept {
+ODDS_LANES_INLINE void triangle_gaps(const WideLeaf& leaf_a, const WideLeaf& leaf_b, const WideNode& node_a,
+                                     std::uint32_t lane_a, const WideNode& node_b, std::uint32_t lane_b,
+                                     const Turn& turn, const float shift[3], float margin,
+                                     float (&gaps)[wide_lanes][wide_lanes]) noexcept {
   using F = typename L::Float;
   TwoLeaves<L> leaves;
   place_b(leaves, leaf_b, node_a, lane_a, node_b, lane_b, turn, shift, margin);
   place_a(leaves, leaf_a);
   const Rows<L> b(leaves.b);
   const EightTriangles<L>& a = leaves.a;
-  // Lengths of normals from above, by the sum of their parts.
-  const F length_a = (L::abs(a.normal[0]) + L::abs(a.normal[1])) + L::abs(a.normal[2]);
-  const F inverse_a = L::divide(L::all(1.0F), L::max(length_a, L::all(1e-30F)));
+  const F length_a = L::root((a.normal[0] * a.normal[0] + a.normal[1] * a.normal[1]) + a.normal[2] * a.normal[2]);
+  const F inverse_a = L::divide(L::all(0.999999F), L::max(length_a, L::all(1e-18F)));
   const F slack = L::all(2.0F * leaves.delta);
-  F least = L::all(1e30F);
   for (unsigned row = 0; row < node_b.child[lane_b].count(); ++row) {
-    F gap = L::all(b.lower[0][row]) - a.upper[0];
+    F squares = L::all(0.0F);  // boxes apart along several axes are apart by their legs
     for (int i = 0; i < 3; ++i) {
-      gap = L::max(gap, L::max(L::all(b.lower[i][row]) - a.upper[i], a.lower[i] - L::all(b.upper[i][row])));
+      const F leg = L::max(L::all(b.lower[i][row]) - a.upper[i], a.lower[i] - L::all(b.upper[i][row])) - slack;
+      squares = squares + L::max(leg, L::all(0.0F)) * L::max(leg, L::all(0.0F));
     }
-    gap = gap - slack;
-    const float parts = (std::abs(b.normal[0][row]) + std::abs(b.normal[1][row])) + std::abs(b.normal[2][row]);
-    if (parts > 1e-30F) {
-      const F low_high = plane_gap_of_b<L>(a, b, row) - L::all(b.tolerance[row]);
-      gap = L::max(gap, low_high * L::all(0.999999F / parts));
+    F gap = L::root(squares) * L::all(0.999999F);
+    const float length_b = std::sqrt((b.normal[0][row] * b.normal[0][row] + b.normal[1][row] * b.normal[1][row]) +
+                                     b.normal[2][row] * b.normal[2][row]);
+    if (length_b > 1e-18F) {  // shorter ones have lost digits to underflow
+      const F planes_b = plane_gap_of_b<L>(a, b, row) - L::all(b.tolerance[row]);
+      gap = L::max(gap, planes_b * L::all(0.999999F / length_b));
     }
     const F planes_a = plane_gap_of_a<L>(a, b, row) - a.tolerance;
-    gap = L::max(gap, planes_a * inverse_a * L::all(0.999999F));
-    least = L::min(least, gap);
+    gap = L::max(gap, planes_a * inverse_a);
+    L::store(gaps[row], gap);
   }
+}
+
+/// The least of these.
+template <class L>
+ODDS_LANES_INLINE float leaf_gap(const WideLeaf& leaf_a, const WideLeaf& leaf_b, const WideNode& node_a,
+                                 std::uint32_t lane_a, const WideNode& node_b, std::uint32_t lane_b, const Turn& turn,
+                                 const float shift[3], float margin) noexcept {
+  alignas(64) float gaps[wide_lanes][wide_lanes];
+  triangle_gaps<L>(leaf_a, leaf_b, node_a, lane_a, node_b, lane_b, turn, shift, margin, gaps);
+  typename L::Float least = L::load(gaps[0]);
+  for (unsigned row = 1; row < node_b.child[lane_b].count(); ++row) least = L::min(least, L::load(gaps[row]));
   alignas(64) float of[wide_lanes];
   L::store(of, least);
   float smallest = of[0];

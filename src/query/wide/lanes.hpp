@@ -41,6 +41,7 @@ struct Avx2 {
   ODDS_LANES_INLINE static Float all(float x) noexcept { return {_mm256_set1_ps(x)}; }
   ODDS_LANES_INLINE static Float abs(Float a) noexcept { return {_mm256_andnot_ps(_mm256_set1_ps(-0.0F), a.v)}; }
   ODDS_LANES_INLINE static Float divide(Float a, Float b) noexcept { return {_mm256_div_ps(a.v, b.v)}; }
+  ODDS_LANES_INLINE static Float root(Float a) noexcept { return {_mm256_sqrt_ps(a.v)}; }
   /// Exponent of positive normal numbers, and mantissa - 1 in [0, 1).
   ODDS_LANES_INLINE static void split(Float a, Float& exponent, Float& fraction) noexcept {
     const __m256i bits = _mm256_castps_si256(a.v);
@@ -105,6 +106,7 @@ struct Sse2 {
   ODDS_LANES_INLINE static Float divide(Float a, Float b) noexcept {
     return {_mm_div_ps(a.lo, b.lo), _mm_div_ps(a.hi, b.hi)};
   }
+  ODDS_LANES_INLINE static Float root(Float a) noexcept { return {_mm_sqrt_ps(a.lo), _mm_sqrt_ps(a.hi)}; }
   ODDS_LANES_INLINE static void split(Float a, Float& exponent, Float& fraction) noexcept {
     split_four(a.lo, exponent.lo, fraction.lo);
     split_four(a.hi, exponent.hi, fraction.hi);
@@ -186,6 +188,11 @@ struct Portable {
   ODDS_LANES_INLINE static Float divide(const Float& a, const Float& b) noexcept {
     Float result;
     for (int i = 0; i < 8; ++i) result.v[i] = a.v[i] / b.v[i];
+    return result;
+  }
+  ODDS_LANES_INLINE static Float root(const Float& a) noexcept {
+    Float result;
+    for (int i = 0; i < 8; ++i) result.v[i] = __builtin_sqrtf(a.v[i]);
     return result;
   }
   ODDS_LANES_INLINE static void split(const Float& a, Float& exponent, Float& fraction) noexcept {

@@ -74,7 +74,7 @@ ODDS_LANES_INLINE float opening_size(const WideNode& node, std::uint32_t lane) n
 
 /// Opens the larger of both, or the one that is no leaf. Not both may be leaves. Without branches on which side it is:
 /// nobody could predict them.
-template <class L, bool ranked = false>
+template <class L, bool ranked = false, bool far = false>
 ODDS_LANES_INLINE Expanded<L> expand(const Encounter& met, const SlotPair& pair) noexcept {
   const WideNode* nodes[2] = {met.nodes(0) + pair.of[0] / wide_lanes, met.nodes(1) + pair.of[1] / wide_lanes};
   const std::uint32_t lanes[2] = {pair.of[0] % wide_lanes, pair.of[1] % wide_lanes};
@@ -82,7 +82,7 @@ ODDS_LANES_INLINE Expanded<L> expand(const Encounter& met, const SlotPair& pair)
   const Turn& into = met.turn_into(side);
   const std::uint32_t opened = nodes[side]->child[lanes[side]].index();
   const TurnedBox box = turn(*nodes[1 - side], lanes[1 - side], into);
-  const typename L::Float gap = gaps<L>(met.nodes(side)[opened], box, into);
+  const typename L::Float gap = gaps<L, far>(met.nodes(side)[opened], box, into);
   const WideNode& node = met.nodes(side)[opened];
   const unsigned overlapping = L::less_equal(gap, L::all(met.margin()));
   const unsigned other_is_leaf = nodes[1 - side]->child[lanes[1 - side]].is_leaf() ? 0xFFU : 0U;

@@ -1,6 +1,7 @@
 // The searches of the wide engine: depth-first and time-critical, compiled once for each instruction set.
 #pragma once
 
+#include "odds/primitive/triangle_distance.hpp"
 #include "odds/query/pair.hpp"
 #include "odds/query/request.hpp"
 #include "query/search.hpp"
@@ -20,6 +21,18 @@ struct Task {
   SearchResult& result;
 };
 
+/// The same for the distance.
+struct NearestTask {
+  const Encounter& encounter;
+  Spending& spending;
+  double bound;  ///< what is not nearer is of no interest, metres; sinks to the distance of the nearest points found
+  double lower = 0.0;     ///< proved, if the search did not finish
+  bool finished = false;  ///< nothing nearer than `bound` exists
+  bool found = false;
+  primitive::ClosestPoints points = {};  ///< in A's tree frame, if found
+  TrianglePair triangles = {};
+};
+
 /// One instruction set's searches. Each starts from the pair of roots, which is known to overlap.
 struct Searches {
   const char* instruction_set;
@@ -27,6 +40,8 @@ struct Searches {
   void (*time_critical)(Task& task) noexcept;
   /// From what the front knows; the front has been moved to the encounter's pose.
   void (*incremental)(Task& task, KineticFront& front) noexcept;
+  /// The nearest points; the bodies may be apart.
+  void (*nearest)(NearestTask& task) noexcept;
 };
 
 /// Null where the program was not built with them.

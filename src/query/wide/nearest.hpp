@@ -1,0 +1,111 @@
+// The distance between two wide trees: nearest pair of slots first, by branch and bound.
+#pragma once
+
+#include "query/wide/opening.hpp"
+
+namespace odds::query::wide {
+
+/// Gaps bound distances from below, pairs of triangles from above; what cannot be nearer than the nearest pair found is
+/// not opened.
+template <class L>
+class Nearest {
+ public:
+  static void run(NearestTask& task) noexcept {
+    Nearest search(task);
+    search.run();
+  }
+
+ private:
+  struct Open {
+    SlotPair pair;
+    float gap;
+  };
+
+  explicit Nearest(NearestTask& task) noexcept : task_(task), met_(task.encounter) {}
+
+  void run() noexcept {
+    stack_[0] = {{{tree::WideTree::root, tree::WideTree::root}}, 0.0F};
+    size_ = 1;
+    while (size_ != 0) {
+      if (too_far(stack_[size_ - 1].gap)) {
+        --size_;
+        continue;
+      }
+      if (!task_.spending.may_go_on_after(units_between_polls) || !task_.spending.allows(wide_lanes)) return leave();
+      const SlotPair pair = stack_[size_ - 1].pair;
+      if (is_leaf(0, pair.of[0]) && is_leaf(1, pair.of[1])) {
+        if (!compare_leaves(pair)) return leave();
+        --size_;
+      } else {
+        --size_;
+        open(pair);
+      }
+    }
+    task_.finished = true;
+  }
+
+  [[nodiscard]] bool is_leaf(std::uint32_t side, Slot slot) const noexcept {
+    return met_.nodes(side)[slot / wide_lanes].child[slot % wide_lanes].is_leaf();
+  }
+
+  [[nodiscard]] double least_distance(float gap) const noexcept {
+    return static_cast<double>(gap) - static_cast<double>(met_.margin());
+  }
+  [[nodiscard]] bool too_far(float gap) const noexcept { return !(least_distance(gap) < task_.bound); }
+
+  void open(const SlotPair& pair) noexcept {
+    const Expanded<L> expanded = expand<L, false, true>(met_, pair);
+    task_.spending.spend_node_pairs(wide_lanes);
+    alignas(64) float gap[wide_lanes];
+    L::store(gap, expanded.gaps);
+    const std::size_t first = size_;
+    for (std::uint32_t lane = 0; lane < wide_lanes; ++lane) {
+      if (too_far(gap[lane])) continue;  // lanes without a child are farther than anything
+      Open child{{}, gap[lane]};
+      child.pair.of[expanded.side] = expanded.first + lane;
+      child.pair.of[1 - expanded.side] = expanded.other;
+      // The nearest last, for it is visited first and lowers the bound.
+      std::size_t at = size_++;
+      for (; at > first && stack_[at - 1].gap < child.gap; --at) stack_[at] = stack_[at - 1];
+      stack_[at] = child;
+    }
+  }
+
+  /// False if the budget ended it.
+  bool compare_leaves(const SlotPair& pair) noexcept {
+    const WideNode& node_a = met_.nodes(0)[pair.of[0] / wide_lanes];
+    const WideNode& node_b = met_.nodes(1)[pair.of[1] / wide_lanes];
+    const std::uint32_t lane_a = pair.of[0] % wide_lanes;
+    const std::uint32_t lane_b = pair.of[1] % wide_lanes;
+    const WideLeaf& leaf_a = met_.a().leaves()[node_a.child[lane_a].index()];
+    const WideLeaf& leaf_b = met_.b().leaves()[node_b.child[lane_b].index()];
+    float shift[3];
+    met_.shift(pair.of[0], pair.of[1], shift);
+    alignas(64) float gaps[wide_lanes][wide_lanes];
+    triangle_gaps<L>(leaf_a, leaf_b, node_a, lane_a, node_b, lane_b, met_.turn_into(0), shift, met_.margin(), gaps);
+    const std::uint32_t rows = node_b.child[lane_b].count();
+    task_.spending.spend_triangle_pairs(rows);
+    for (std::uint32_t row = 0; row < rows; ++row) {
+      for (std::uint32_t lane = 0; lane < node_a.child[lane_a].count(); ++lane) {
+        if (!(static_cast<double>(gaps[row][lane]) < task_.bound)) continue;
+        if (!task_.spending.may_go_on() || !task_.spending.allows(1)) return false;
+        task_.spending.spend_triangle_pairs(1);
+        met_.bring_nearer(leaf_a.triangle[lane], leaf_b.triangle[row], task_);
+      }
+    }
+    return true;
+  }
+
+  void leave() noexcept {
+    double lower = task_.bound;
+    for (std::size_t i = 0; i < size_; ++i) lower = std::min(lower, least_distance(stack_[i].gap));
+    task_.lower = std::max(lower, 0.0);
+  }
+
+  NearestTask& task_;
+  const Encounter& met_;
+  Open stack_[wide_stack_capacity];
+  std::size_t size_ = 0;
+};
+
+}  // namespace odds::query::wide

@@ -1,0 +1,45 @@
+// The command `odds distance`, run as a user runs it.
+#include <gtest/gtest.h>
+
+#include "support/run_tool.hpp"
+
+namespace odds {
+namespace {
+
+using testing::contents_of;
+using testing::Ran;
+using testing::run_tool;
+using testing::TemporaryFolder;
+
+TEST(DistanceCommand, MeasuresBoxesFaceToFace) {
+  const TemporaryFolder folder;
+  folder.write("poses.csv", "x,y,z,qw,qx,qy,qz\n1,0,0,1,0,0,0\n0.5,0,0,1,0,0,0\n");
+  const Ran ran = run_tool(
+      folder,
+      "distance made:box:x=1,y=1,z=1 made:box:x=1,y=0.5,z=0.5 --poses poses.csv --out distances.csv --scale-b 0.5");
+  ASSERT_EQ(ran.status, 0) << ran.errors;
+  const std::string text = contents_of(folder.path() / "distances.csv");
+  EXPECT_NE(text.find("row,lower,upper,proved,ax,ay,az,bx,by,bz,triangle_a,triangle_b"), std::string::npos);
+  EXPECT_NE(text.find("\n0,0.25,0.25,1,0.5,"), std::string::npos) << text;
+  EXPECT_NE(text.find("\n1,0,0,1,"), std::string::npos) << text;
+  EXPECT_NE(ran.errors.find("2 poses: 2 proved, 2 with nearest points"), std::string::npos) << ran.errors;
+}
+
+TEST(DistanceCommand, LeavesOutWhatIsBeyondTheMargin) {
+  const TemporaryFolder folder;
+  folder.write("poses.csv", "x,y,z,qw,qx,qy,qz\n1.25,0,0,1,0,0,0\n");
+  const Ran ran = run_tool(folder, "distance made:box made:box --poses poses.csv --out - --within 0.125");
+  ASSERT_EQ(ran.status, 0) << ran.errors;
+  EXPECT_NE(ran.output.find("\n0,0.125,,1,,,,,,,,,"), std::string::npos) << ran.output;
+}
+
+TEST(DistanceCommand, RefusesNonsense) {
+  const TemporaryFolder folder;
+  folder.write("poses.csv", "x,y,z,qw,qx,qy,qz\n1.25,0,0,1,0,0,0\n");
+  EXPECT_EQ(run_tool(folder, "distance made:box made:box --poses poses.csv --out - --within -1").status, 2);
+  EXPECT_EQ(run_tool(folder, "distance made:box none.obj --poses poses.csv --out -").status, 1);
+  EXPECT_EQ(run_tool(folder, "distance made:box made:box --poses none.csv --out -").status, 1);
+}
+
+}  // namespace
+}  // namespace odds
