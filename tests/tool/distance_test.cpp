@@ -15,8 +15,7 @@ TEST(DistanceCommand, MeasuresBoxesFaceToFace) {
   const TemporaryFolder folder;
   folder.write("poses.csv", "x,y,z,qw,qx,qy,qz\n1,0,0,1,0,0,0\n0.5,0,0,1,0,0,0\n");
   const Ran ran = run_tool(
-      folder,
-      "distance made:box:x=1,y=1,z=1 made:box:x=1,y=0.5,z=0.5 --poses poses.csv --out distances.csv --scale-b 0.5");
+      folder, "distance made:box:x=1,y=1,z=1 made:box:x=0.5,y=0.5,z=0.5 --poses poses.csv --out distances.csv");
   ASSERT_EQ(ran.status, 0) << ran.errors;
   const std::string text = contents_of(folder.path() / "distances.csv");
   EXPECT_NE(text.find("row,lower,upper,proved,ax,ay,az,bx,by,bz,triangle_a,triangle_b"), std::string::npos);
