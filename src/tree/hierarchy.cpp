@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "odds/math/elementary.hpp"
+#include "odds/math/rounding.hpp"
 
 namespace odds::tree {
 namespace {
@@ -73,7 +74,7 @@ volume::PrincipalAxes principal_axes(const Mat3& covariance) {
 
 float rounded_outwards(double half) { return std::nextafter(static_cast<float>(half), INFINITY); }
 
-void measure_slab(NodeStatistics& node, std::span<const TriangleCorners> triangles) {
+ODDS_KEEPS_ROUNDING void measure_slab(NodeStatistics& node, std::span<const TriangleCorners> triangles) {
   double lower = INFINITY;
   double upper = -INFINITY;
   const Vec3 normal = node.slab_normal.cast<double>();

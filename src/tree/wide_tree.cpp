@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "odds/math/rounding.hpp"
 #include "odds/volume/box_overlap.hpp"
 
 namespace odds::tree {
@@ -109,14 +110,15 @@ Plan plan_nodes(const Topology& topology, std::span<const Bounds> bounds) {
 }
 
 /// Float numbers about which |x - center| <= half holds for every x in [lower, upper].
-void enclose(double lower, double upper, float& center, float& half) {
+ODDS_KEEPS_ROUNDING void enclose(double lower, double upper, float& center, float& half) {
   center = static_cast<float>(0.5 * lower + 0.5 * upper);
   const auto middle = static_cast<double>(center);
   half = volume::rounded_up(std::max({upper - middle, middle - lower, 0.0}));
 }
 
 /// The slab along the thinnest principal axis, not longer than 1 so that its gaps are distances.
-void fit_slab(WideNode& node, std::uint32_t lane, const Vec3& axis, std::span<const TriangleCorners> triangles) {
+ODDS_KEEPS_ROUNDING void fit_slab(WideNode& node, std::uint32_t lane, const Vec3& axis,
+                                  std::span<const TriangleCorners> triangles) {
   Vec3f normal = (axis * (1.0 - 0x1p-22)).cast<float>();
   const Vec3 exact = normal.cast<double>();
   double lower = INFINITY;

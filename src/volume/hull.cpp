@@ -13,7 +13,7 @@
 namespace odds::volume {
 namespace {
 
-Vec3 as_kept(const Vec3& point) { return point.cast<float>().cast<double>(); }
+ODDS_KEEPS_ROUNDING Vec3 as_kept(const Vec3& point) { return point.cast<float>().cast<double>(); }
 
 /// The vertices while they are chosen, as they will be kept: rounded to single precision.
 class Vertices {

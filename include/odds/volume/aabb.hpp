@@ -2,6 +2,7 @@
 // 2001).
 #pragma once
 
+#include "odds/math/rounding.hpp"
 #include "odds/volume/box_overlap.hpp"
 #include "odds/volume/concept.hpp"
 
@@ -15,7 +16,7 @@ struct Aabb {
   Vec3f center_ = Vec3f::Zero();
   Vec3f half_ = Vec3f::Zero();
 
-  [[nodiscard]] static Aabb fit(std::span<const Vec3> points, const PrincipalAxes&) {
+  [[nodiscard]] ODDS_KEEPS_ROUNDING static Aabb fit(std::span<const Vec3> points, const PrincipalAxes&) {
     Vec3 lower = points[0];
     Vec3 upper = points[0];
     for (const Vec3& p : points) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 
+#include "odds/math/rounding.hpp"
 #include "odds/volume/box_overlap.hpp"
 #include "odds/volume/concept.hpp"
 #include "odds/volume/obb.hpp"
@@ -28,7 +29,7 @@ struct Hull {
   std::array<float, most_vertices> y_{};
   std::array<float, most_vertices> z_{};
 
-  [[nodiscard]] static Hull fit(std::span<const Vec3> points, const PrincipalAxes& axes);
+  [[nodiscard]] ODDS_KEEPS_ROUNDING static Hull fit(std::span<const Vec3> points, const PrincipalAxes& axes);
 
   [[nodiscard]] Vec3 vertex(std::size_t i) const noexcept {
     return {static_cast<double>(x_[i]), static_cast<double>(y_[i]), static_cast<double>(z_[i])};

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "odds/math/rounding.hpp"
 #include "odds/volume/box_overlap.hpp"
 #include "odds/volume/concept.hpp"
 #include "odds/volume/slab_directions.hpp"
@@ -43,7 +44,7 @@ struct Kdop {
   std::array<float, slabs> half_{};
   float fill_ = 1.0F;  ///< share of the box that lies in all slabs, measured by `measured_fill`
 
-  [[nodiscard]] static Kdop fit(std::span<const Vec3> points, const PrincipalAxes&) {
+  [[nodiscard]] ODDS_KEEPS_ROUNDING static Kdop fit(std::span<const Vec3> points, const PrincipalAxes&) {
     Kdop dop;
     for (std::size_t i = 0; i < slabs; ++i) {
       double lower = INFINITY;

@@ -1,6 +1,7 @@
 // Oriented box, aligned with the principal axes of the surface in it (Gottschalk, Lin and Manocha 1996).
 #pragma once
 
+#include "odds/math/rounding.hpp"
 #include "odds/volume/box_overlap.hpp"
 #include "odds/volume/concept.hpp"
 
@@ -15,7 +16,7 @@ struct Obb {
   Mat3f axes_ = Mat3f::Identity();
   Vec3f half_ = Vec3f::Zero();
 
-  [[nodiscard]] static Obb fit(std::span<const Vec3> points, const PrincipalAxes& axes) {
+  [[nodiscard]] ODDS_KEEPS_ROUNDING static Obb fit(std::span<const Vec3> points, const PrincipalAxes& axes) {
     Obb box;
     box.axes_ = axes.cast<float>();
     const Mat3 rounded_axes = box.axes_.cast<double>();

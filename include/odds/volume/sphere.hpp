@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "odds/math/rounding.hpp"
 #include "odds/volume/box_overlap.hpp"
 #include "odds/volume/concept.hpp"
 
@@ -17,7 +18,7 @@ struct Sphere {
   Vec3f center_ = Vec3f::Zero();
   float radius_ = 0.0F;
 
-  [[nodiscard]] static Sphere fit(std::span<const Vec3> points, const PrincipalAxes&) {
+  [[nodiscard]] ODDS_KEEPS_ROUNDING static Sphere fit(std::span<const Vec3> points, const PrincipalAxes&) {
     const auto farthest_from = [&](const Vec3& from) {
       return *std::max_element(points.begin(), points.end(), [&](const Vec3& p, const Vec3& q) {
         return (p - from).squaredNorm() < (q - from).squaredNorm();
