@@ -274,7 +274,14 @@ Result<Pair> Pair::make(std::shared_ptr<const Shape> a, std::shared_ptr<const Sh
                  "choose InstructionSet::best"};
   }
   static_cast<void>(realtime::fastest_clock());  // calibrates now, so that no query has to
-  return Pair(std::make_unique<Implementation>(std::move(a), std::move(b), options));
+  Pair pair(std::make_unique<Implementation>(std::move(a), std::move(b), options));
+  // Once through what a query ends with, so that the first real one does not wait for pages of code.
+  Request first;
+  first.budget = {.microseconds = 1.0, .work_units = 64};
+  first.max_contacts = 0;
+  static_cast<void>(pair.run({}, first));
+  pair.reset();
+  return pair;
 }
 
 Pair::Pair(std::unique_ptr<Implementation> implementation) : implementation_(std::move(implementation)) {}
