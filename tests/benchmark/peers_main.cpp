@@ -2,6 +2,7 @@
 #include <sched.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <stdexcept>
@@ -12,6 +13,7 @@
 #include "benchmark/peer_times.hpp"
 #include "benchmark/peer_workload.hpp"
 #include "benchmark/pose_class.hpp"
+#include "benchmark/stopwatch.hpp"
 #include "odds/query/shape.hpp"
 #ifdef ODDS_WITH_BULLET
 #include "benchmark/peer_bullet.hpp"
@@ -107,24 +109,17 @@ std::size_t count_wrong(const PeerRun& run, Peer& fcl, const std::vector<math::P
   return wrong;
 }
 
-// One call, nothing but it between the two readings of the clock.
-double timed_call(Peer& peer, const math::Pose& pose, const Settings& settings, std::size_t& contacts) {
-  const clockid_t clock = settings.cpu_time ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC;
-  const double start = clock_us(clock);
-  contacts = settings.all ? peer.contacts(pose) : static_cast<std::size_t>(peer.collide(pose));
-  return clock_us(clock) - start;
-}
-
 // The engines take turns, so that what else the machine does meets all of them; the median of the repetitions counts.
 // Along a trajectory a repetition is the whole of it, else it is one pose.
 std::vector<PeerRun> run_peers(const Settings& settings, const Peers& peers, const std::vector<math::Pose>& poses) {
   std::vector<PeerRun> runs(peers.size());
   std::vector<std::vector<std::vector<double>>> times(peers.size(), std::vector<std::vector<double>>(poses.size()));
+  const Stopwatch watch(settings.cpu_time);
   const auto visit = [&](std::size_t i, std::size_t turn) {
     for (std::size_t k = 0; k < peers.size(); ++k) {
       const std::size_t e = (k + turn) % peers.size();
       if (!settings.trajectory || !peers[e]->is_coherent()) peers[e]->forget();
-      times[e][i].push_back(timed_call(*peers[e], poses[i], settings, runs[e].contacts[i]));
+      times[e][i].push_back(watch.time(*peers[e], poses[i], settings.all, runs[e].contacts[i]));
     }
   };
   for (std::size_t e = 0; e < peers.size(); ++e) {
@@ -239,7 +234,7 @@ void add_options(CLI::App& app, Settings& settings) {
   app.add_option("--csv", settings.csv, "file for every pose's times");
   app.add_flag("--all", settings.all, "all contacts: 8 of ours made from all pairs, all of FCL and Bullet, 32 of ODE");
   app.add_flag("--cpu-time", settings.cpu_time,
-               "time of the thread instead of wall time: for a machine that does other work; a reading costs more");
+               "time of the thread instead of wall time: for a machine that does other work");
   app.add_flag("--trajectory", settings.trajectory, "sliding motion, each step 3e-5 of A's size");
 }
 
