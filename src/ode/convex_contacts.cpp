@@ -66,10 +66,12 @@ struct Points {
     std::sort(all.begin(), all.begin() + count, [](const Point& a, const Point& b) { return a.depth > b.depth; });
     std::size_t kept = 0;
     for (std::size_t i = 0; i < count; ++i) {
-      const auto hides = [&](const Point& deeper) {
-        return deeper.depth * clearly_shallower > all[i].depth && (deeper.position - all[i].position).norm() < distance;
-      };
-      if (std::none_of(all.begin(), all.begin() + kept, hides)) all[kept++] = all[i];
+      bool hidden = false;
+      for (std::size_t k = 0; k < kept && !hidden; ++k) {
+        if (!(all[k].depth * clearly_shallower > all[i].depth)) break;  // nor is any after it
+        hidden = (all[k].position - all[i].position).norm() < distance;
+      }
+      if (!hidden) all[kept++] = all[i];
     }
     count = kept;
   }

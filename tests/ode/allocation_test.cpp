@@ -1,7 +1,7 @@
 // No collision of a prepared pair touches the heap.
 #include <random>
 
-#include "ode/ode_fixture.hpp"
+#include "ode/partners_fixture.hpp"
 #include "support/allocation_counter.hpp"
 
 namespace odds::test {
@@ -34,13 +34,11 @@ TEST_F(Allocation, NoneInAnyCollisionOfPreparedPairs) {
   const auto shape = sphere_shape(1.0, 12);
   const dGeomID mesh = mesh_geom(shape, space);
   const dGeomID other = mesh_geom(shape, space);
-  const dGeomID sphere = dCreateSphere(space, 0.5);
-  const dGeomID box = dCreateBox(space, 0.5, 0.6, 0.7);
-  const dGeomID capsule = dCreateCapsule(space, 0.3, 0.5);
-  const dGeomID cylinder = dCreateCylinder(space, 0.3, 0.5);
-  const dGeomID ray = dCreateRay(space, 3);
+  const Partners known(space);
   const dGeomID plane = dCreatePlane(space, 0, 0, 1, 0.2);
-  ASSERT_EQ(oddsPreparePair(mesh, other), 1);
+  std::vector<dGeomID> partners = known.all;
+  partners.push_back(other);
+  for (const dGeomID partner : partners) ASSERT_EQ(oddsPreparePair(mesh, partner), 1) << oddsGetLastError();
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(-2.0, 2.0);
   std::array<dContactGeom, 16> contacts;
@@ -52,11 +50,11 @@ TEST_F(Allocation, NoneInAnyCollisionOfPreparedPairs) {
       dGeomOddsMeshSetBudget(mesh, work == 100 ? 20 : dInfinity);
       for (int round = 0; round < 40; ++round) {
         rotate(mesh, Vec3(uniform(random), uniform(random), uniform(random)), uniform(random));
-        for (const dGeomID partner : {other, sphere, box, capsule, cylinder, ray}) {
+        for (const dGeomID partner : partners) {
           dGeomSetPosition(partner, uniform(random), uniform(random), uniform(random));
         }
         const support::AllocationCounter counter;
-        for (const dGeomID partner : {other, sphere, box, capsule, cylinder, ray, plane}) {
+        for (const dGeomID partner : partners) {
           collisions += dCollide(mesh, partner, 16, contacts.data(), sizeof(dContactGeom)) > 0;
           dCollide(partner, mesh, 16, contacts.data(), sizeof(dContactGeom));
         }

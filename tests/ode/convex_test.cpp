@@ -185,5 +185,15 @@ TEST_F(ConvexTest, AnotherGeomAtTheSameAddressIsFoundOut) {
   EXPECT_EQ(stats().unsupported, 2u);
 }
 
+TEST_F(ConvexTest, AnExhaustedBudgetIsCountedAndSound) {
+  const dGeomID mesh = mesh_geom(sphere_shape(1, 20), space);
+  const Arrays arrays = cuboid(Vec3(0.5, 0.5, 0.5));
+  const dGeomID convex = convex_of(arrays);
+  dGeomSetPosition(convex, 1.2, 0, 0);
+  ASSERT_EQ(dGeomOddsMeshSetWorkBudget(mesh, 2), 1);
+  expect_sound(collide(mesh, convex), mesh, convex);
+  EXPECT_EQ(stats().primitive_cut_off, 1u);
+}
+
 }  // namespace
 }  // namespace odds::test

@@ -211,5 +211,14 @@ TEST_F(CylinderTest, OnTerrainNoNormalPointsIntoTheGround) {
   EXPECT_GT(seen, 200);
 }
 
+TEST_F(CylinderTest, AnExhaustedBudgetIsCountedAndSound) {
+  const dGeomID mesh = mesh_geom(sphere_shape(1, 20), space);
+  const dGeomID cylinder = dCreateCylinder(space, 0.5, 1);
+  dGeomSetPosition(cylinder, 1.2, 0, 0);
+  ASSERT_EQ(dGeomOddsMeshSetWorkBudget(mesh, 2), 1);
+  expect_sound(collide(mesh, cylinder), mesh, cylinder);
+  EXPECT_EQ(stats().primitive_cut_off, 1u);
+}
+
 }  // namespace
 }  // namespace odds::test
