@@ -21,14 +21,15 @@ function(odds_embed_page target directory)
   endif()
 
   # The content security policy names scripts by their digest; a changed file must configure anew.
-  foreach(script IN ITEMS ${chart_library} ${directory}/charts.js)
+  foreach(script IN ITEMS ${chart_library} ${directory}/charts.js ${directory}/accuracy.js)
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${script})
   endforeach()
   file(SHA256 ${chart_library} chart_digest)
   file(SHA256 ${directory}/charts.js script_digest)
+  file(SHA256 ${directory}/accuracy.js accuracy_digest)
   set(page_directory ${directory})
   configure_file(${directory}/assets.cpp.in ${CMAKE_CURRENT_BINARY_DIR}/page_assets.cpp @ONLY)
   set_property(SOURCE ${CMAKE_CURRENT_BINARY_DIR}/page_assets.cpp APPEND PROPERTY OBJECT_DEPENDS
-    "${chart_library};${directory}/charts.js;${directory}/style.css;${directory}/glossary.html")
+    "${chart_library};${directory}/charts.js;${directory}/accuracy.js;${directory}/style.css;${directory}/glossary.html")
   target_sources(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/page_assets.cpp)
 endfunction()

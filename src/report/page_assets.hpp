@@ -13,7 +13,8 @@ struct PageScript {
 /// Empty where no chart library was found.
 [[nodiscard]] std::string_view chart_library_version() noexcept;
 [[nodiscard]] PageScript chart_library() noexcept;
-[[nodiscard]] PageScript page_script() noexcept;
+[[nodiscard]] PageScript page_script() noexcept;      ///< charts of a run
+[[nodiscard]] PageScript accuracy_script() noexcept;  ///< charts of a study of accuracy
 [[nodiscard]] std::string_view page_style() noexcept;
 [[nodiscard]] std::string_view page_glossary() noexcept;
 

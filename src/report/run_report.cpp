@@ -1,36 +1,15 @@
 // Puts the files of a run into their directory.
 #include "odds/report/run_report.hpp"
 
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <fstream>
-#include <optional>
 #include <sstream>
 
 #include "odds/report/hgrm.hpp"
 #include "report/page_assets.hpp"
 #include "report/run_files.hpp"
+#include "report/write_file.hpp"
 
 namespace odds::report {
 namespace {
-
-std::optional<Error> write_file(const std::filesystem::path& path, const std::string& text) {
-  // Written beside its place and then put there: a full disk leaves no half file, and of two runs into one directory
-  // the later wins whole.
-  const std::filesystem::path part = path.string() + ".part" + std::to_string(getpid());
-  errno = 0;
-  std::ofstream file(part, std::ios::binary | std::ios::trunc);
-  file << text;
-  file.close();
-  if (file && std::rename(part.c_str(), path.c_str()) == 0) return std::nullopt;
-  const int reason = errno;
-  std::remove(part.c_str());
-  return Error{path.string(), "", std::string("cannot be written: ") + std::strerror(reason != 0 ? reason : EIO),
-               "check the directory's permissions and the space left"};
-}
 
 std::string hgrm_text(const Histogram& histogram) {
   std::ostringstream text;

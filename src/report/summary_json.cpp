@@ -1,4 +1,4 @@
-// The figures of a run for programs. The only file that sees the JSON library.
+// The figures of a run for programs.
 #include <cmath>
 #include <nlohmann/json.hpp>
 

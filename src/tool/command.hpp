@@ -25,5 +25,6 @@ void add_query(CLI::App& app, Action& action);
 void add_distance(CLI::App& app, Action& action);
 void add_run(CLI::App& app, Action& action);
 void add_explain(CLI::App& app, Action& action);
+void add_accuracy(CLI::App& app, Action& action);
 
 }  // namespace odds::tool

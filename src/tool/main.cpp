@@ -34,6 +34,7 @@ int main(int argc, char** argv) {
   odds::tool::add_inspect(app, action);
   odds::tool::add_query(app, action);
   odds::tool::add_distance(app, action);
+  odds::tool::add_accuracy(app, action);
   odds::tool::add_run(app, action);
   odds::tool::add_explain(app, action);
   try {

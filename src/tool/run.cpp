@@ -17,7 +17,7 @@
 #include "tool/allocation_probe.hpp"
 #include "tool/build_progress.hpp"
 #include "tool/command.hpp"
-#include "tool/output_file.hpp"
+#include "tool/output_folder.hpp"
 #include "tool/replay_folder.hpp"
 #include "tool/run_table.hpp"
 #include "tool/shared_options.hpp"
@@ -80,23 +80,10 @@ report::RunInfo describe(const scene::Simulation& simulation, const RunArguments
   return info;
 }
 
-// Said before the run, not after it: whether its files will have a place.
-std::optional<Error> prepare_folder(const std::filesystem::path& folder) {
-  if (folder.empty()) return Error{"", "", "the name of the output folder is empty", "name a folder after --out"};
-  std::error_code code;
-  std::filesystem::create_directories(folder / "replay", code);
-  if (code) return Error{folder.string(), "", "cannot be made: " + code.message(), "give another --out"};
-  for (const std::filesystem::path& inside : {folder, folder / "replay"}) {
-    const Result<OutputFile> trial = OutputFile::open((inside / "writable").string());
-    if (!trial) return Error{inside.string(), "", trial.error().what, "check its permissions, or give another --out"};
-  }
-  return std::nullopt;
-}
-
 int run(const RunArguments& arguments) {
   Result<scene::Scene> scene = scene::read_scene(arguments.scene);
   if (!scene) return fail(scene.error());
-  if (const auto error = prepare_folder(arguments.out)) return fail(*error);
+  if (const auto error = prepare_folder(arguments.out, {"replay"})) return fail(*error);
   scene::SimulationOptions options;
   options.simulated_time = arguments.fast;
   options.seconds = arguments.seconds;

@@ -1,0 +1,164 @@
+// A study's settings and figures for programs.
+#include <nlohmann/json.hpp>
+
+#include "odds/report/accuracy/report.hpp"
+#include "report/accuracy/study_files.hpp"
+#include "report/text.hpp"
+
+namespace odds::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* format = "odds accuracy summary 1";
+
+const char* word(Trial::Kind kind) {
+  return kind == Trial::Kind::time ? "us" : kind == Trial::Kind::work ? "work" : "exact";
+}
+
+Json settings_json(const StudySettings& s) {
+  Json trials = Json::array();
+  for (const Trial& trial : s.trials) {
+    trials.push_back({{"limit", word(trial.kind)}, {"amount", trial.amount}, {"p_min", trial.p_min}});
+  }
+  return {{"mesh_a", s.mesh_a},
+          {"mesh_b", s.mesh_b},
+          {"scale_a", s.scale_a},
+          {"scale_b", s.scale_b},
+          {"triangles_a", s.triangles_a},
+          {"triangles_b", s.triangles_b},
+          {"size_m", s.size_m},
+          {"bounding_volume", s.bounding_volume},
+          {"tau", s.tau},
+          {"estimator", s.estimator},
+          {"k_min", s.k_min},
+          {"contacts", s.contacts},
+          {"procedure", name(s.procedure)},
+          {"seed", s.seed},
+          {"poses_per_band", s.poses_per_band},
+          {"trials", trials}};
+}
+
+/// Throws nlohmann's exceptions on anything unexpected; the caller turns them into an Error.
+StudySettings settings_from(const Json& json) {
+  StudySettings s;
+  json.at("mesh_a").get_to(s.mesh_a);
+  json.at("mesh_b").get_to(s.mesh_b);
+  json.at("scale_a").get_to(s.scale_a);
+  json.at("scale_b").get_to(s.scale_b);
+  json.at("triangles_a").get_to(s.triangles_a);
+  json.at("triangles_b").get_to(s.triangles_b);
+  json.at("size_m").get_to(s.size_m);
+  json.at("bounding_volume").get_to(s.bounding_volume);
+  json.at("tau").get_to(s.tau);
+  json.at("estimator").get_to(s.estimator);
+  json.at("k_min").get_to(s.k_min);
+  json.at("contacts").get_to(s.contacts);
+  s.procedure = json.at("procedure").get<std::string>() == "tumbling" ? Procedure::tumbling : Procedure::distance;
+  json.at("seed").get_to(s.seed);
+  json.at("poses_per_band").get_to(s.poses_per_band);
+  for (const Json& trial : json.at("trials")) {
+    const auto limit = trial.at("limit").get<std::string>();
+    s.trials.push_back({limit == "us"     ? Trial::Kind::time
+                        : limit == "work" ? Trial::Kind::work
+                                          : Trial::Kind::exact,
+                        trial.at("amount").get<double>(), trial.at("p_min").get<double>()});
+  }
+  return s;
+}
+
+Json bounds(const Interval& interval) { return {interval.low, interval.high}; }
+
+Json tail_json(const Tail& tail) {
+  return {{"p50", tail.p50}, {"p99", tail.p99}, {"p99.9", tail.p999}, {"max", tail.max}};
+}
+
+Json contact_json(const ContactError& error) {
+  return {{"position", error.position}, {"normal_deg", error.normal_deg}, {"depth", error.depth}};
+}
+
+Json quality_json(const ForecastQuality& q) {
+  Json bins = Json::array();
+  for (const ForecastBin& bin : q.bins) {
+    bins.push_back({{"count", bin.count},
+                    {"mean_probability", bin.mean_probability()},
+                    {"observed", bin.observed()},
+                    {"interval", bounds(wilson(bin.happened, bin.count))}});
+  }
+  return {{"count", q.count},
+          {"mean_probability", q.mean_probability},
+          {"observed", q.observed()},
+          {"calibration_error", q.calibration_error},
+          {"brier", q.brier},
+          {"reliability", q.reliability},
+          {"resolution", q.resolution},
+          {"uncertainty", q.uncertainty},
+          {"within_bins", q.within_bins},
+          {"bins", bins}};
+}
+
+Json row_json(const Study& study, const AccuracyRow& r) {
+  const Trial& trial = study.settings.trials[r.trial];
+  return {{"limit", word(trial.kind)},
+          {"amount", trial.amount},
+          {"p_min", trial.p_min},
+          {"scope", r.scope},
+          {"band", r.band},
+          {"poses", r.poses},
+          {"hits", r.hits},
+          {"proved", r.proved},
+          {"estimated", r.estimated},
+          {"at_budget", r.at_budget},
+          {"wrong", r.wrong()},
+          {"wrong_interval", bounds(r.wrong_interval())},
+          {"false_hits", r.false_hits},
+          {"false_hits_interval", bounds(r.false_hit_interval())},
+          {"false_misses", r.false_misses},
+          {"false_misses_interval", bounds(r.false_miss_interval())},
+          {"unproved", quality_json(r.unproved)},
+          {"brier_all", r.brier_all},
+          {"contact_errors",
+           {{"count", r.contact.count}, {"p50", contact_json(r.contact.p50)}, {"p90", contact_json(r.contact.p90)}}},
+          {"wall_us", tail_json(r.wall_us)},
+          {"net_overshoot_us", tail_json(r.net_overshoot_us)}};
+}
+
+}  // namespace
+
+std::string study_json(const Study& study, const std::vector<AccuracyRow>& rows) {
+  Json figures = Json::array();
+  for (const AccuracyRow& row : rows) figures.push_back(row_json(study, row));
+  const Json json{{"format", format},
+                  {"headline", headline(study, rows)},
+                  {"version", study.version},
+                  {"started", utc_time(study.started_epoch_s)},
+                  {"started_epoch_s", study.started_epoch_s},
+                  {"settings", settings_json(study.settings)},
+                  {"shard", {{"number", study.shard.number}, {"of", study.shard.of}}},
+                  {"machine", {{"fit", study.machine_fit}, {"note", study.machine_note}}},
+                  {"rows", figures}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";  // a file's name may not be UTF-8
+}
+
+Result<Study> read_study_json(const std::string& file, const std::string& text) {
+  const Error refusal{file, "", "is not the summary of a study of accuracy",
+                      "give a folder that `odds accuracy` wrote"};
+  try {
+    const Json json = Json::parse(text);
+    if (json.at("format").get<std::string>() != format) return refusal;
+    Study study;
+    json.at("version").get_to(study.version);
+    json.at("started_epoch_s").get_to(study.started_epoch_s);
+    study.settings = settings_from(json.at("settings"));
+    json.at("shard").at("number").get_to(study.shard.number);
+    json.at("shard").at("of").get_to(study.shard.of);
+    json.at("machine").at("fit").get_to(study.machine_fit);
+    json.at("machine").at("note").get_to(study.machine_note);
+    if (study.shard.of == 0 || study.shard.number >= study.shard.of) return refusal;
+    return study;
+  } catch (const Json::exception&) {
+    return refusal;
+  }
+}
+
+}  // namespace odds::report

@@ -1,0 +1,252 @@
+// The page of a study of accuracy.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+#include "odds/report/accuracy/report.hpp"
+#include "report/accuracy/study_files.hpp"
+#include "report/page_assets.hpp"
+#include "report/page_frame.hpp"
+#include "report/text.hpp"
+
+namespace odds::report {
+namespace {
+
+bool has_kind(const Study& study, Trial::Kind kind) {
+  return std::any_of(study.settings.trials.begin(), study.settings.trials.end(),
+                     [kind](const Trial& trial) { return trial.kind == kind; });
+}
+
+std::string label(const Trial& trial) {
+  if (trial.kind == Trial::Kind::exact) return "exact, no limit";
+  std::string text =
+      trial.kind == Trial::Kind::time ? duration(trial.amount * 1e3) : fmt::format("{} work units", trial.amount);
+  if (trial.p_min < 1.0) text += fmt::format(", p ≥ {}", trial.p_min);
+  return text;
+}
+
+std::string card(const std::string& number, const std::string& meaning) {
+  return fmt::format("<div class=\"card\"><b>{}</b><span>{}</span></div>\n", number, meaning);
+}
+
+std::string figure(const char* id, const char* title, const char* reading, const char* height = "") {
+  return fmt::format(
+      "<figure><figcaption><h3>{}</h3>{}</figcaption><div class=\"plot {}\"><canvas id=\"{}\" role=\"img\" "
+      "aria-label=\"{}\"></canvas></div></figure>\n",
+      title, reading, height, id, title);
+}
+
+std::string top(const Study& study, const std::vector<AccuracyRow>& rows) {
+  const StudySettings& s = study.settings;
+  std::string html = fmt::format(
+      "<header>\n<h1>What accuracy costs in time</h1>\n<p class=\"sub\">{} ({} triangles) and {} ({} triangles), "
+      "{} poses, {}</p>\n",
+      html_escaped(s.mesh_a), grouped(s.triangles_a), html_escaped(s.mesh_b), grouped(s.triangles_b),
+      grouped(study.poses.size()), utc_time(study.started_epoch_s));
+  html +=
+      "<nav><a href=\"#error\">Error</a><a href=\"#odds\">Are the odds true?</a><a href=\"#time\">Time</a><a "
+      "href=\"#contacts\">Contacts</a><a href=\"#bands\">Distances</a><a href=\"#worst\">Worst poses</a><a "
+      "href=\"#study\">This study</a></nav>\n";
+  html += fmt::format("<div class=\"verdict neutral\"><span class=\"lead\">{}</span></div>\n",
+                      html_escaped(headline(study, rows)));
+  if (!study.machine_fit) {
+    html += fmt::format(
+        "<p class=\"note\">Times are <b>inconclusive</b>: this machine was too restless to measure on ({}). Work units "
+        "do not depend on it.</p>\n",
+        html_escaped(study.machine_note));
+  }
+  if (study.shard.of > 1) {
+    html += fmt::format("<p class=\"note\">This is shard {}/{} of a study. Merge all of them for the whole.</p>\n",
+                        study.shard.number, study.shard.of);
+  }
+  return html;
+}
+
+std::string limits_table(const Study& study, const std::vector<AccuracyRow>& rows) {
+  std::string html =
+      "<div class=\"wide\"><table class=\"figures\"><tr><th>limit</th><th>proved</th><th>wrong</th><th>95 %</th><th>"
+      "false hits</th><th>false misses</th><th>without proof</th><th>stated P</th><th>were hits</th><th>calibration "
+      "error</th><th>Brier</th><th>50 %</th><th>99 %</th><th>99.9 %</th><th>overshoot 99 %</th></tr>\n";
+  for (const AccuracyRow& r : rows) {
+    if (r.scope != "all") continue;
+    const Trial& trial = study.settings.trials[r.trial];
+    const ForecastQuality& q = r.unproved;
+    const Interval wrong = r.wrong_interval();
+    html += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td class=\"thin\">{} – {}</td><td>{}</td><td>{}</td>",
+                        label(trial), percent(r.share_proved()), percent(r.share_wrong()), percent(wrong.low),
+                        percent(wrong.high), r.false_hits, r.false_misses);
+    if (q.count > 0) {
+      html += fmt::format("<td>{}</td><td>{:.3f}</td><td>{:.3f}</td><td>{:.3f}</td><td>{:.3f}</td>", grouped(q.count),
+                          q.mean_probability, q.observed(), q.calibration_error, q.brier);
+    } else {
+      html += "<td>0</td><td>–</td><td>–</td><td>–</td><td>–</td>";
+    }
+    const auto time = [&](double us, bool thin) {
+      html += fmt::format("<td{}>{}</td>", thin ? " class=\"thin\"" : "", duration(us * 1e3));
+    };
+    time(r.wall_us.p50, false);
+    time(r.wall_us.p99, r.wall_us.count < 1000);
+    time(r.wall_us.p999, r.wall_us.count < 10'000);
+    html += trial.kind == Trial::Kind::time ? fmt::format("<td>{}</td></tr>\n", duration(r.net_overshoot_us.p99 * 1e3))
+                                            : std::string("<td>–</td></tr>\n");
+  }
+  return html + "</table></div>\n";
+}
+
+/// Share of wrong verdicts, band by limit.
+std::string bands_table(const Study& study, const std::vector<AccuracyRow>& rows) {
+  const auto& trials = study.settings.trials;
+  std::string html = "<div class=\"wide\"><table class=\"figures\"><tr><th>distance</th>";
+  for (const Trial& trial : trials) html += fmt::format("<th>{}</th>", label(trial));
+  html += "</tr>\n";
+  for (const PoseBand& band : pose_bands(study.settings.procedure)) {
+    html += fmt::format("<tr><td>{}</td>", band.name);
+    for (std::size_t t = 0; t < trials.size(); ++t) {
+      const auto row = std::find_if(rows.begin(), rows.end(), [&](const AccuracyRow& r) {
+        return r.trial == t && r.scope == "band" && r.band == band.name;
+      });
+      html += row == rows.end() ? std::string("<td>–</td>")
+                                : fmt::format("<td title=\"{} of {} wrong, {} proved\">{}</td>", row->wrong(),
+                                              row->poses, row->proved, percent(row->share_wrong()));
+    }
+    html += "</tr>\n";
+  }
+  return html + "</table></div>\n";
+}
+
+std::string worst_table(const Study& study) {
+  const auto worst = worst_poses(study, most_worst_poses);
+  if (worst.empty()) return "<p>No pose was answered other than by a correct proof.</p>\n";
+  std::string html =
+      "<p>Each stands in a file of its own, which says in its first lines how to answer it again; run that in the "
+      "folder "
+      "of this page. Ranked by the squared error of the probability, added over all limits.</p>\n<div class=\"wide\">"
+      "<table class=\"figures\"><tr><th>file</th><th>pose</th><th>distance</th><th>truth</th><th>worst limit</th><th>"
+      "answer</th><th>P</th></tr>\n";
+  std::size_t place = 0;
+  for (const WorstPose& w : worst) {
+    const PoseTruth& truth = study.poses[w.pose];
+    const Sample& sample = study.samples[w.trial][w.pose];
+    html += fmt::format(
+        "<tr><td><code>worst/{:02}.csv</code></td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{:.4f}"
+        "</td></tr>\n",
+        ++place, truth.pose.index, pose_bands(study.settings.procedure)[truth.pose.band].name,
+        truth.hit ? "hit" : "clear", label(study.settings.trials[w.trial]),
+        sample.verdict == query::Verdict::hit ? "hit" : "clear", sample.probability);
+  }
+  html += "</table></div>\n<p>For example: <code>" +
+          html_escaped(replay_command(study.settings, study.settings.trials[worst.front().trial], "worst/01.csv")) +
+          "</code></p>\n";
+  return html;
+}
+
+std::string charts_of_error(const Study& study) {
+  std::string html = "<div class=\"pair\">\n";
+  if (has_kind(study, Trial::Kind::time)) {
+    html += figure("error-us", "Wrong verdicts against time",
+                   "Lower is better. Bars: 95 % intervals. A line that ends on the axis had no wrong verdict.");
+    html += figure("proved-us", "Proved answers against time", "The rest are probabilities, and say so.");
+  }
+  if (has_kind(study, Trial::Kind::work)) {
+    html += figure("error-work", "Wrong verdicts against work units", "The same on every machine, bit for bit.");
+    html += figure("proved-work", "Proved answers against work units", "A unit is a pair of boxes or of triangles.");
+  }
+  const auto& trials = study.settings.trials;
+  const bool thresholds = std::any_of(trials.begin(), trials.end(), [&](const Trial& trial) {
+    return trial.kind != Trial::Kind::exact && trial.p_min != trials.front().p_min;
+  });
+  if (thresholds) {
+    html += figure("error-p", "Wrong verdicts by threshold", "All poses; one line for each --p-min.");
+    html += figure("time-p", "Median time by threshold", "What stopping on probability saves.");
+  }
+  return html + "</div>\n";
+}
+
+std::string study_section(const Study& study) {
+  const StudySettings& s = study.settings;
+  const char* how =
+      s.procedure == Procedure::distance
+          ? "B comes towards A with a random rotation from a random direction until they touch (found with the exact "
+            "search), then stands off until the surfaces are the stated distance apart, or moves on by the stated way."
+          : "A stands still, B is turned about z at random and comes along x; distances are ways from the first "
+            "contact.";
+  return fmt::format(
+      "<h2 id=\"study\">This study</h2>\n<p>{} Distances are parts of the smaller body's size ({:.6g} m, diagonal of "
+      "its bounding box). What is true in a pose was proved by the exact search of the wide engine without a limit. "
+      "Procedure {}, seed {}, {} poses for each distance; bounding volume {}, estimator {}, k_min {}, up to {} "
+      "contact{}. Each query stands alone: nothing is remembered of the one before.</p>\n",
+      how, s.size_m, name(s.procedure), s.seed, grouped(s.poses_per_band), s.bounding_volume, s.estimator, s.k_min,
+      s.contacts, s.contacts == 1 ? "" : "s");
+}
+
+std::string cards(const Study& study, const std::vector<AccuracyRow>& rows) {
+  std::string html = "<div class=\"cards\">\n";
+  for (const AccuracyRow& r : rows) {
+    const Trial& trial = study.settings.trials[r.trial];
+    if (r.scope != "all" || trial.kind != Trial::Kind::time || trial.p_min != study.settings.trials.front().p_min)
+      continue;
+    html += card(percent(r.share_wrong()),
+                 fmt::format("wrong within {}; {} proved", duration(trial.amount * 1e3), percent(r.share_proved())));
+  }
+  return html + "</div>\n";
+}
+
+}  // namespace
+
+std::string accuracy_page(const Study& study, const std::vector<AccuracyRow>& rows) {
+  const bool charts = !chart_library_version().empty();
+  const std::string title = study.settings.mesh_a + " and " + study.settings.mesh_b + " · odds accuracy";
+  std::string html = page_begin(title, accuracy_script()) + top(study, rows) + cards(study, rows) +
+                     "</header>\n<main>\n<h2 id=\"error\">Error against time</h2>\n";
+  if (!charts) {
+    html +=
+        "<p class=\"note\">This program was built without a chart library, so this page has tables only; with Debian's "
+        "libjs-chart.js at build time there are charts here.</p>\n";
+  }
+  if (charts) html += charts_of_error(study);
+  html += limits_table(study, rows);
+  html +=
+      "<h2 id=\"odds\">Are the odds true?</h2>\n<p>Of the answers that are no proofs: among those that state a "
+      "probability p of a hit, a share p should be hits. The calibration error is the mean distance from that "
+      "(10 bins).</p>\n";
+  if (charts) {
+    html += "<div class=\"pair\">\n" +
+            figure("reliability", "Reliability",
+                   "On the diagonal: what is stated is what happens. Bars: 95 % intervals; bins with few answers have "
+                   "long ones.",
+                   "tall") +
+            figure("kinds", "False hits and false misses",
+                   "Of all clear poses, and of all poses with a hit. Both matter: one is a ghost, the other a hole.",
+                   "tall") +
+            "</div>\n";
+  }
+  html += "<h2 id=\"time\">Time</h2>\n";
+  if (charts) {
+    html += figure("tail", "Time of a query against its limit",
+                   "All poses. The dashed diagonal is the limit itself; the horizontal lines are the exact search. "
+                   "Percentiles with fewer than ten samples beyond them are little more than an anecdote.");
+  }
+  html +=
+      "<h2 id=\"contacts\">Contacts</h2>\n<p>What a force would be made of: the first contact of an answer, or, "
+      "without "
+      "a proof, the place where the surfaces most probably meet, against the nearest contact of the exact set. "
+      "Medians; "
+      "90th percentiles are in accuracy.csv.</p>\n";
+  if (charts) {
+    html += "<div class=\"pair\">\n" +
+            figure("position", "Error of the place", "Part of the size. Torque is force times this lever.") +
+            figure("normal", "Error of the direction", "A force points along the normal.") + "</div>\n";
+  }
+  html += "<h2 id=\"bands\">Wrong verdicts by distance</h2>\n" + bands_table(study, rows);
+  html += "<h2 id=\"worst\">The worst poses</h2>\n" + worst_table(study) + study_section(study);
+  html += fmt::format(
+      "<footer>Written by odds {}. Beside this page: <code>accuracy.csv</code> (every figure, one line for each limit "
+      "and distance), <code>poses.csv</code> (all poses with what is true in them; <code>odds query</code> reads it), "
+      "<code>answers.csv</code> (every answer), <code>summary.json</code>, <code>worst/</code>.{}</footer>\n</main>\n",
+      html_escaped(study.version),
+      charts ? fmt::format(" Charts: Chart.js {}, MIT licence.", chart_library_version()) : "");
+  return html + page_end(charts ? accuracy_page_data(study, rows) : "", accuracy_script());
+}
+
+}  // namespace odds::report

@@ -1,0 +1,164 @@
+// Puts the files of a study into their directory, and reads them back.
+#include "odds/report/accuracy/report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+#include "report/accuracy/study_files.hpp"
+#include "report/write_file.hpp"
+
+namespace odds::report {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// As a shell reads it back.
+std::string quoted(const std::string& word) {
+  const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || std::string_view("_-./:=,+").find(static_cast<char>(c)) != std::string_view::npos;
+  });
+  if (plain) return word;
+  std::string text = "'";
+  for (const char c : word) {
+    if (c == '\'') {
+      text += "'\\''";
+    } else if (c != '\n' && c != '\r') {  // stands in a comment of one line
+      text += c;
+    }
+  }
+  return text + "'";
+}
+
+std::string worst_text(const Study& study, const WorstPose& worst, const std::string& file) {
+  const PoseTruth& truth = study.poses[worst.pose];
+  const Trial& trial = study.settings.trials[worst.trial];
+  const Sample& sample = study.samples[worst.trial][worst.pose];
+  return fmt::format(
+             "# pose {}, {}; truth: {}; squared error of the probability, added over all limits: {:.4g}\n"
+             "# at {}: {} with P = {}\n# {}\n",
+             truth.pose.index, pose_bands(study.settings.procedure)[truth.pose.band].name, truth.hit ? "hit" : "clear",
+             worst.error, trial.label(), sample.verdict == query::Verdict::hit ? "hit" : "clear", sample.probability,
+             replay_command(study.settings, trial, file)) +
+         one_pose_csv(study, worst.pose);
+}
+
+std::string worst_name(std::size_t place) { return fmt::format("{:02}.csv", place); }
+
+std::optional<Error> write_worst(const fs::path& directory, const Study& study, AccuracyFiles& files) {
+  std::error_code code;
+  fs::create_directories(directory / "worst", code);
+  if (code) return Error{(directory / "worst").string(), "", "cannot be made: " + code.message(), "give another --out"};
+  std::size_t place = 0;
+  for (const WorstPose& worst : worst_poses(study, most_worst_poses)) {
+    const std::string name = worst_name(++place);
+    files.worst.push_back(directory / "worst" / name);
+    if (auto error = write_file(files.worst.back(), worst_text(study, worst, "worst/" + name))) return error;
+  }
+  while (++place <= most_worst_poses) fs::remove(directory / "worst" / worst_name(place), code);  // of an earlier study
+  return std::nullopt;
+}
+
+Result<std::string> text_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (file.bad() || !file.is_open()) {
+    return Error{path.string(), "", "cannot be read", "give a folder as `odds accuracy --shard` wrote it"};
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string replay_command(const StudySettings& s, const Trial& trial, const std::string& file) {
+  std::string text = fmt::format("odds query {} {} --poses {} --out - --bv {} --estimator {} --contacts {}",
+                                 quoted(s.mesh_a), quoted(s.mesh_b), file, s.bounding_volume, s.estimator, s.contacts);
+  if (s.tau != query::ShapeOptions{}.tau) text += fmt::format(" --tau {}", s.tau);
+  if (s.scale_a != 1.0) text += fmt::format(" --scale-a {}", s.scale_a);
+  if (s.scale_b != 1.0) text += fmt::format(" --scale-b {}", s.scale_b);
+  if (trial.kind == Trial::Kind::exact) return text + " --method exact";
+  text += fmt::format(" {} {}", trial.kind == Trial::Kind::time ? "--budget-us" : "--work", trial.amount);
+  if (trial.p_min < 1.0) text += fmt::format(" --p-min {} --k-min {}", trial.p_min, s.k_min);
+  return text;
+}
+
+Result<AccuracyFiles> write_accuracy_report(const fs::path& directory, const Study& study,
+                                            const std::vector<AccuracyRow>& rows) {
+  std::error_code code;
+  fs::create_directories(directory, code);
+  if (code) return Error{directory.string(), "", "cannot be made: " + code.message(), "choose another directory"};
+  AccuracyFiles files{directory / "accuracy.html", directory / "accuracy.csv", directory / "poses.csv",
+                      directory / "answers.csv",   directory / "summary.json", {}};
+  if (auto error = write_file(files.poses, poses_csv(study))) return *error;
+  if (auto error = write_file(files.answers, answers_csv(study))) return *error;
+  if (auto error = write_file(files.rows, rows_csv(study, rows))) return *error;
+  if (auto error = write_worst(directory, study, files)) return *error;
+  if (auto error = write_file(files.summary, study_json(study, rows))) return *error;
+  if (auto error = write_file(files.page, accuracy_page(study, rows))) return *error;
+  return files;
+}
+
+Result<Study> read_study(const fs::path& directory) {
+  const fs::path summary = directory / "summary.json";
+  const Result<std::string> json = text_of(summary);
+  if (!json.ok()) return json.error();
+  Result<Study> study = read_study_json(summary.string(), json.value());
+  if (!study.ok()) return study.error();
+  const fs::path poses = directory / "poses.csv";
+  const Result<std::string> poses_text = text_of(poses);
+  if (!poses_text.ok()) return poses_text.error();
+  if (auto error = read_poses_csv(poses.string(), poses_text.value(), study.value())) return *error;
+  const fs::path answers = directory / "answers.csv";
+  const Result<std::string> answers_text = text_of(answers);
+  if (!answers_text.ok()) return answers_text.error();
+  if (auto error = read_answers_csv(answers.string(), answers_text.value(), study.value())) return *error;
+  return study;
+}
+
+Result<Study> merge_studies(std::vector<Study> studies, const std::vector<std::string>& names) {
+  if (studies.empty()) return Error{"", "", "there is no study to merge", "name the folders of all shards"};
+  const std::uint64_t shards = studies.front().shard.of;
+  std::vector<std::size_t> place(shards, studies.size());
+  for (std::size_t i = 0; i < studies.size(); ++i) {
+    const Study& study = studies[i];
+    if (!(study.settings == studies.front().settings) || study.shard.of != shards ||
+        study.version != studies.front().version) {
+      return Error{names[i], "", "is of another study than " + names.front(),
+                   "merge shards i/n of one n, with the same meshes, options and version"};
+    }
+    if (place[study.shard.number] != studies.size()) {
+      return Error{
+          names[i], "",
+          fmt::format("is shard {}/{}, as is {}", study.shard.number, shards, names[place[study.shard.number]]),
+          "name each shard once"};
+    }
+    place[study.shard.number] = i;
+  }
+  const auto missing = std::find(place.begin(), place.end(), studies.size());
+  if (missing != place.end()) {
+    return Error{"", "", fmt::format("shard {}/{} is missing", missing - place.begin(), shards),
+                 "run it with --shard, then merge all"};
+  }
+  Study merged;
+  merged.settings = studies.front().settings;
+  merged.version = studies.front().version;
+  merged.started_epoch_s = studies.front().started_epoch_s;
+  merged.samples.resize(merged.settings.trials.size());
+  for (const Study& study : studies) {
+    merged.started_epoch_s = std::min(merged.started_epoch_s, study.started_epoch_s);
+    merged.machine_fit = merged.machine_fit && study.machine_fit;
+    if (merged.machine_note.empty()) merged.machine_note = study.machine_note;
+  }
+  for (std::uint64_t index = 0; index < merged.settings.pose_count(); ++index) {
+    const Study& study = studies[place[index % shards]];
+    const std::size_t row = index / shards;
+    merged.poses.push_back(study.poses[row]);
+    for (std::size_t t = 0; t < merged.samples.size(); ++t) merged.samples[t].push_back(study.samples[t][row]);
+  }
+  return merged;
+}
+
+}  // namespace odds::report

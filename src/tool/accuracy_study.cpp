@@ -1,0 +1,130 @@
+// Poses, truth, answers.
+#include "tool/accuracy_study.hpp"
+
+#include <utility>
+#include <vector>
+
+#include "odds/realtime/clock.hpp"
+#include "tool/progress_line.hpp"
+
+namespace odds::tool {
+namespace {
+
+using query::Contact;
+using query::Verdict;
+using report::PoseTruth;
+using report::Sample;
+using report::Study;
+using report::Trial;
+
+constexpr int most_true_contacts = 8;
+
+/// Exact contact sets, one for each pose.
+using ContactSets = std::vector<std::vector<Contact>>;
+
+std::optional<Error> make_poses(const StudyShapes& shapes, Study& study) {
+  auto maker = report::PoseMaker::make(shapes.wide_a, shapes.wide_b, study.settings.procedure, study.settings.seed);
+  if (!maker.ok()) return maker.error();
+  study.settings.size_m = maker.value().size();
+  const std::uint64_t count = study.settings.pose_count();
+  ProgressLine progress("making poses");
+  for (std::uint64_t index = study.shard.number; index < count; index += study.shard.of) {
+    const auto made = maker.value().pose(index);
+    if (!made.ok()) return made.error();
+    PoseTruth truth;
+    truth.pose = made.value();
+    study.poses.push_back(truth);
+    progress.show(static_cast<double>(index) / static_cast<double>(count));
+  }
+  return std::nullopt;
+}
+
+std::optional<Error> find_truth(const StudyShapes& shapes, Study& study, ContactSets& sets) {
+  query::PairOptions options;
+  options.hit_capacity = 65536;
+  auto pair = query::Pair::make(shapes.wide_a, shapes.wide_b, options);
+  if (!pair.ok()) return pair.error();
+  query::Request request;
+  request.method = query::Method::exact;
+  request.max_contacts = most_true_contacts;
+  ProgressLine progress("finding the truth");
+  for (PoseTruth& truth : study.poses) {
+    pair.value().reset();
+    const query::Answer& answer = pair.value().run(truth.pose.pose(), request);
+    truth.hit = answer.verdict == Verdict::hit;
+    truth.contacts = static_cast<std::uint32_t>(answer.contacts.size());
+    if (truth.contacts > 0) truth.deepest_contact = answer.contacts.front();
+    sets.emplace_back(answer.contacts.begin(), answer.contacts.end());
+    progress.show(static_cast<double>(sets.size()) / static_cast<double>(study.poses.size()));
+  }
+  return std::nullopt;
+}
+
+query::Request request_of(const Trial& trial, const report::StudySettings& settings, query::EstimatorKind estimator) {
+  query::Request request;
+  request.estimator = estimator;
+  request.max_contacts = settings.contacts;
+  request.p_min = trial.p_min;
+  request.k_min = settings.k_min;
+  if (trial.kind == Trial::Kind::exact) request.method = query::Method::exact;
+  if (trial.kind == Trial::Kind::time) request.budget.microseconds = trial.amount;
+  if (trial.kind == Trial::Kind::work) request.budget.work_units = static_cast<std::uint64_t>(trial.amount);
+  return request;
+}
+
+/// What a caller would push with: the first contact, or the place where the surfaces most probably meet.
+const Contact* contact_of(const query::Answer& answer) {
+  if (answer.verdict != Verdict::hit) return nullptr;
+  if (!answer.contacts.empty()) return &answer.contacts.front();
+  return answer.has_cell_pair ? &answer.cell_pair : nullptr;
+}
+
+Sample sample_of(const query::Answer& answer, double wall_us, const std::vector<Contact>& truth, double size) {
+  Sample sample;
+  sample.verdict = answer.verdict;
+  sample.basis = answer.basis;
+  sample.probability = answer.probability;
+  sample.node_pairs = answer.cost.node_pairs;
+  sample.triangle_pairs = answer.cost.triangle_pairs;
+  sample.wall_us = wall_us;
+  sample.stall_us = answer.cost.stall_us;
+  sample.net_overshoot_us = answer.cost.net_overshoot_us;
+  const Contact* given = contact_of(answer);
+  if (given != nullptr && !truth.empty()) sample.contact = report::contact_error(*given, truth, size);
+  return sample;
+}
+
+}  // namespace
+
+std::optional<Error> carry_out(const StudyShapes& shapes, query::EstimatorKind estimator, Study& study) {
+  if (auto error = make_poses(shapes, study)) return error;
+  ContactSets truth;
+  if (auto error = find_truth(shapes, study, truth)) return error;
+  auto made = query::Pair::make(shapes.a, shapes.b);
+  if (!made.ok()) return made.error();
+  query::Pair& pair = made.value();
+  const realtime::Clock clock = realtime::fastest_clock();
+  ProgressLine progress("answering");
+  const std::size_t trials = study.settings.trials.size();
+  study.samples.resize(trials);
+  for (std::size_t t = 0; t < trials; ++t) {
+    const query::Request request = request_of(study.settings.trials[t], study.settings, estimator);
+    for (std::size_t i = 0; i < study.poses.size(); ++i) {
+      const math::Pose pose = study.poses[i].pose.pose();
+      if (i == 0) (void)pair.run(pose, request);  // touches code and memory once before anything is timed
+      pair.reset();                               // each query stands alone
+      const std::int64_t begin = clock();
+      const query::Answer& answer = pair.run(pose, request);
+      const std::int64_t end = clock();
+      study.samples[t].push_back(
+          sample_of(answer, 1e-3 * static_cast<double>(end - begin), truth[i], study.settings.size_m));
+      if (i % 64 == 0) {
+        progress.show((static_cast<double>(t) + static_cast<double>(i) / static_cast<double>(study.poses.size())) /
+                      static_cast<double>(trials));
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace odds::tool

@@ -1,0 +1,65 @@
+#include "tool/accuracy_table.hpp"
+
+#include <fmt/format.h>
+
+#include "odds/report/accuracy/report.hpp"
+
+namespace odds::tool {
+namespace {
+
+using report::AccuracyRow;
+using report::Trial;
+
+std::string head(const report::StudySettings& s) {
+  std::string text =
+      fmt::format("{:<22}{:>8}{:>8}{:>16}{:>7}{:>7}{:>7}{:>7}{:>8}{:>8}{:>8}", "limit", "proved", "wrong",
+                  "95 % interval", "f.hit", "f.miss", "P said", "hits", "p50 us", "p99 us", "over");
+  std::string_view last;
+  for (const report::PoseBand& band : report::pose_bands(s.procedure)) {
+    if (band.group != last) text += fmt::format("{:>9}", band.group);
+    last = band.group;
+  }
+  return text + "\n";
+}
+
+std::string line(const Trial& trial, const AccuracyRow& r) {
+  const report::Interval interval = r.wrong_interval();
+  std::string text = fmt::format(
+      "{:<22}{:>7.2f}%{:>7.2f}%{:>16}{:>7}{:>7}", trial.label(), 100.0 * r.share_proved(), 100.0 * r.share_wrong(),
+      fmt::format("{:.2f}..{:.2f}%", 100.0 * interval.low, 100.0 * interval.high), r.false_hits, r.false_misses);
+  if (r.unproved.count > 0) {
+    text += fmt::format("{:>7.3f}{:>7.3f}", r.unproved.mean_probability, r.unproved.observed());
+  } else {
+    text += fmt::format("{:>7}{:>7}", "-", "-");
+  }
+  text += fmt::format("{:>8.1f}{:>8.1f}", r.wall_us.p50, r.wall_us.p99);
+  return text + (trial.kind == Trial::Kind::time ? fmt::format("{:>8.2f}", r.net_overshoot_us.p99)
+                                                 : fmt::format("{:>8}", "-"));
+}
+
+}  // namespace
+
+std::string accuracy_table(const report::Study& study, const std::vector<AccuracyRow>& rows) {
+  const report::StudySettings& s = study.settings;
+  std::string text =
+      fmt::format("{} ({} triangles) and {} ({} triangles), {} poses by {}, {}, {}\n", s.mesh_a, s.triangles_a,
+                  s.mesh_b, s.triangles_b, study.poses.size(), name(s.procedure), s.bounding_volume, s.estimator);
+  text += report::headline(study, rows) + "\n\n" + head(s);
+  for (const AccuracyRow& row : rows) {
+    if (row.scope == "all") text += line(s.trials[row.trial], row);
+    if (row.scope == "group") text += fmt::format("{:>8.2f}%", 100.0 * row.share_wrong());
+    const bool last = &row == &rows.back() || (&row + 1)->scope == "all" || (&row + 1)->trial != row.trial;
+    if (last) text += "\n";
+  }
+  text +=
+      "wrong: verdicts against the truth, f.hit and f.miss their two kinds (counts); P said and hits: of the answers "
+      "without proof;\nover: net overshoot in us, p99; last columns: share wrong by distance\n";
+  if (!study.machine_fit) text += "times are inconclusive on this machine: " + study.machine_note + "\n";
+  if (study.shard.of > 1) {
+    text +=
+        fmt::format("shard {}/{}: merge all of them with odds accuracy --merge\n", study.shard.number, study.shard.of);
+  }
+  return text;
+}
+
+}  // namespace odds::tool
