@@ -40,7 +40,7 @@ struct AccuracyOptions {
   std::string p_min = "1";
   std::uint32_t k_min = 10;
   int contacts = 1;
-  std::uint64_t poses = 200;
+  std::uint64_t poses = 500;
   std::uint64_t seed = 1;
   std::string shard = "0/1";
   std::vector<std::string> merge;

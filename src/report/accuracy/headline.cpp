@@ -41,7 +41,7 @@ std::string headline(const Study& study, const std::vector<AccuracyRow>& rows) {
   const Trial& trial = study.settings.trials[row->trial];
   std::string text = fmt::format(
       "Within {}, {} of {} poses were proved and {} answered wrongly (95 %: {}).",
-      trial.kind == Trial::Kind::time ? duration(trial.amount * 1e3) : fmt::format("{} work units", trial.amount),
+      trial.kind == Trial::Kind::time ? fmt::format("{} µs", trial.amount) : fmt::format("{} work units", trial.amount),
       percent(row->share_proved()), grouped(row->poses), percent(row->share_wrong()), bounds(row->wrong_interval()));
   const ForecastQuality& q = row->unproved;
   if (q.count > 0) {

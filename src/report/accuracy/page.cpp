@@ -21,7 +21,7 @@ bool has_kind(const Study& study, Trial::Kind kind) {
 std::string label(const Trial& trial) {
   if (trial.kind == Trial::Kind::exact) return "exact, no limit";
   std::string text =
-      trial.kind == Trial::Kind::time ? duration(trial.amount * 1e3) : fmt::format("{} work units", trial.amount);
+      trial.kind == Trial::Kind::time ? fmt::format("{} µs", trial.amount) : fmt::format("{} units", trial.amount);
   if (trial.p_min < 1.0) text += fmt::format(", p ≥ {}", trial.p_min);
   return text;
 }
@@ -63,41 +63,72 @@ std::string top(const Study& study, const std::vector<AccuracyRow>& rows) {
   return html;
 }
 
-std::string limits_table(const Study& study, const std::vector<AccuracyRow>& rows) {
+/// One line for each limit; `cells` writes those after the first.
+template <class Cells>
+std::string limits_table(const Study& study, const std::vector<AccuracyRow>& rows, const char* heading,
+                         const Cells& cells) {
   std::string html =
-      "<div class=\"wide\"><table class=\"figures\"><tr><th>limit</th><th>proved</th><th>wrong</th><th>95 %</th><th>"
-      "false hits</th><th>false misses</th><th>without proof</th><th>stated P</th><th>were hits</th><th>calibration "
-      "error</th><th>Brier</th><th>50 %</th><th>99 %</th><th>99.9 %</th><th>overshoot 99 %</th></tr>\n";
-  for (const AccuracyRow& r : rows) {
-    if (r.scope != "all") continue;
-    const Trial& trial = study.settings.trials[r.trial];
-    const ForecastQuality& q = r.unproved;
-    const Interval wrong = r.wrong_interval();
-    html += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td class=\"thin\">{} – {}</td><td>{}</td><td>{}</td>",
-                        label(trial), percent(r.share_proved()), percent(r.share_wrong()), percent(wrong.low),
-                        percent(wrong.high), r.false_hits, r.false_misses);
-    if (q.count > 0) {
-      html += fmt::format("<td>{}</td><td>{:.3f}</td><td>{:.3f}</td><td>{:.3f}</td><td>{:.3f}</td>", grouped(q.count),
-                          q.mean_probability, q.observed(), q.calibration_error, q.brier);
-    } else {
-      html += "<td>0</td><td>–</td><td>–</td><td>–</td><td>–</td>";
-    }
-    const auto time = [&](double us, bool thin) {
-      html += fmt::format("<td{}>{}</td>", thin ? " class=\"thin\"" : "", duration(us * 1e3));
-    };
-    time(r.wall_us.p50, false);
-    time(r.wall_us.p99, r.wall_us.count < 1000);
-    time(r.wall_us.p999, r.wall_us.count < 10'000);
-    html += trial.kind == Trial::Kind::time ? fmt::format("<td>{}</td></tr>\n", duration(r.net_overshoot_us.p99 * 1e3))
-                                            : std::string("<td>–</td></tr>\n");
+      fmt::format("<div class=\"wide\"><table class=\"figures limits\"><tr><th>limit</th>{}</tr>\n", heading);
+  for (const AccuracyRow& row : rows) {
+    if (row.scope != "all") continue;
+    const Trial& trial = study.settings.trials[row.trial];
+    html += fmt::format("<tr><td>{}</td>{}</tr>\n", label(trial), cells(trial, row));
   }
   return html + "</table></div>\n";
+}
+
+std::string verdicts_table(const Study& study, const std::vector<AccuracyRow>& rows) {
+  return limits_table(
+      study, rows,
+      "<th>proved</th><th>wrong</th><th>95 %</th><th>false hits</th><th>of clear</th><th>false misses</th><th>of "
+      "hits</th>",
+      [](const Trial&, const AccuracyRow& r) {
+        const auto range = [](const Interval& i) { return percent(i.low) + " – " + percent(i.high); };
+        return fmt::format(
+            "<td>{}</td><td>{}</td><td class=\"thin\">{}</td><td>{}</td><td class=\"thin\">{}</td><td>{}</td><td "
+            "class=\"thin\">{}</td>",
+            percent(r.share_proved()), percent(r.share_wrong()), range(r.wrong_interval()), r.false_hits,
+            range(r.false_hit_interval()), r.false_misses, range(r.false_miss_interval()));
+      });
+}
+
+std::string odds_table(const Study& study, const std::vector<AccuracyRow>& rows) {
+  return limits_table(study, rows,
+                      "<th>without proof</th><th>stated P, mean</th><th>were hits</th><th>calibration error</th><th>"
+                      "Brier</th><th>reliability</th><th>resolution</th><th>uncertainty</th>",
+                      [](const Trial&, const AccuracyRow& r) {
+                        const ForecastQuality& q = r.unproved;
+                        if (q.count == 0)
+                          return std::string("<td>0</td>") + "<td>–</td><td>–</td><td>–</td><td>–</td>" +
+                                 "<td>–</td><td>–</td><td>–</td>";
+                        return fmt::format(
+                            "<td>{}</td><td>{:.3f}</td><td>{:.3f}</td><td>{:.3f}</td><td>{:.3f}</td><td>{:.3f}</td>"
+                            "<td>{:.3f}</td><td>{:.3f}</td>",
+                            grouped(q.count), q.mean_probability, q.observed(), q.calibration_error, q.brier,
+                            q.reliability, q.resolution, q.uncertainty);
+                      });
+}
+
+std::string times_table(const Study& study, const std::vector<AccuracyRow>& rows) {
+  return limits_table(
+      study, rows,
+      "<th>50 %</th><th>99 %</th><th>99.9 %</th><th>longest</th><th>overshoot, net: 99 %</th><th>99.9 %</th>",
+      [](const Trial& trial, const AccuracyRow& r) {
+        const auto time = [&](double us, double beyond) {  // italics: fewer than ten samples beyond
+          const bool thin = static_cast<double>(r.wall_us.count) * beyond < 9.995;
+          return fmt::format("<td{}>{}</td>", thin ? " class=\"thin\"" : "", duration(us * 1e3));
+        };
+        std::string cells =
+            time(r.wall_us.p50, 0.5) + time(r.wall_us.p99, 0.01) + time(r.wall_us.p999, 0.001) + time(r.wall_us.max, 1);
+        if (trial.kind != Trial::Kind::time) return cells + "<td>–</td><td>–</td>";
+        return cells + time(r.net_overshoot_us.p99, 0.01) + time(r.net_overshoot_us.p999, 0.001);
+      });
 }
 
 /// Share of wrong verdicts, band by limit.
 std::string bands_table(const Study& study, const std::vector<AccuracyRow>& rows) {
   const auto& trials = study.settings.trials;
-  std::string html = "<div class=\"wide\"><table class=\"figures\"><tr><th>distance</th>";
+  std::string html = "<div class=\"wide\"><table class=\"figures limits\"><tr><th>distance</th>";
   for (const Trial& trial : trials) html += fmt::format("<th>{}</th>", label(trial));
   html += "</tr>\n";
   for (const PoseBand& band : pose_bands(study.settings.procedure)) {
@@ -145,7 +176,7 @@ std::string charts_of_error(const Study& study) {
   std::string html = "<div class=\"pair\">\n";
   if (has_kind(study, Trial::Kind::time)) {
     html += figure("error-us", "Wrong verdicts against time",
-                   "Lower is better. Bars: 95 % intervals. A line that ends on the axis had no wrong verdict.");
+                   "Lower is better. Bars: 95 % intervals; points at the bottom: none was wrong.");
     html += figure("proved-us", "Proved answers against time", "The rest are probabilities, and say so.");
   }
   if (has_kind(study, Trial::Kind::work)) {
@@ -187,9 +218,61 @@ std::string cards(const Study& study, const std::vector<AccuracyRow>& rows) {
     if (r.scope != "all" || trial.kind != Trial::Kind::time || trial.p_min != study.settings.trials.front().p_min)
       continue;
     html += card(percent(r.share_wrong()),
-                 fmt::format("wrong within {}; {} proved", duration(trial.amount * 1e3), percent(r.share_proved())));
+                 fmt::format("wrong within {} µs; {} proved", trial.amount, percent(r.share_proved())));
   }
   return html + "</div>\n";
+}
+
+std::string odds_section(const Study& study, const std::vector<AccuracyRow>& rows, bool charts) {
+  std::string html =
+      "<h2 id=\"odds\">Are the odds true?</h2>\n<p>Of the answers that are no proofs: among those that state a "
+      "probability p of a hit, a share p should be hits. The calibration error is the mean distance from that (10 "
+      "bins). The Brier score is reliability less resolution plus uncertainty, and what the bins leave over.</p>\n";
+  if (charts) {
+    html += "<div class=\"pair\">\n" +
+            figure("reliability", "Reliability",
+                   "On the diagonal: what is stated is what happens. Bars: 95 % intervals; bins of fewer than ten "
+                   "answers are left out.",
+                   "tall") +
+            figure("kinds", "False hits and false misses",
+                   "Of all clear poses, and of all poses with a hit. Both matter: one is a ghost, the other a hole.",
+                   "tall") +
+            "</div>\n";
+  }
+  return html + odds_table(study, rows);
+}
+
+std::string time_section(const Study& study, const std::vector<AccuracyRow>& rows, bool charts) {
+  std::string html = "<h2 id=\"time\">Time</h2>\n";
+  if (charts) {
+    html += figure("tail", "Time of a query against its limit",
+                   "All poses. The dashed diagonal is the limit itself; the horizontal lines are the exact search.");
+  }
+  return html + times_table(study, rows) +
+         "<p class=\"quiet\">Wall time. In italics: fewer than ten samples beyond, little more than an anecdote. Net: "
+         "without the stalls in which the processor did something else.</p>\n";
+}
+
+std::string contacts_section(bool charts) {
+  std::string html =
+      "<h2 id=\"contacts\">Contacts</h2>\n<p>What a force would be made of: the first contact of an answer, or, "
+      "without "
+      "a proof, the place where the surfaces most probably meet, against the nearest contact of the exact set. "
+      "Medians; "
+      "90th percentiles are in accuracy.csv.</p>\n";
+  if (!charts) return html;
+  return html + "<div class=\"pair\">\n" +
+         figure("position", "Error of the place", "Part of the size. Torque is force times this lever.") +
+         figure("normal", "Error of the direction", "A force points along the normal.") + "</div>\n";
+}
+
+std::string footer(const Study& study, bool charts) {
+  return fmt::format(
+      "<footer>Written by odds {}. Beside this page: <code>accuracy.csv</code> (every figure, one line for each limit "
+      "and distance), <code>poses.csv</code> (all poses with what is true in them; <code>odds query</code> reads it), "
+      "<code>answers.csv</code> (every answer), <code>summary.json</code>, <code>worst/</code>.{}</footer>\n</main>\n",
+      html_escaped(study.version),
+      charts ? fmt::format(" Charts: Chart.js {}, MIT licence.", chart_library_version()) : "");
 }
 
 }  // namespace
@@ -205,47 +288,10 @@ std::string accuracy_page(const Study& study, const std::vector<AccuracyRow>& ro
         "libjs-chart.js at build time there are charts here.</p>\n";
   }
   if (charts) html += charts_of_error(study);
-  html += limits_table(study, rows);
-  html +=
-      "<h2 id=\"odds\">Are the odds true?</h2>\n<p>Of the answers that are no proofs: among those that state a "
-      "probability p of a hit, a share p should be hits. The calibration error is the mean distance from that "
-      "(10 bins).</p>\n";
-  if (charts) {
-    html += "<div class=\"pair\">\n" +
-            figure("reliability", "Reliability",
-                   "On the diagonal: what is stated is what happens. Bars: 95 % intervals; bins with few answers have "
-                   "long ones.",
-                   "tall") +
-            figure("kinds", "False hits and false misses",
-                   "Of all clear poses, and of all poses with a hit. Both matter: one is a ghost, the other a hole.",
-                   "tall") +
-            "</div>\n";
-  }
-  html += "<h2 id=\"time\">Time</h2>\n";
-  if (charts) {
-    html += figure("tail", "Time of a query against its limit",
-                   "All poses. The dashed diagonal is the limit itself; the horizontal lines are the exact search. "
-                   "Percentiles with fewer than ten samples beyond them are little more than an anecdote.");
-  }
-  html +=
-      "<h2 id=\"contacts\">Contacts</h2>\n<p>What a force would be made of: the first contact of an answer, or, "
-      "without "
-      "a proof, the place where the surfaces most probably meet, against the nearest contact of the exact set. "
-      "Medians; "
-      "90th percentiles are in accuracy.csv.</p>\n";
-  if (charts) {
-    html += "<div class=\"pair\">\n" +
-            figure("position", "Error of the place", "Part of the size. Torque is force times this lever.") +
-            figure("normal", "Error of the direction", "A force points along the normal.") + "</div>\n";
-  }
+  html += verdicts_table(study, rows) + odds_section(study, rows, charts) + time_section(study, rows, charts);
+  html += contacts_section(charts);
   html += "<h2 id=\"bands\">Wrong verdicts by distance</h2>\n" + bands_table(study, rows);
-  html += "<h2 id=\"worst\">The worst poses</h2>\n" + worst_table(study) + study_section(study);
-  html += fmt::format(
-      "<footer>Written by odds {}. Beside this page: <code>accuracy.csv</code> (every figure, one line for each limit "
-      "and distance), <code>poses.csv</code> (all poses with what is true in them; <code>odds query</code> reads it), "
-      "<code>answers.csv</code> (every answer), <code>summary.json</code>, <code>worst/</code>.{}</footer>\n</main>\n",
-      html_escaped(study.version),
-      charts ? fmt::format(" Charts: Chart.js {}, MIT licence.", chart_library_version()) : "");
+  html += "<h2 id=\"worst\">The worst poses</h2>\n" + worst_table(study) + study_section(study) + footer(study, charts);
   return html + page_end(charts ? accuracy_page_data(study, rows) : "", accuracy_script());
 }
 

@@ -49,7 +49,7 @@
   const line = (label, i, points, more = {}) => ({
     label, data: points, borderColor: colour(names[i % names.length]), backgroundColor: colour(names[i % names.length]),
     borderDash: dashes[i % dashes.length], pointStyle: signs[i % signs.length], borderWidth: 1.8, pointRadius: 4,
-    pointHitRadius: 8, ...more
+    pointHitRadius: 8, clip: 8, ...more
   });
 
   function draw(id, datasets, scales, tooltip) {
@@ -79,21 +79,29 @@
   const mainOf = (kind, scope) => of(kind, scope).filter((s) => s.pMin === thresholds(kind)[0]);
   const amountsOf = (kind) => mainOf(kind, 'all').flatMap((s) => s.points.map((p) => p.x));
   const mainKind = () => of('us', 'all').length ? 'us' : 'work';
-  const bounds = (p) => percent(p.y) + ' (' + percent(p.low) + ' to ' + percent(p.high) + ', of ' + p.n + ')';
+  const bounds = (p) => percent(p.share == null ? p.y : p.share) + ' (' + percent(p.low) + ' to ' + percent(p.high) + ', of ' + p.n + ')';
   const withBounds = (kind) => ({
     title: (items) => items.length ? limit(kind)(items[0].parsed.x) : '',
     label: (item) => item.dataset.label + ': ' + bounds(item.raw)
   });
 
+  // Small shares matter, so the axis is logarithmic; none at all stands on its lower end.
+  const floor = 0.01;
+  const logPercent = (title) => axis(title, {type: 'logarithmic', min: floor, max: 100, ticks: {
+    callback: (value) => Math.abs(Math.log10(value) - Math.round(Math.log10(value))) < 1e-9
+      ? (value === floor ? 'none' : trim(value)) : ''}});
+  const logPoint = (p) => ({...p, y: Math.max(p.y, floor), share: p.y});
+
   function drawShares(kind) {
     if (!of(kind, 'all').length) return;
     const groups = [...mainOf(kind, 'group'), ...mainOf(kind, 'all')];
-    const lines = (key) => groups.map((s, i) => line(s.band, s.band === 'all' ? 6 : i, s.points.map((p) => p[key]),
+    const lines = (key, least) => groups.map((s, i) => line(s.band, s.band === 'all' ? 6 : i,
+      s.points.map((p) => ({...p[key], y: Math.max(p[key].y, least), share: p[key].y})),
       s.band === 'all' ? {borderColor: colour('ink'), backgroundColor: colour('ink'), borderDash: [2, 2], pointRadius: 2} : {}));
-    draw('error-' + kind, lines('wrong'), {
-      x: limitAxis(kind, amountsOf(kind)), y: axis('wrong verdicts, %', {min: 0})
+    draw('error-' + kind, lines('wrong', floor), {
+      x: limitAxis(kind, amountsOf(kind)), y: logPercent('wrong verdicts, %')
     }, withBounds(kind));
-    draw('proved-' + kind, lines('proved'), {
+    draw('proved-' + kind, lines('proved', 0), {
       x: limitAxis(kind, amountsOf(kind)), y: axis('proved, %', {min: 0, max: 100})
     }, withBounds(kind));
   }
@@ -102,8 +110,8 @@
     const kind = mainKind();
     const sets = of(kind, 'all');
     const name = (s) => s.pMin < 1 ? 'p ≥ ' + s.pMin : 'never on probability';
-    draw('error-p', sets.map((s, i) => line(name(s), i, s.points.map((p) => p.wrong))), {
-      x: limitAxis(kind, amountsOf(kind)), y: axis('wrong verdicts, %', {min: 0})
+    draw('error-p', sets.map((s, i) => line(name(s), i, s.points.map((p) => logPoint(p.wrong)))), {
+      x: limitAxis(kind, amountsOf(kind)), y: logPercent('wrong verdicts, %')
     }, withBounds(kind));
     draw('time-p', sets.map((s, i) => line(name(s), i, s.points.map((p) => ({x: p.x, y: p.wall[0]})))), {
       x: limitAxis(kind, amountsOf(kind)), y: axis('median time, µs', {type: 'logarithmic'})
@@ -114,7 +122,8 @@
     const kind = mainKind();
     const points = mainOf(kind, 'all').flatMap((s) => s.points).filter((p) => p.unproved > 0).slice(0, 5);
     const sets = points.map((p, i) => line(
-      limit(kind)(p.x) + ', error ' + trim(p.ece, 2), i, p.reliability.map((bin) => ({...bin, x: 100 * bin.x}))));
+      limit(kind)(p.x) + ', error ' + trim(p.ece, 2), i, p.reliability.filter((bin) => bin.n >= 10).map((bin) => ({...bin, x: 100 * bin.x}))))
+      .filter((set) => set.data.length);
     sets.push({label: 'as stated', data: [{x: 0, y: 0}, {x: 100, y: 100}], borderColor: colour('grey'),
       borderDash: [6, 4], borderWidth: 1, pointRadius: 0, pointStyle: 'line'});
     draw('reliability', sets, {
@@ -129,9 +138,9 @@
   function drawKinds() {
     const kind = mainKind();
     const points = mainOf(kind, 'all').flatMap((s) => s.points);
-    draw('kinds', [line('false hits', 1, points.map((p) => p.falseHits)),
-      line('false misses', 0, points.map((p) => p.falseMisses))], {
-      x: limitAxis(kind, amountsOf(kind)), y: axis('of the poses that could be wrong so, %', {min: 0})
+    draw('kinds', [line('false hits', 1, points.map((p) => logPoint(p.falseHits))),
+      line('false misses', 0, points.map((p) => logPoint(p.falseMisses)))], {
+      x: limitAxis(kind, amountsOf(kind)), y: logPercent('of the poses that could be wrong so, %')
     }, withBounds(kind));
   }
 

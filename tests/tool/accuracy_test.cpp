@@ -1,0 +1,156 @@
+// The command `odds accuracy`, run as a user runs it.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "support/run_tool.hpp"
+
+namespace odds {
+namespace {
+
+using testing::contents_of;
+using testing::Ran;
+using testing::run_tool;
+using testing::TemporaryFolder;
+
+const std::string meshes = "accuracy made:torus_knot:along=60,across=8 made:gear ";
+const std::string repeatable = meshes + "--budgets-us none --work 64,256 --poses 4 ";
+
+/// A table without the columns that hold times.
+std::string without_times(const std::string& csv) {
+  std::istringstream lines(csv);
+  std::string line;
+  std::vector<bool> kept;
+  std::string text;
+  while (std::getline(lines, line)) {
+    std::istringstream cells(line);
+    std::size_t column = 0;
+    for (std::string cell; std::getline(cells, cell, ','); ++column) {
+      if (text.find('\n') == std::string::npos) kept.push_back(cell.find("_us") == std::string::npos);
+      if (kept.at(column)) text += cell + ",";
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+std::string file_in(const TemporaryFolder& folder, const std::string& name) { return contents_of(folder / name); }
+
+TEST(Accuracy, WritesEveryFileAndTheTable) {
+  const TemporaryFolder folder;
+  const Ran ran = run_tool(folder, meshes + "--out out --poses 3 --budgets-us 1,50 --work 64 --p-min 1,0.9");
+  ASSERT_EQ(ran.status, 0) << ran.errors;
+  for (const char* file :
+       {"accuracy.html", "accuracy.csv", "poses.csv", "answers.csv", "summary.json", "worst/01.csv"}) {
+    EXPECT_GT(file_in(folder, std::string("out/") + file).size(), 100U) << file;
+  }
+  for (const char* text : {"50 us", "64 units, p >= 0.9", "exact", "page: out/accuracy.html"}) {
+    EXPECT_NE(ran.output.find(text), std::string::npos) << text << "\n" << ran.output;
+  }
+  const auto summary = nlohmann::json::parse(file_in(folder, "out/summary.json"));
+  EXPECT_EQ(summary["settings"]["poses_per_band"], 3);
+  EXPECT_EQ(summary["rows"].size(), 7U * (1 + 4 + 12)) << "limits by all, groups, bands";
+  const auto& exact = summary["rows"][6 * 17];
+  EXPECT_EQ(exact["limit"], "exact");
+  EXPECT_EQ(exact["proved"], 36);
+  EXPECT_EQ(exact["wrong"], 0);
+}
+
+TEST(Accuracy, ShardsMergeToTheFiguresOfOneRun) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(run_tool(folder, repeatable + "--out whole").status, 0);
+  for (const char* i : {"0", "1", "2"}) {
+    const Ran ran = run_tool(folder, repeatable + "--shard " + i + "/3 --out shard" + i);
+    ASSERT_EQ(ran.status, 0) << ran.errors;
+  }
+  const Ran merged = run_tool(folder, "accuracy --merge shard2 shard0 shard1 --out merged");
+  ASSERT_EQ(merged.status, 0) << merged.errors;
+  EXPECT_EQ(file_in(folder, "merged/poses.csv"), file_in(folder, "whole/poses.csv"));
+  for (const char* file : {"accuracy.csv", "answers.csv"}) {
+    const std::string whole = without_times(file_in(folder, std::string("whole/") + file));
+    EXPECT_GT(whole.size(), 1000U);
+    EXPECT_EQ(without_times(file_in(folder, std::string("merged/") + file)), whole) << file;
+  }
+  EXPECT_EQ(file_in(folder, "merged/worst/01.csv"), file_in(folder, "whole/worst/01.csv"));
+}
+
+TEST(Accuracy, WorkUnitsGiveTheSameBitsTwice) {
+  const TemporaryFolder folder;
+  for (const char* volume : {"wide", "obb"}) {
+    const std::string options = repeatable + "--procedure tumbling --p-min 0.9 --k-min 2 --bv " + volume;
+    ASSERT_EQ(run_tool(folder, options + " --out a").status, 0);
+    ASSERT_EQ(run_tool(folder, options + " --out b").status, 0);
+    EXPECT_EQ(without_times(file_in(folder, "a/answers.csv")), without_times(file_in(folder, "b/answers.csv")));
+    EXPECT_EQ(without_times(file_in(folder, "a/accuracy.csv")), without_times(file_in(folder, "b/accuracy.csv")));
+  }
+}
+
+TEST(Accuracy, TheWorstPosesReplay) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(run_tool(folder, repeatable + "--out out").status, 0);
+  const std::string worst = file_in(folder, "out/worst/01.csv");
+  const std::size_t command = worst.find("# odds query ");
+  ASSERT_NE(command, std::string::npos) << worst;
+  std::string line = worst.substr(command + 7, worst.find('\n', command) - command - 7);
+  line.insert(line.find("worst/01.csv"), "out/");
+  const Ran ran = run_tool(folder, line);
+  ASSERT_EQ(ran.status, 0) << ran.errors;
+  const std::string said = worst.substr(worst.find(": ", worst.find("# at ")) + 2);
+  const std::string verdict = said.substr(0, said.find(' '));
+  const std::string probability = said.substr(said.find("P = ") + 4, said.find('\n') - said.find("P = ") - 4);
+  EXPECT_NE(ran.output.find("0," + verdict + ",budget," + probability + ","), std::string::npos) << worst << ran.output;
+}
+
+TEST(Accuracy, AnEarlierStudyIsReplacedWhole) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(run_tool(folder, repeatable + "--out out").status, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder / "out/worst/02.csv"));
+  ASSERT_EQ(run_tool(folder, meshes + "--out out --poses 1 --budgets-us none --work 1000000").status, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder / "out/worst/01.csv")) << "nothing was wrong";
+}
+
+TEST(Accuracy, RefusesBadInputInOneLine) {
+  const TemporaryFolder folder;
+  folder.write("file", "in the way");
+  const auto refused = [&](const std::string& arguments, int status, const std::string& text) {
+    const Ran ran = run_tool(folder, arguments);
+    EXPECT_EQ(ran.status, status) << arguments << "\n" << ran.errors;
+    EXPECT_NE(ran.errors.find(text), std::string::npos) << arguments << "\n" << ran.errors;
+  };
+  refused("accuracy missing.obj made:gear --out out", 1, "error: missing.obj");
+  refused(repeatable + "--out file", 1, "error: file");
+  refused("accuracy --merge nowhere --out out", 1, "summary.json");
+  refused("accuracy made:gear --out out", 2, "A and B");
+  refused("accuracy made:gear made:gear", 2, "--out");
+  refused("accuracy made:gear made:gear --merge x --out out", 2, "--merge");
+  refused(meshes + "--out out --budgets-us none --work none", 2, "no limit");
+  for (const char* bad : {"--budgets-us 1,,2", "--budgets-us 1,x", "--budgets-us 0", "--budgets-us 1,1", "--work 1.5",
+                          "--p-min 1.5", "--p-min none", "--shard 3/3", "--shard 1", "--poses 0", "--bv cube"}) {
+    refused(meshes + "--out out " + bad, 2, std::string(bad).substr(0, std::string(bad).find(' ')));
+  }
+}
+
+TEST(Accuracy, RefusesToMergeWhatDoesNotBelongTogether) {
+  const TemporaryFolder folder;
+  const std::string one = meshes + "--budgets-us none --work 64 --poses 1 ";
+  ASSERT_EQ(run_tool(folder, one + "--shard 0/2 --out a").status, 0);
+  ASSERT_EQ(run_tool(folder, one + "--shard 1/2 --seed 9 --out other").status, 0);
+  const auto refused = [&](const std::string& folders, const std::string& text) {
+    const Ran ran = run_tool(folder, "accuracy --merge " + folders);
+    EXPECT_EQ(ran.status, 1) << folders;
+    EXPECT_NE(ran.errors.find(text), std::string::npos) << ran.errors;
+  };
+  refused("a other --out m", "another study");
+  refused("a --out m", "shard 1/2 is missing");
+  refused("a a --out m", "as is a");
+  refused("a --out a", "overwritten");
+  std::string poses = file_in(folder, "a/poses.csv");
+  folder.write("a/poses.csv", poses.substr(0, poses.size() / 2));
+  refused("a --out m", "a/poses.csv");
+}
+
+}  // namespace
+}  // namespace odds
