@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "odds/realtime/fitness.hpp"
@@ -96,7 +98,7 @@ std::vector<Trial> trials_of(const AccuracyOptions& options) {
   std::sort(thresholds.rbegin(), thresholds.rend());
   for (const double p_min : thresholds) {
     for (const auto& [kind, list] :
-         {std::pair{Trial::Kind::time, options.budgets_us}, {Trial::Kind::work, options.work}}) {
+         {std::pair{Trial::Kind::time, options.budgets_us}, std::pair{Trial::Kind::work, options.work}}) {
       std::vector<double> amounts = numbers_in(list);
       std::sort(amounts.begin(), amounts.end());
       for (const double amount : amounts) trials.push_back({kind, amount, p_min});

@@ -145,7 +145,7 @@ Result<PoseMaker::Line> PoseMaker::line(std::uint64_t number) {
 
 double PoseMaker::travel_to_distance(const Line& line, double distance) const {
   const auto within = [&](double travel) {
-    return surfaces_within(pair_.a(), pair_.b(), at(line, travel).pose(), distance);
+    return pair_.distance(at(line, travel).pose(), {.within = distance, .budget = {}}).upper <= distance;
   };
   double near = 0.0;
   double far = distance;

@@ -82,9 +82,4 @@ class PoseMaker {
   Line line_;
 };
 
-/// True if the surfaces come within `distance` (metres, > 0) of each other or meet, in that pose of B in A. Exact up to
-/// the rounding of doubles. Precondition: both shapes of the wide engine.
-[[nodiscard]] bool surfaces_within(const query::Shape& a, const query::Shape& b, const math::Pose& pose_b_in_a,
-                                   double distance);
-
 }  // namespace odds::report
