@@ -23,9 +23,12 @@ std::string digest(const PageScript& script) {
   return "'sha256-" + base64_encode(bytes_of_hex(script.sha256_hex)) + "'";
 }
 
-std::string head(const RunInfo& info, bool charts) {
+std::string head(const RunInfo& info, bool charts, bool replay) {
   // No script but ours runs, and nothing is fetched, even if some text slipped through the escaping.
-  const std::string scripts = charts ? digest(chart_library()) + " " + digest(page_script()) : "'none'";
+  std::string scripts;
+  if (charts) scripts = fmt::format("{} {}", digest(chart_library()), digest(page_script()));
+  if (replay) scripts += fmt::format(" {} {}", digest(replay_library()), digest(replay_script()));
+  if (scripts.empty()) scripts = "'none'";
   return fmt::format(
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src {}; style-src "
@@ -45,9 +48,11 @@ std::string scripts(const std::string& data) {
 
 }  // namespace
 
-std::string page(const RunInfo& info, const RunSummary& summary, std::span<const haptics::TickRecord> ticks) {
+std::string page(const RunInfo& info, const RunSummary& summary, std::span<const haptics::TickRecord> ticks,
+                 const RunReplay* replay) {
   const bool charts = !chart_library_version().empty();
-  std::string html = head(info, charts);
+  const bool shows = replay != nullptr && !replay->frames.empty() && !replay_library_version().empty();
+  std::string html = head(info, charts, shows);
   html += page_head_line(info, summary);
   html += "<main>\n";
   if (!charts) {
@@ -59,6 +64,7 @@ std::string page(const RunInfo& info, const RunSummary& summary, std::span<const
         "<noscript><p class=\"note\">The charts need JavaScript, which is off. Every figure is in the tables too.</p>"
         "</noscript>\n";
   }
+  if (shows) html += page_replay(*replay);
   html += page_latency(summary, charts);
   html += page_answers(summary, charts);
   html += page_forces(summary, charts);
@@ -71,8 +77,14 @@ std::string page(const RunInfo& info, const RunSummary& summary, std::span<const
       "programs), <code>ticks.csv</code> (every tick), <code>latency.hgrm</code>, <code>wake.hgrm</code>, "
       "<code>query.hgrm</code> and <code>latency.hlog</code> (HdrHistogram's formats).{}</footer>\n</main>\n",
       html_escaped(info.version),
-      charts ? fmt::format(" Charts: Chart.js {}, MIT licence.", chart_library_version()) : "");
+      (charts ? fmt::format(" Charts: Chart.js {}, MIT licence.", chart_library_version()) : "") +
+          (shows ? fmt::format(" Replay: three.js r{}, MIT licence.", replay_library_version()) : ""));
   if (charts) html += scripts(page_data(info, summary, ticks));
+  if (shows) {
+    html += fmt::format(
+        "<script id=\"replay-data\" type=\"application/json\">{}</script>\n<script>{}</script>\n<script>{}</script>\n",
+        replay_data(info, *replay, ticks), replay_library().text, replay_script().text);
+  }
   return html + "</body>\n</html>\n";
 }
 

@@ -15,6 +15,10 @@ struct PageScript {
 [[nodiscard]] PageScript chart_library() noexcept;
 [[nodiscard]] PageScript page_script() noexcept;      ///< charts of a run
 [[nodiscard]] PageScript accuracy_script() noexcept;  ///< charts of a study of accuracy
+/// Empty where no library for three dimensions was found.
+[[nodiscard]] std::string_view replay_library_version() noexcept;
+[[nodiscard]] PageScript replay_library() noexcept;
+[[nodiscard]] PageScript replay_script() noexcept;
 [[nodiscard]] std::string_view page_style() noexcept;
 [[nodiscard]] std::string_view page_glossary() noexcept;
 

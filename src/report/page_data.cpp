@@ -56,6 +56,7 @@ struct Stretch {
   std::uint64_t ticks = 0;
   double wake_us = NAN, tick_us = NAN, gross_us = NAN, net_us = NAN, stall_us = NAN, step_us = NAN;
   double depth_mm = NAN, contacts = NAN, undecided = NAN;
+  double energy_j = NAN;                                                   ///< at the hand, the lowest
   std::array<double, 3> force_n{NAN, NAN, NAN}, torque_nm{NAN, NAN, NAN};  ///< of the tick where they are largest
   double force_size_n = NAN, torque_size_nm = NAN;
   std::array<std::uint64_t, 4> answers{};  ///< proved, estimated, budget, no query
@@ -79,6 +80,7 @@ void add(Stretch& stretch, const TickRecord& t, std::int64_t period_ns) {
   raise(stretch.tick_us, static_cast<double>(t.done_ns - t.planned_ns) * 1e-3);
   raise(stretch.step_us, t.step_us);
   raise(stretch.depth_mm, t.max_depth_m * 1e3);
+  stretch.energy_j = std::fmin(stretch.energy_j, t.observed_energy_j);  // fmin drops NaN
   raise(stretch.contacts, t.contacts);
   take_larger(stretch.force_n, stretch.force_size_n, t.force_n);
   take_larger(stretch.torque_nm, stretch.torque_size_nm, t.torque_nm);
@@ -150,6 +152,7 @@ void write_time_line(Writer& json, const std::vector<Stretch>& line) {
   }
   column(json, "force", line, [](const Stretch& s) { return s.force_size_n; });
   column(json, "torque", line, [](const Stretch& s) { return s.torque_size_nm; });
+  column(json, "energy", line, [](const Stretch& s) { return s.energy_j; });
   json.close('}');
 }
 

@@ -113,7 +113,8 @@ std::string page_head_line(const RunInfo& info, const RunSummary& summary) {
                                  html_escaped(intro(info, summary)));
   html +=
       "<nav><a href=\"#latency\">Latency</a><a href=\"#answers\">Answers</a><a href=\"#forces\">Force and contact</a>"
-      "<a href=\"#machine\">Machine</a><a href=\"#run\">Run</a><a href=\"#words\">Words used here</a></nav>\n";
+      "<a href=\"#effects\">Effects</a><a href=\"#machine\">Machine</a><a href=\"#run\">Run</a><a "
+      "href=\"#words\">Words used here</a></nav>\n";
   html += verdict(summary);
   if (info.simulated_time) {
     html +=

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "odds/report/run_info.hpp"
+#include "odds/report/run_replay.hpp"
 #include "odds/report/run_summary.hpp"
 
 namespace odds::report {
@@ -13,6 +14,7 @@ namespace odds::report {
 [[nodiscard]] std::string page_latency(const RunSummary& summary, bool charts);
 [[nodiscard]] std::string page_answers(const RunSummary& summary, bool charts);
 [[nodiscard]] std::string page_forces(const RunSummary& summary, bool charts);
+[[nodiscard]] std::string page_replay(const RunReplay& replay);
 [[nodiscard]] std::string page_effects(const RunInfo& info, const RunSummary& summary);
 [[nodiscard]] std::string page_machine(const RunInfo& info);
 [[nodiscard]] std::string page_run(const RunInfo& info);

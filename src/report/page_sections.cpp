@@ -145,6 +145,11 @@ std::string page_forces(const RunSummary& s, bool charts) {
   html += time_line("chart-force", "Force",
                     "A jump from one tick to the next is felt as a knock, fast changes of sign as a buzz.");
   html += time_line("chart-torque", "Torque", "The same for the turning of the hand.", "low");
+  html += time_line(
+      "chart-energy", "Energy at the hand",
+      "What the simulation has taken in since the start, the lowest of each stretch. It falls where the hand gets "
+      "energy back; a fall without end, or below zero, is a loop that pushes by itself.",
+      "low");
   html += time_line("chart-contact", "Contact", "Depth of the deepest contact, and how many contact points there were.",
                     "low");
   return html;

@@ -7,6 +7,7 @@
 #include "odds/haptics/tick_record.hpp"
 #include "odds/report/hlog.hpp"
 #include "odds/report/run_info.hpp"
+#include "odds/report/run_replay.hpp"
 #include "odds/report/run_summary.hpp"
 
 namespace odds::report {
@@ -18,8 +19,11 @@ namespace odds::report {
 /// The numbers behind the page's charts, as JSON that is safe inside a script element.
 [[nodiscard]] std::string page_data(const RunInfo& info, const RunSummary& summary,
                                     std::span<const haptics::TickRecord> ticks);
-/// The whole page.
+/// What the replay shows, as JSON that is safe inside a script element.
+[[nodiscard]] std::string replay_data(const RunInfo& info, const RunReplay& replay,
+                                      std::span<const haptics::TickRecord> ticks);
+/// The whole page. `replay` may be null.
 [[nodiscard]] std::string page(const RunInfo& info, const RunSummary& summary,
-                               std::span<const haptics::TickRecord> ticks);
+                               std::span<const haptics::TickRecord> ticks, const RunReplay* replay);
 
 }  // namespace odds::report

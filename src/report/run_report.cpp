@@ -26,9 +26,11 @@ std::string hlog_text(const Hlog& log) {
 }  // namespace
 
 bool pages_have_charts() noexcept { return !chart_library_version().empty(); }
+bool pages_have_replay() noexcept { return !replay_library_version().empty(); }
 
 Result<RunFiles> write_run_report(const std::filesystem::path& directory, const RunInfo& info,
-                                  const RunSummary& summary, std::span<const haptics::TickRecord> ticks) {
+                                  const RunSummary& summary, std::span<const haptics::TickRecord> ticks,
+                                  const RunReplay* replay) {
   std::error_code code;
   std::filesystem::create_directories(directory, code);
   if (code) return Error{directory.string(), "", "cannot be made: " + code.message(), "choose another directory"};
@@ -41,7 +43,7 @@ Result<RunFiles> write_run_report(const std::filesystem::path& directory, const 
   if (auto error = write_file(files.wake_latency, hgrm_text(summary.wake))) return *error;
   if (auto error = write_file(files.query_time, hgrm_text(summary.query_gross))) return *error;
   if (auto error = write_file(files.log, hlog_text(latency_log(info, ticks)))) return *error;
-  if (auto error = write_file(files.page, page(info, summary, ticks))) return *error;
+  if (auto error = write_file(files.page, page(info, summary, ticks, replay))) return *error;
   return files;
 }
 

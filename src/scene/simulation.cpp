@@ -74,21 +74,20 @@ std::optional<Error> Simulation::load() {
   }
   ticks_ = static_cast<std::uint64_t>(wanted);
   if (options_.simulated_time) scene_.query.budget = repeatable(scene_.query.budget);
-  std::vector<std::shared_ptr<const query::Shape>> shapes;
   for (const Mesh& mesh : scene_.meshes) {
     const std::string what = fmt::format("mesh '{}'", mesh.name);
     report(what, 0.0);
     auto shape = load_shape(scene_, mesh, [&](double share) { report(what, share); });
     if (!shape) return shape.error();
     meshes_.push_back({mesh.name, mesh.file, shape.value()->mesh().triangles().size()});
-    shapes.push_back(std::move(shape).value());
+    shapes_.push_back(std::move(shape).value());
     report(what, 1.0);
   }
   effects_ = scene_.make_effects();
   Result<ode::World> world = ode::World::make(scene_.world_options(*effects_));
   if (!world) return world.error();
   world_.emplace(std::move(world).value());
-  if (auto error = add_bodies(shapes)) return error;
+  if (auto error = add_bodies()) return error;
   if (auto error = add_hand()) return error;
   report("memory of the loop", 0.0);
   if (auto error = world_->prepare()) {
@@ -106,9 +105,9 @@ std::optional<Error> Simulation::load() {
   return std::nullopt;
 }
 
-std::optional<Error> Simulation::add_bodies(const std::vector<std::shared_ptr<const query::Shape>>& shapes) {
+std::optional<Error> Simulation::add_bodies() {
   for (const Body& body : scene_.bodies) {
-    const auto& shape = shapes[body.mesh];
+    const auto& shape = shapes_[body.mesh];
     Result<ode::BodyId> id = body.dynamic ? world_->add_dynamic(shape, body.pose, body.mass, body.name)
                                           : world_->add_fixed(shape, body.pose, body.name);
     if (!id) {

@@ -19,6 +19,7 @@
 #include "tool/command.hpp"
 #include "tool/output_folder.hpp"
 #include "tool/replay_folder.hpp"
+#include "tool/replay_view.hpp"
 #include "tool/run_table.hpp"
 #include "tool/shared_options.hpp"
 
@@ -113,7 +114,8 @@ int run(const RunArguments& arguments) {
         {cost.name, cost.place.line, cost.ticks, cost.evaluations, cost.total_ns, cost.longest_ns});
   }
   const report::RunSummary summary = report::summarize(info, outcome.ticks);
-  const auto files = report::write_run_report(arguments.out, info, summary, outcome.ticks);
+  const report::RunReplay replay = replay_view(simulation, outcome);
+  const auto files = report::write_run_report(arguments.out, info, summary, outcome.ticks, &replay);
   if (!files) return fail(files.error());
   if (auto error = write_replay_folder(std::filesystem::path(arguments.out) / "replay", simulation, info, outcome)) {
     return fail(*error);

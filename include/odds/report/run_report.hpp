@@ -7,6 +7,7 @@
 #include "odds/haptics/tick_record.hpp"
 #include "odds/math/error.hpp"
 #include "odds/report/run_info.hpp"
+#include "odds/report/run_replay.hpp"
 #include "odds/report/run_summary.hpp"
 
 namespace odds::report {
@@ -24,11 +25,15 @@ struct RunFiles {
 
 /// Writes all files into `directory`, which is made if need be; files of an earlier run are replaced. `summary` must be
 /// summarize(info, ticks). The loop must have ended: this reads files of the system, allocates and takes its time.
-/// Errors name the file that could not be written.
+/// With `replay` the page shows the run in three dimensions, if a library for that was found when this program was
+/// built. Errors name the file that could not be written.
 [[nodiscard]] Result<RunFiles> write_run_report(const std::filesystem::path& directory, const RunInfo& info,
-                                                const RunSummary& summary, std::span<const haptics::TickRecord> ticks);
+                                                const RunSummary& summary, std::span<const haptics::TickRecord> ticks,
+                                                const RunReplay* replay = nullptr);
 
 /// Whether report pages have charts, that is whether a chart library was found when this program was built.
 [[nodiscard]] bool pages_have_charts() noexcept;
+/// The same of the library for the replay.
+[[nodiscard]] bool pages_have_replay() noexcept;
 
 }  // namespace odds::report

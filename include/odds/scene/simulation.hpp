@@ -73,6 +73,8 @@ class Simulation {
 
   [[nodiscard]] const Scene& scene() const noexcept { return scene_; }
   [[nodiscard]] const std::vector<LoadedMesh>& meshes() const noexcept { return meshes_; }
+  /// Of the meshes, in the scene's order.
+  [[nodiscard]] const std::vector<std::shared_ptr<const query::Shape>>& shapes() const noexcept { return shapes_; }
   /// Sentences about what may go wrong with this scene; e.g. the sampled-data rule.
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
   /// The budget that the queries really have.
@@ -88,7 +90,7 @@ class Simulation {
  private:
   Simulation(Scene scene, const SimulationOptions& options);
   std::optional<Error> load();
-  std::optional<Error> add_bodies(const std::vector<std::shared_ptr<const query::Shape>>& shapes);
+  std::optional<Error> add_bodies();
   std::optional<Error> add_hand();
   void report(std::string_view what, double share) const;
   [[nodiscard]] PoseTrack make_pose_track() const;
@@ -97,6 +99,7 @@ class Simulation {
   Scene scene_;
   SimulationOptions options_;
   std::vector<LoadedMesh> meshes_;
+  std::vector<std::shared_ptr<const query::Shape>> shapes_;
   std::vector<std::string> warnings_;
   std::unique_ptr<haptics::EffectSet> effects_;
   std::optional<ode::World> world_;

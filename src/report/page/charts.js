@@ -232,6 +232,7 @@
       series('size', 'ink', points(time.t, time[key]), {borderWidth: 1, borderDash: [3, 3]})];
     drawTimeLine('chart-force', axis('force, N'), vector('force'), [], unit('N'));
     drawTimeLine('chart-torque', axis('torque, N·m'), vector('torque'), [], unit('N·m'));
+    drawTimeLine('chart-energy', axis('energy, J'), [series('taken in at the hand', 'purple', points(time.t, time.energy))]);
     drawTimeLine('chart-contact', axis('depth, mm', {beginAtZero: true}), [
       series('deepest contact', 'blue', points(time.t, time.depth)),
       series('contact points', 'orange', points(time.t, time.contacts), {yAxisID: 'count', stepped: true, borderWidth: 0.8})], [],

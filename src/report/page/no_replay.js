@@ -1,0 +1,1 @@
+// No library for three dimensions was found at build time.

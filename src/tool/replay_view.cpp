@@ -1,0 +1,38 @@
+// From the track of poses to frames.
+#include "tool/replay_view.hpp"
+
+#include <algorithm>
+
+namespace odds::tool {
+namespace {
+
+constexpr std::size_t most_triangles = 20'000;  // of one mesh: a page that opens at once
+constexpr std::size_t most_frames = 6'000;
+
+}  // namespace
+
+report::RunReplay replay_view(const scene::Simulation& simulation, const scene::RunOutcome& outcome) {
+  report::RunReplay replay;
+  for (const auto& shape : simulation.shapes())
+    replay.meshes.push_back(report::simplified(shape->mesh(), most_triangles));
+  for (const scene::Body& body : simulation.scene().bodies) {
+    replay.bodies.push_back({body.name, body.mesh, body.dynamic, body.follows_device, body.pose});
+  }
+  const std::vector<scene::PoseTrack::Row> rows = outcome.poses.rows();
+  const std::size_t moving = outcome.poses.names().size();
+  if (moving == 0) return replay;
+  const std::size_t frames = rows.size() / moving;
+  const std::size_t stride = std::max<std::size_t>(1, (frames + most_frames - 1) / most_frames);
+  for (std::size_t i = 0; i < frames; i += stride) {
+    report::ReplayFrame frame;
+    frame.tick = rows[i * moving].tick;
+    for (std::size_t k = 0; k < moving; ++k) {
+      const scene::PoseTrack::Row& row = rows[i * moving + k];
+      frame.poses.push_back(math::Pose::from_quaternion(row.position_m, row.orientation));
+    }
+    replay.frames.push_back(std::move(frame));
+  }
+  return replay;
+}
+
+}  // namespace odds::tool
