@@ -3,13 +3,16 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include "hard_cases/page.hpp"
 #include "hard_cases/run_case.hpp"
+#include "hard_cases/soak.hpp"
 #include "hard_cases/troubled_device.hpp"
 
 namespace odds::hard_cases {
@@ -29,6 +32,36 @@ void print(const Outcome& outcome) {
     for (const std::string& what : f.broken) fmt::print("    {}\n", what);
     for (const std::string& what : f.weak) fmt::print("    {}\n", what);
   }
+}
+
+// Every scene of a folder, or one scene.
+int soak_all(const std::filesystem::path& place, double seconds) {
+  std::vector<std::filesystem::path> scenes;
+  if (std::filesystem::is_directory(place)) {
+    for (const auto& entry : std::filesystem::directory_iterator(place)) scenes.push_back(entry.path());
+  } else {
+    scenes.push_back(place);
+  }
+  std::sort(scenes.begin(), scenes.end());
+  bool all_hold = true;
+  for (const std::filesystem::path& scene : scenes) {
+    const Result<Soak> soaked = soak(scene.string(), seconds);
+    if (!soaked) {
+      fmt::print(stderr, "error: {}\n", soaked.error().message());
+      all_hold = false;
+      continue;
+    }
+    const Soak& s = soaked.value();
+    all_hold = all_hold && s.holds();
+    fmt::print(
+        "{:<24} {:9} ticks in {:6.1f} s  not finite {}  beyond the limit {}  faulted {}  rescued {}  largest {:.3g} N  "
+        "lowest balance "
+        "{:.2g} J  {}\n",
+        scene.filename().string(), s.ticks, s.wall_s, s.not_finite, s.beyond_limit, s.faulted, s.rescued,
+        s.largest_force_n, s.least_energy_j, s.holds() ? "holds" : "BROKEN");
+    std::fflush(stdout);
+  }
+  return all_hold ? 0 : 1;
 }
 
 int run(const std::string& folder, const std::string& only, double share) {
@@ -65,19 +98,28 @@ int run(const std::string& folder, const std::string& only, double share) {
 int main(int argc, char** argv) {
   std::string folder = "hard_cases";
   std::string only;
+  std::string soaked;
   double share = 1.0;
+  double seconds = 3600.0;
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
     if (argument == "--out" && i + 1 < argc) {
       folder = argv[++i];
     } else if (argument == "--only" && i + 1 < argc) {
       only = argv[++i];
+    } else if (argument == "--soak" && i + 1 < argc) {
+      soaked = argv[++i];
+    } else if (argument == "--seconds" && i + 1 < argc) {
+      seconds = std::atof(argv[++i]);
     } else if (argument == "--share" && i + 1 < argc) {
       share = std::atof(argv[++i]);
     } else {
-      fmt::print(stderr, "usage: odds_hard_cases [--out FOLDER] [--only CASE] [--share OF_THE_SECONDS]\n");
+      fmt::print(stderr,
+                 "usage: odds_hard_cases [--out FOLDER] [--only CASE] [--share OF_THE_SECONDS]\n"
+                 "       odds_hard_cases --soak SCENE_OR_FOLDER [--seconds S]   (an hour of each, simulated)\n");
       return 2;
     }
   }
+  if (!soaked.empty()) return odds::hard_cases::soak_all(soaked, seconds);
   return odds::hard_cases::run(folder, only, share);
 }

@@ -1,0 +1,62 @@
+// The loop without a report.
+#include "hard_cases/soak.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <vector>
+
+#include "odds/scene/simulation.hpp"
+
+namespace odds::hard_cases {
+namespace {
+
+void note(Soak& soak, const haptics::TickRecord& record, double most_n) {
+  ++soak.ticks;
+  const Vec3 force(record.force_n[0], record.force_n[1], record.force_n[2]);
+  const double sum = force.sum() + record.torque_nm[0] + record.torque_nm[1] + record.torque_nm[2] +
+                     record.tool_position_m[0] + record.tool_position_m[1] + record.tool_position_m[2] +
+                     record.observed_energy_j + record.max_depth_m;
+  if (!std::isfinite(sum)) ++soak.not_finite;
+  if (force.norm() > most_n * (1.0 + 1e-9)) ++soak.beyond_limit;
+  if ((record.safety & haptics::safety_faulted) != 0) ++soak.faulted;
+  soak.largest_force_n = std::fmax(soak.largest_force_n, force.norm());
+  soak.least_energy_j = std::fmin(soak.least_energy_j, record.observed_energy_j);
+}
+
+}  // namespace
+
+Result<Soak> soak(const std::string& scene_file, double seconds) {
+  Result<scene::Scene> parsed = scene::read_scene(scene_file);
+  if (!parsed) return parsed.error();
+  scene::SimulationOptions options;
+  options.simulated_time = true;
+  auto made = scene::Simulation::make(std::move(parsed).value(), options);
+  if (!made) return made.error();
+  scene::Simulation& simulation = *made.value();
+  ode::World& world = simulation.world();
+  std::vector<ode::BodyState> start;
+  for (std::uint32_t i = 0; i < world.body_count(); ++i) start.push_back(world.state({i}));
+  const double most_n = simulation.scene().device ? simulation.scene().device->limits.max_force_n : 0.0;
+  const std::int64_t period_ns = simulation.scene().loop.period_ns;
+  const auto round = static_cast<std::int64_t>(simulation.scene().loop.seconds * 1e9) / period_ns;
+  const auto all = static_cast<std::int64_t>(seconds * 1e9) / period_ns;
+  Soak result;
+  const auto began = std::chrono::steady_clock::now();
+  for (std::int64_t tick = 0; tick < all; ++tick) {
+    if (tick % round == 0) {
+      for (std::uint32_t i = 0; i < world.body_count(); ++i) world.set_state({i}, start[i]);
+      if (simulation.device() != nullptr) simulation.device()->enable_forces(true);
+      result.rescued += simulation.renderer().rescued_steps();
+      if (!simulation.renderer().begin())
+        return Error{scene_file, "", "the device gives no position", "check the device"};
+    }
+    haptics::TickRecord record;
+    simulation.renderer().tick(tick % round * period_ns, record);
+    note(result, record, most_n);
+  }
+  result.rescued += simulation.renderer().rescued_steps();
+  result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  return result;
+}
+
+}  // namespace odds::hard_cases

@@ -1,0 +1,28 @@
+// A scene run for a long simulated time, as fast as it goes.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "odds/math/error.hpp"
+
+namespace odds::hard_cases {
+
+/// What a soak left; no record is kept, so that its length costs no memory.
+struct Soak {
+  std::uint64_t ticks = 0;
+  std::uint64_t not_finite = 0;
+  std::uint64_t beyond_limit = 0;  ///< ticks with a force above the device's limit
+  std::uint64_t faulted = 0;       ///< ticks with a latched fault
+  std::uint64_t rescued = 0;       ///< steps that held a body's speed or put it back
+  double largest_force_n = 0.0;
+  double least_energy_j = 0.0;  ///< lowest balance at the hand
+  double wall_s = 0.0;
+  [[nodiscard]] bool holds() const { return not_finite == 0 && beyond_limit == 0 && faulted == 0; }
+};
+
+/// Runs the scene again and again, from its start each time the scene's own seconds are over, bodies and device put
+/// back.
+Result<Soak> soak(const std::string& scene_file, double seconds);
+
+}  // namespace odds::hard_cases
