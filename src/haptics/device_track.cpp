@@ -16,6 +16,8 @@
 namespace odds::haptics {
 namespace {
 
+constexpr double greatest_number = 1e12;  // as in scenes: differences of more over a nanosecond overflow
+
 constexpr std::uintmax_t largest_file = std::uintmax_t{1} << 30;  // three hours at 1 kHz need a tenth of it
 
 enum Quantity : std::size_t { t, px, py, pz, qw, qx, qy, qz, vx, vy, vz, wx, wy, wz, buttons, quantities };
@@ -116,6 +118,10 @@ std::optional<Error> read_row(std::string_view line, const Columns& columns, con
                    fmt::format("correct the value of {}", column.name)};
     }
     values[column.quantity] = value * column.factor;
+    if (column.quantity != t && !(std::abs(values[column.quantity]) <= greatest_number)) {
+      return Error{name, place, fmt::format("'{}' is beyond 1e12", cells[i]),
+                   fmt::format("correct the value of {}, and check its unit", column.name)};
+    }
     if (column.quantity == t) {
       if (!(std::abs(values[t]) < 9e18)) {
         return Error{name, place, fmt::format("the time {} is out of range", cells[i]),

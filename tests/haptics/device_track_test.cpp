@@ -114,6 +114,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Malformed{"Nan", header + "0,nan,0,0,1,0,0,0\n", "2", "finite"},
                     Malformed{"Infinity", header + "0,0,0,inf,1,0,0,0\n", "2", "finite"},
                     Malformed{"Overflow", header + "0,0,0,1e999,1,0,0,0\n", "2", "finite"},
+                    Malformed{"BeyondReason", header + "0,0,1e308,0,1,0,0,0\n", "2", "beyond 1e12"},
                     Malformed{"FractionOfANanosecond", header + "0.5,0,0,0,1,0,0,0\n", "2", "nanoseconds"},
                     Malformed{"TimeTooLarge", header + "99999999999999999999,0,0,0,1,0,0,0\n", "2", "nanoseconds"},
                     Malformed{"TimeStandsStill", header + "5,0,0,0,1,0,0,0\n5,0,0,0,1,0,0,0\n", "3", "not later"},
