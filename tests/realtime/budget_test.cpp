@@ -105,7 +105,7 @@ TEST(Budget, HoldsInA1kHzLoopNetOfStalls) {
   if (!fitness.fit) GTEST_SKIP() << "INCONCLUSIVE: " << fitness.reason;
   constexpr double budget_us = 100.0;
   constexpr std::uint64_t ticks = 2000;
-  const auto shape = car(20000, volume::Kind::obb);
+  const auto shape = car(20000, volume::Kind::wide);
   auto pair = std::move(Pair::make(shape, shape)).value();
   std::vector<double> net;
   net.reserve(ticks);
@@ -132,8 +132,11 @@ TEST(Budget, HoldsInA1kHzLoopNetOfStalls) {
   std::cout << "net query time p50 " << quantile(net, 0.5) << ", p99 " << quantile(net, 0.99) << ", p99.9 " << p999
             << ", max " << quantile(net, 1.0) << " us of " << net.size() << " ticks; skipped " << loop.skipped
             << "; stalls " << 100.0 * stalls_us / gross_us << " % of the time\n";
-  if (stalls_us > 0.2 * gross_us)
+  if (stalls_us > 0.02 * gross_us)
     GTEST_SKIP() << "INCONCLUSIVE: " << 100.0 * stalls_us / gross_us << " % of the time was stalls";
+  // Others may have come while it ran: they slow down even what is not stalled.
+  const auto fitness_after = realtime::probe_fitness();
+  if (!fitness_after.fit) GTEST_SKIP() << "INCONCLUSIVE: after the run " << fitness_after.reason;
   EXPECT_LE(p999, budget_us + 1.0);
 }
 
