@@ -107,8 +107,8 @@ TEST(Budget, HoldsInA1kHzLoopNetOfStalls) {
   constexpr std::uint64_t ticks = 2000;
   const auto shape = car(20000, volume::Kind::wide);
   auto pair = std::move(Pair::make(shape, shape)).value();
-  std::vector<double> net;
-  net.reserve(ticks);
+  std::vector<double> net(ticks);  // touched now: its pages are not the queries' faults
+  net.clear();
   std::uint64_t answered = 0;
   double stalls_us = 0.0;
   double gross_us = 0.0;
@@ -126,7 +126,6 @@ TEST(Budget, HoldsInA1kHzLoopNetOfStalls) {
       });
   const auto faults = realtime::thread_usage() - before;
   EXPECT_EQ(answered, loop.ran) << "every tick is answered";
-  EXPECT_EQ(faults.minor_faults + faults.major_faults, 0u) << "a page fault would hide among the stalls";
   const double p999 = quantile(net, 0.999);
   RecordProperty("net_p999_us", std::to_string(p999));
   std::cout << "net query time p50 " << quantile(net, 0.5) << ", p99 " << quantile(net, 0.99) << ", p99.9 " << p999
@@ -137,6 +136,7 @@ TEST(Budget, HoldsInA1kHzLoopNetOfStalls) {
   // Others may have come while it ran: they slow down even what is not stalled.
   const auto fitness_after = realtime::probe_fitness();
   if (!fitness_after.fit) GTEST_SKIP() << "INCONCLUSIVE: after the run " << fitness_after.reason;
+  EXPECT_EQ(faults.minor_faults + faults.major_faults, 0u) << "a page fault would hide among the stalls";
   EXPECT_LE(p999, budget_us + 1.0);
 }
 
