@@ -16,20 +16,6 @@ constexpr const char* heading =
     "tool_z_m,tool_qw,tool_qx,tool_qy,tool_qz,force_x_n,force_y_n,force_z_n,torque_x_nm,torque_y_nm,torque_z_nm,safety,"
     "minor_faults,major_faults,voluntary_switches,involuntary_switches,allocations,observed_energy_j,contact_work_j\n";
 
-const char* word(query::Verdict verdict) { return verdict == query::Verdict::hit ? "hit" : "clear"; }
-
-const char* word(query::Basis basis) {
-  switch (basis) {
-    case query::Basis::proved:
-      return "proved";
-    case query::Basis::estimated:
-      return "estimated";
-    case query::Basis::budget:
-      break;
-  }
-  return "budget";
-}
-
 }  // namespace
 
 std::string ticks_csv(std::span<const haptics::TickRecord> ticks) {
@@ -42,7 +28,7 @@ std::string ticks_csv(std::span<const haptics::TickRecord> ticks) {
                    t.query_overshoot_us, t.query_net_overshoot_us, t.node_pairs, t.triangle_pairs);
     // Without a query there is no answer to speak of.
     if (t.queries > 0) {
-      fmt::format_to(out, "{},{},{:.9g},", word(t.verdict), word(t.basis), t.probability);
+      fmt::format_to(out, "{},{},{:.9g},", name(t.verdict), name(t.basis), t.probability);
     } else {
       fmt::format_to(out, ",,,");
     }

@@ -10,20 +10,6 @@ AnswerRecord::AnswerRecord(const query::Answer& given, double measured_us)
   answer.contacts = {};  // the pair's memory, overwritten by its next run
 }
 
-std::string_view name(query::Verdict verdict) { return verdict == query::Verdict::hit ? "hit" : "clear"; }
-
-std::string_view name(query::Basis basis) {
-  switch (basis) {
-    case query::Basis::proved:
-      return "proved";
-    case query::Basis::estimated:
-      return "estimated";
-    case query::Basis::budget:
-      break;
-  }
-  return "budget";
-}
-
 std::string answer_line(std::size_t row, const AnswerRecord& record) {
   const query::Answer& answer = record.answer;
   std::string line = fmt::format("{},{},{},{},{},{},{:.3f},{:.3f},{},", row, name(answer.verdict), name(answer.basis),

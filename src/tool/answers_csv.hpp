@@ -22,9 +22,6 @@ struct AnswerRecord {
 inline constexpr std::string_view answers_header =
     "row,verdict,basis,probability,node_pairs,triangle_pairs,wall_us,stall_us,contacts,px,py,pz,nx,ny,nz,depth\n";
 
-std::string_view name(query::Verdict verdict);
-std::string_view name(query::Basis basis);
-
 /// One line. Coordinates and probability are the shortest decimals that read back to the same doubles; metres,
 /// microseconds.
 std::string answer_line(std::size_t row, const AnswerRecord& record);

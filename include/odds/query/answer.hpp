@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <string_view>
 
 #include "odds/math/types.hpp"
 
@@ -19,6 +20,24 @@ enum class Basis : std::uint8_t {
   estimated,  ///< the probability passed the threshold that the caller set (p_min, k_min), or polygons were dropped
   budget,     ///< the budget ran out; the verdict is the likelier one
 };
+
+/// The words that stand in every table: "clear", "hit".
+[[nodiscard]] constexpr std::string_view name(Verdict verdict) noexcept {
+  return verdict == Verdict::hit ? "hit" : "clear";
+}
+
+/// "proved", "estimated", "budget".
+[[nodiscard]] constexpr std::string_view name(Basis basis) noexcept {
+  switch (basis) {
+    case Basis::proved:
+      return "proved";
+    case Basis::estimated:
+      return "estimated";
+    case Basis::budget:
+      break;
+  }
+  return "budget";
+}
 
 constexpr std::uint32_t no_feature = std::numeric_limits<std::uint32_t>::max();
 

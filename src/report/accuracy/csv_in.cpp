@@ -71,9 +71,9 @@ class Fields {
 };
 
 std::optional<query::Basis> basis_of(std::string_view word) {
-  if (word == "proved") return query::Basis::proved;
-  if (word == "estimated") return query::Basis::estimated;
-  if (word == "budget") return query::Basis::budget;
+  for (const query::Basis basis : {query::Basis::proved, query::Basis::estimated, query::Basis::budget}) {
+    if (word == name(basis)) return basis;
+  }
   return std::nullopt;
 }
 
@@ -101,8 +101,8 @@ PoseTruth read_pose(Fields& fields, Procedure procedure) {
 Sample read_sample(Fields& fields) {
   Sample sample;
   const std::string_view verdict = fields.word();
-  if (verdict != "hit" && verdict != "clear") fields.fail_on(verdict, "is no verdict");
-  sample.verdict = verdict == "hit" ? query::Verdict::hit : query::Verdict::clear;
+  sample.verdict = verdict == name(query::Verdict::hit) ? query::Verdict::hit : query::Verdict::clear;
+  if (verdict != name(sample.verdict)) fields.fail_on(verdict, "is no verdict");
   const std::optional<query::Basis> basis = basis_of(fields.word());
   if (!basis) fields.fail("the basis is neither proved nor estimated nor budget");
   sample.basis = basis.value_or(query::Basis::budget);

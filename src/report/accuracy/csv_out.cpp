@@ -22,22 +22,6 @@ std::string pose_line(const Study& study, const PoseTruth& truth) {
                             c.normal.y(), c.normal.z(), c.depth);
 }
 
-const char* word(query::Basis basis) {
-  switch (basis) {
-    case query::Basis::proved:
-      return "proved";
-    case query::Basis::estimated:
-      return "estimated";
-    case query::Basis::budget:
-      break;
-  }
-  return "budget";
-}
-
-const char* word(Trial::Kind kind) {
-  return kind == Trial::Kind::time ? "us" : kind == Trial::Kind::work ? "work" : "exact";
-}
-
 }  // namespace
 
 std::string poses_csv(const Study& study) {
@@ -60,9 +44,9 @@ std::string answers_csv(const Study& study) {
     const Trial& trial = study.settings.trials[t];
     for (std::size_t i = 0; i < study.poses.size(); ++i) {
       const Sample& s = study.samples[t][i];
-      fmt::format_to(out, "{},{},{},{},{},{},{},{},{},{},{},{}", study.poses[i].pose.index, word(trial.kind),
-                     trial.amount, trial.p_min, s.verdict == query::Verdict::hit ? "hit" : "clear", word(s.basis),
-                     s.probability, s.node_pairs, s.triangle_pairs, s.wall_us, s.stall_us, s.net_overshoot_us);
+      fmt::format_to(out, "{},{},{},{},{},{},{},{},{},{},{},{}", study.poses[i].pose.index, name(trial.kind),
+                     trial.amount, trial.p_min, name(s.verdict), name(s.basis), s.probability, s.node_pairs,
+                     s.triangle_pairs, s.wall_us, s.stall_us, s.net_overshoot_us);
       if (s.contact) {
         fmt::format_to(out, ",{},{},{}\n", s.contact->position, s.contact->normal_deg, s.contact->depth);
       } else {
@@ -93,7 +77,7 @@ std::string rows_csv(const Study& study, const std::vector<AccuracyRow>& rows) {
     const Interval hits = r.false_hit_interval();
     const Interval misses = r.false_miss_interval();
     const Interval observed = wilson(q.happened, q.count);
-    fmt::format_to(out, "{},{},{},{},{}", word(trial.kind), trial.amount, trial.p_min, r.scope, r.band);
+    fmt::format_to(out, "{},{},{},{},{}", name(trial.kind), trial.amount, trial.p_min, r.scope, r.band);
     write(r.poses, r.hits, r.proved, r.estimated, r.at_budget, r.share_proved(), r.wrong(), r.share_wrong(), wrong.low,
           wrong.high, r.false_hits, hits.low, hits.high, r.false_misses, misses.low, misses.high);
     write(q.count, q.mean_probability, q.observed(), observed.low, observed.high, q.calibration_error, q.brier,

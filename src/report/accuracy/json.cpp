@@ -12,14 +12,10 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* format = "odds accuracy summary 1";
 
-const char* word(Trial::Kind kind) {
-  return kind == Trial::Kind::time ? "us" : kind == Trial::Kind::work ? "work" : "exact";
-}
-
 Json settings_json(const StudySettings& s) {
   Json trials = Json::array();
   for (const Trial& trial : s.trials) {
-    trials.push_back({{"limit", word(trial.kind)}, {"amount", trial.amount}, {"p_min", trial.p_min}});
+    trials.push_back({{"limit", name(trial.kind)}, {"amount", trial.amount}, {"p_min", trial.p_min}});
   }
   return {{"mesh_a", s.mesh_a},
           {"mesh_b", s.mesh_b},
@@ -99,7 +95,7 @@ Json quality_json(const ForecastQuality& q) {
 
 Json row_json(const Study& study, const AccuracyRow& r) {
   const Trial& trial = study.settings.trials[r.trial];
-  return {{"limit", word(trial.kind)},
+  return {{"limit", name(trial.kind)},
           {"amount", trial.amount},
           {"p_min", trial.p_min},
           {"scope", r.scope},

@@ -163,8 +163,7 @@ std::string worst_table(const Study& study) {
         "<tr><td><code>worst/{:02}.csv</code></td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{:.4f}"
         "</td></tr>\n",
         ++place, truth.pose.index, pose_bands(study.settings.procedure)[truth.pose.band].name,
-        truth.hit ? "hit" : "clear", label(study.settings.trials[w.trial]),
-        sample.verdict == query::Verdict::hit ? "hit" : "clear", sample.probability);
+        truth.hit ? "hit" : "clear", label(study.settings.trials[w.trial]), name(sample.verdict), sample.probability);
   }
   html += "</table></div>\n<p>For example: <code>" +
           html_escaped(replay_command(study.settings, study.settings.trials[worst.front().trial], "worst/01.csv")) +

@@ -46,15 +46,13 @@ Json point_of(const AccuracyRow& row, double amount) {
   return point;
 }
 
-const char* word(Trial::Kind kind) { return kind == Trial::Kind::time ? "us" : "work"; }
-
 /// The series that a row belongs to, made if it is new.
 Json& series_of(Json& all, const Trial& trial, const AccuracyRow& row) {
   for (Json& series : all) {
-    if (series["kind"] == word(trial.kind) && series["band"] == row.band && series["pMin"] == trial.p_min)
+    if (series["kind"] == name(trial.kind) && series["band"] == row.band && series["pMin"] == trial.p_min)
       return series;
   }
-  all.push_back({{"kind", word(trial.kind)},
+  all.push_back({{"kind", name(trial.kind)},
                  {"scope", row.scope},
                  {"band", row.band},
                  {"pMin", trial.p_min},

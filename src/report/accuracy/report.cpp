@@ -41,7 +41,7 @@ std::string worst_text(const Study& study, const WorstPose& worst, const std::st
              "# pose {}, {}; truth: {}; squared error of the probability, added over all limits: {:.4g}\n"
              "# at {}: {} with P = {}\n# {}\n",
              truth.pose.index, pose_bands(study.settings.procedure)[truth.pose.band].name, truth.hit ? "hit" : "clear",
-             worst.error, trial.label(), sample.verdict == query::Verdict::hit ? "hit" : "clear", sample.probability,
+             worst.error, trial.label(), name(sample.verdict), sample.probability,
              replay_command(study.settings, trial, file)) +
          one_pose_csv(study, worst.pose);
 }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "odds/query/answer.hpp"
@@ -27,6 +28,11 @@ struct Trial {
   friend bool operator==(const Trial&, const Trial&) = default;
   [[nodiscard]] std::string label() const;  ///< "5 us", "128 units, p >= 0.99", "exact"
 };
+
+/// As in the files of a study: "us", "work", "exact".
+[[nodiscard]] constexpr std::string_view name(Trial::Kind kind) noexcept {
+  return kind == Trial::Kind::time ? "us" : kind == Trial::Kind::work ? "work" : "exact";
+}
 
 /// What must be the same in two studies for their answers to be comparable.
 struct StudySettings {
