@@ -89,7 +89,7 @@ bool read_shard(const std::string& text, report::Shard& shard) {
   };
   const std::string_view whole(text);
   return number(whole.substr(0, slash), shard.number) && number(whole.substr(slash + 1), shard.of) && shard.of >= 1 &&
-         shard.of <= 1'000'000 && shard.number < shard.of;
+         shard.of <= report::most_shards && shard.number < shard.of;
 }
 
 std::vector<Trial> trials_of(const AccuracyOptions& options) {
@@ -240,7 +240,7 @@ void add_limits(CLI::App& command, AccuracyOptions& options) {
 void add_poses(CLI::App& command, AccuracyOptions& options) {
   command.add_option("--poses", options.poses, "poses for each distance, 1 .. 10000000")
       ->capture_default_str()
-      ->check(whole_number(1, 10'000'000));
+      ->check(whole_number(1, report::most_poses_per_band));
   const std::map<std::string, report::Procedure> procedures = {{"distance", report::Procedure::distance},
                                                                {"tumbling", report::Procedure::tumbling}};
   add_choice(command, "--procedure", options.procedure, procedures,

@@ -152,5 +152,35 @@ TEST(Accuracy, RefusesToMergeWhatDoesNotBelongTogether) {
   refused("a --out m", "a/poses.csv");
 }
 
+TEST(Accuracy, RefusesToMergeDamagedFiles) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(run_tool(folder, meshes + "--budgets-us none --work 64 --poses 1 --out a").status, 0);
+  const auto refused_with = [&](const std::string& name, const std::string& from, const std::string& to) {
+    const std::string whole = file_in(folder, name);
+    const std::size_t at = whole.find(from);
+    ASSERT_NE(at, std::string::npos) << name << " has no " << from;
+    folder.write(name, whole.substr(0, at) + to + whole.substr(at + from.size()));
+    const Ran ran = run_tool(folder, "accuracy --merge a --out m");
+    EXPECT_EQ(ran.status, 1) << from << " -> " << to;
+    EXPECT_NE(ran.errors.find(name), std::string::npos) << ran.errors;
+    folder.write(name, whole);
+  };
+  for (const auto& [from, to] : {std::pair{"\"poses_per_band\": 1", "\"poses_per_band\": 99999999999999"},
+                                 {"\"of\": 1", "\"of\": 0"},
+                                 {"\"limit\": \"work\"", "\"limit\": \"wrok\""},
+                                 {"\"amount\": 64.0", "\"amount\": -64.0"},
+                                 {"\"procedure\": \"distance\"", "\"procedure\": \"far\""}}) {
+    refused_with("a/summary.json", from, to);
+  }
+  const std::string poses = file_in(folder, "a/poses.csv");
+  const std::string first = poses.substr(poses.find('\n') + 1);
+  const std::string line = first.substr(0, first.find('\n'));
+  refused_with("a/poses.csv", line, line + ",7");
+  refused_with("a/poses.csv", line, "nan" + line.substr(line.find(',')));
+  const std::string answers = file_in(folder, "a/answers.csv");
+  refused_with("a/answers.csv", ",budget,", ",guess,");
+  EXPECT_EQ(run_tool(folder, "accuracy --merge a --out m").status, 0) << "the undamaged study";
+}
+
 }  // namespace
 }  // namespace odds

@@ -1,8 +1,10 @@
 // Reads a study's tables back.
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <optional>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include "report/accuracy/study_files.hpp"
@@ -42,7 +44,9 @@ class Fields {
     const std::string_view field = word();
     Number value{};
     const auto end = std::from_chars(field.data(), field.data() + field.size(), value);
-    if (end.ec != std::errc{} || end.ptr != field.data() + field.size()) fail_on(field, "is no number");
+    bool good = end.ec == std::errc{} && end.ptr == field.data() + field.size();
+    if constexpr (std::is_floating_point_v<Number>) good = good && std::isfinite(value);
+    if (!good) fail_on(field, "is not a number that can be used");
     return value;
   }
   [[nodiscard]] Vec3 vector() {
@@ -51,6 +55,10 @@ class Fields {
     return {x, y, number<double>()};
   }
   [[nodiscard]] bool next_is_empty() const { return line_.empty() || line_.front() == ','; }
+  /// Nothing but empty fields may be left of the line.
+  void finish_line() {
+    if (line_.find_first_not_of(',') != std::string_view::npos) fail_on(line_, "is more than the columns hold");
+  }
 
   void fail(std::string what) {
     if (!error_) error_ = Error{file_, std::to_string(number_), std::move(what), remedy};
@@ -89,7 +97,11 @@ PoseTruth read_pose(Fields& fields, Procedure procedure) {
   truth.pose.translation = fields.vector();
   truth.pose.rotation.w() = fields.number<double>();
   truth.pose.rotation.vec() = fields.vector();
-  truth.hit = fields.number<int>() != 0;
+  if (!(std::abs(truth.pose.rotation.coeffs().stableNorm() - 1.0) <= 1e-3))
+    fields.fail("the quaternion is no rotation");
+  const int hit = fields.number<int>();
+  if (hit != 0 && hit != 1) fields.fail("'hit' is neither 0 nor 1");
+  truth.hit = hit == 1;
   truth.contacts = fields.number<std::uint32_t>();
   if (truth.contacts == 0) return truth;
   truth.deepest_contact.position = fields.vector();
@@ -128,6 +140,7 @@ std::optional<Error> read_poses_csv(const std::string& file, const std::string& 
   while (fields.next_line()) {
     const std::uint64_t expected = study.shard.number + study.poses.size() * study.shard.of;
     study.poses.push_back(read_pose(fields, study.settings.procedure));
+    fields.finish_line();
     if (study.poses.back().pose.index != expected) fields.fail_on(std::to_string(expected), "is the pose due here");
   }
   if (fields.error()) return fields.error();
@@ -153,6 +166,7 @@ std::optional<Error> read_answers_csv(const std::string& file, const std::string
     if (fields.number<double>() != study.settings.trials[trial].amount) fields.fail("another limit is due");
     (void)fields.word();
     samples.push_back(read_sample(fields));
+    fields.finish_line();
   }
   if (fields.error()) return fields.error();
   for (const auto& samples : study.samples) {

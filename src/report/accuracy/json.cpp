@@ -1,5 +1,8 @@
 // A study's settings and figures for programs.
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "odds/report/accuracy/report.hpp"
 #include "report/accuracy/study_files.hpp"
@@ -35,7 +38,34 @@ Json settings_json(const StudySettings& s) {
           {"trials", trials}};
 }
 
-/// Throws nlohmann's exceptions on anything unexpected; the caller turns them into an Error.
+/// Whether `odds accuracy` could have been asked for this. What is counted from these numbers takes memory.
+bool plausible(const Study& study) {
+  const StudySettings& s = study.settings;
+  const auto positive = [](double x) { return x > 0.0 && std::isfinite(x); };
+  const bool trials = std::all_of(s.trials.begin(), s.trials.end(), [&](const Trial& t) {
+    return (t.kind == Trial::Kind::exact ? t.amount == 0.0 : positive(t.amount)) && t.p_min > 0.0 && t.p_min <= 1.0;
+  });
+  return trials && !s.trials.empty() && positive(s.size_m) && positive(s.scale_a) && positive(s.scale_b) &&
+         positive(s.tau) && s.contacts >= 0 && s.contacts <= 8 && s.poses_per_band >= 1 &&
+         s.poses_per_band <= most_poses_per_band && study.shard.of >= 1 && study.shard.of <= most_shards &&
+         study.shard.number < study.shard.of;
+}
+
+Trial::Kind kind_from(const std::string& limit) {
+  for (const Trial::Kind kind : {Trial::Kind::time, Trial::Kind::work, Trial::Kind::exact}) {
+    if (limit == word(kind)) return kind;
+  }
+  throw std::invalid_argument("limit");
+}
+
+Procedure procedure_from(const std::string& text) {
+  for (const Procedure procedure : {Procedure::distance, Procedure::tumbling}) {
+    if (text == name(procedure)) return procedure;
+  }
+  throw std::invalid_argument("procedure");
+}
+
+/// Throws nlohmann's and std's exceptions on anything unexpected; the caller turns them into an Error.
 StudySettings settings_from(const Json& json) {
   StudySettings s;
   json.at("mesh_a").get_to(s.mesh_a);
@@ -50,15 +80,12 @@ StudySettings settings_from(const Json& json) {
   json.at("estimator").get_to(s.estimator);
   json.at("k_min").get_to(s.k_min);
   json.at("contacts").get_to(s.contacts);
-  s.procedure = json.at("procedure").get<std::string>() == "tumbling" ? Procedure::tumbling : Procedure::distance;
+  s.procedure = procedure_from(json.at("procedure").get<std::string>());
   json.at("seed").get_to(s.seed);
   json.at("poses_per_band").get_to(s.poses_per_band);
   for (const Json& trial : json.at("trials")) {
-    const auto limit = trial.at("limit").get<std::string>();
-    s.trials.push_back({limit == "us"     ? Trial::Kind::time
-                        : limit == "work" ? Trial::Kind::work
-                                          : Trial::Kind::exact,
-                        trial.at("amount").get<double>(), trial.at("p_min").get<double>()});
+    s.trials.push_back({kind_from(trial.at("limit").get<std::string>()), trial.at("amount").get<double>(),
+                        trial.at("p_min").get<double>()});
   }
   return s;
 }
@@ -150,9 +177,11 @@ Result<Study> read_study_json(const std::string& file, const std::string& text) 
     json.at("shard").at("of").get_to(study.shard.of);
     json.at("machine").at("fit").get_to(study.machine_fit);
     json.at("machine").at("note").get_to(study.machine_note);
-    if (study.shard.of == 0 || study.shard.number >= study.shard.of) return refusal;
+    if (!plausible(study)) return refusal;
     return study;
   } catch (const Json::exception&) {
+    return refusal;
+  } catch (const std::invalid_argument&) {
     return refusal;
   }
 }

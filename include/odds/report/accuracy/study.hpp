@@ -57,6 +57,9 @@ struct StudySettings {
   [[nodiscard]] std::uint64_t pose_count() const { return poses_per_band * pose_bands(procedure).size(); }
 };
 
+inline constexpr std::uint64_t most_poses_per_band = 10'000'000;
+inline constexpr std::uint64_t most_shards = 1'000'000;
+
 /// Shard i of n answers the poses whose index is i modulo n.
 struct Shard {
   std::uint64_t number = 0;
