@@ -107,7 +107,8 @@ void fill_statistics(NodeStatistics& node, volume::PrincipalAxes& axes, const Mo
   node.area = static_cast<float>(moments.area);
   node.centroid = centroid.cast<float>();
   axes = principal_axes(covariance);
-  node.slab_normal = axes.col(0).cast<float>();
+  // Shortened, so that after rounding it is not longer than 1 and the slab's gaps are distances.
+  node.slab_normal = (axes.col(0) * (1.0 - 0x1p-22)).cast<float>();
   measure_slab(node, triangles);
 }
 

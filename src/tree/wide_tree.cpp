@@ -52,6 +52,7 @@ struct Plan {
     std::array<std::uint32_t, wide_lanes> lanes;  ///< nodes of the topology
     std::uint32_t count = 0;
     std::uint32_t level = 1;
+    [[nodiscard]] std::span<const std::uint32_t> used() const { return std::span(lanes).first(count); }
   };
   std::vector<Node> nodes;             ///< node 0 holds the root
   std::vector<std::uint32_t> node_of;  ///< topology node -> the wide node of its children; 0: a leaf
@@ -97,16 +98,46 @@ Plan plan_nodes(const Topology& topology, std::span<const Bounds> bounds) {
     const Plan::Node lanes = plan.nodes[open.back()];
     open.pop_back();
     plan.levels = std::max(plan.levels, lanes.level);
-    for (std::uint32_t k = 0; k < lanes.count; ++k) {
-      plan.wanted[lanes.lanes[k]] = 1;
-      if (topology.nodes[lanes.lanes[k]].is_leaf()) continue;
-      plan.node_of[lanes.lanes[k]] = static_cast<std::uint32_t>(plan.nodes.size());
+    for (const std::uint32_t index : lanes.used()) {
+      plan.wanted[index] = 1;
+      if (topology.nodes[index].is_leaf()) continue;
+      plan.node_of[index] = static_cast<std::uint32_t>(plan.nodes.size());
       open.push_back(static_cast<std::uint32_t>(plan.nodes.size()));
-      plan.nodes.push_back(gather_lanes(topology, bounds, lanes.lanes[k]));
+      plan.nodes.push_back(gather_lanes(topology, bounds, index));
       plan.nodes.back().level = lanes.level + 1;
     }
   }
   return plan;
+}
+
+/// Where what hangs below the plan's lanes is stored.
+struct Layout {
+  std::vector<std::uint32_t> statistics_at;  ///< wide node -> its first lane's statistics
+  std::vector<std::uint32_t> leaf_of;        ///< topology node -> wide leaf
+  std::vector<std::uint32_t> heights;        ///< wide node -> levels of nodes from it down
+  std::uint32_t lanes = 0;
+  std::uint32_t leaves = 0;
+};
+
+Layout lay_out(const Topology& topology, const Plan& plan) {
+  Layout layout;
+  layout.statistics_at.resize(plan.nodes.size());
+  layout.leaf_of.assign(topology.nodes.size(), 0);
+  layout.heights.assign(plan.nodes.size(), 1);
+  for (std::size_t w = 0; w < plan.nodes.size(); ++w) {
+    layout.statistics_at[w] = layout.lanes;
+    layout.lanes += plan.nodes[w].count;
+    for (const std::uint32_t index : plan.nodes[w].used()) {
+      if (topology.nodes[index].is_leaf()) layout.leaf_of[index] = layout.leaves++;
+    }
+  }
+  for (std::size_t w = plan.nodes.size(); w-- > 0;) {  // children come after their parents
+    for (const std::uint32_t index : plan.nodes[w].used()) {
+      const std::uint32_t below = plan.node_of[index];
+      if (below != 0) layout.heights[w] = std::max(layout.heights[w], layout.heights[below] + 1);
+    }
+  }
+  return layout;
 }
 
 /// Float numbers about which |x - center| <= half holds for every x in [lower, upper].
@@ -116,38 +147,19 @@ ODDS_KEEPS_ROUNDING void enclose(double lower, double upper, float& center, floa
   half = volume::rounded_up(std::max({upper - middle, middle - lower, 0.0}));
 }
 
-/// The slab along the thinnest principal axis, not longer than 1 so that its gaps are distances.
-ODDS_KEEPS_ROUNDING void fit_slab(WideNode& node, std::uint32_t lane, const Vec3& axis,
-                                  std::span<const TriangleCorners> triangles) {
-  Vec3f normal = (axis * (1.0 - 0x1p-22)).cast<float>();
-  const Vec3 exact = normal.cast<double>();
-  double lower = INFINITY;
-  double upper = -INFINITY;
-  for (const TriangleCorners& triangle : triangles) {
-    for (const Vec3& corner : triangle) {
-      const double along = exact.dot(corner);
-      lower = std::min(lower, along);
-      upper = std::max(upper, along);
-    }
-  }
-  for (int i = 0; i < 3; ++i) node.normal[i][lane] = normal[i];
-  enclose(lower, upper, node.offset[lane], node.thickness[lane]);
-}
-
-/// E[(normal . n)^2] from the moments of the statistics.
-float flatness_along(const NodeStatistics& node, const Vec3& axis) {
-  const float* m = node.normal_moment;
-  const Vec3f a = axis.cast<float>();
-  const float value = m[0] * a[0] * a[0] + m[1] * a[1] * a[1] + m[2] * a[2] * a[2] +
-                      2.0F * (m[3] * a[0] * a[1] + m[4] * a[0] * a[2] + m[5] * a[1] * a[2]);
-  return std::clamp(value, 0.0F, 1.0F);
-}
-
 void clear(WideNode& node) {
   std::memset(static_cast<void*>(&node), 0, sizeof(node));
   for (auto& axis : node.half) std::fill(std::begin(axis), std::end(axis), empty_extent);
   std::fill(std::begin(node.thickness), std::end(node.thickness), empty_extent);
-  std::fill(std::begin(node.log_density), std::end(node.log_density), -1e4F);
+}
+
+void set_volume(WideNode& node, std::uint32_t lane, const Bounds& bounds, const NodeStatistics& statistics) {
+  for (int i = 0; i < 3; ++i) {
+    enclose(bounds.lower[i], bounds.upper[i], node.center[i][lane], node.half[i][lane]);
+    node.normal[i][lane] = statistics.slab_normal[i];
+  }
+  node.offset[lane] = statistics.slab_center;
+  node.thickness[lane] = statistics.slab_half;
 }
 
 void fill_leaf(WideLeaf& leaf, const WideNode& node, std::uint32_t lane, std::span<const TriangleCorners> triangles,
@@ -162,6 +174,17 @@ void fill_leaf(WideLeaf& leaf, const WideNode& node, std::uint32_t lane, std::sp
       }
     }
   }
+}
+
+/// What the surface measured once is to the lane's own box.
+void relate_to_box(NodeStatistics& statistics, const WideNode& node, std::uint32_t lane,
+                   std::span<const TriangleCorners> triangles, double tau, CellCounter& counter) {
+  const Vec3f center(node.center[0][lane], node.center[1][lane], node.center[2][lane]);
+  const Vec3f half(node.half[0][lane], node.half[1][lane], node.half[2][lane]);
+  relate_area(statistics, volume::box_volume(half));
+  counter.begin(center.cast<double>(), Mat3::Identity(), half.cast<double>());
+  for (const TriangleCorners& triangle : triangles) counter.add(triangle[0], triangle[1], triangle[2]);
+  statistics.well_filled_cells = counter.count(tau);
 }
 
 }  // namespace
@@ -185,63 +208,36 @@ WideTree WideTree::build(const mesh::TriangleMesh& mesh, const BuildOptions& opt
   NodeSurface surface = measure_surface(topology, corners, plan.wanted);
   if (progress) progress(0.7);
 
+  Layout layout = lay_out(topology, plan);
   tree.nodes_.resize(plan.nodes.size());
-  tree.statistics_at_.resize(plan.nodes.size());
-  std::uint32_t lanes = 0;
-  std::vector<std::uint32_t> leaf_of(topology.nodes.size(), 0);
-  std::uint32_t leaves = 0;
-  std::vector<std::uint32_t> heights(plan.nodes.size(), 1);
-  for (std::size_t w = 0; w < plan.nodes.size(); ++w) {
-    tree.statistics_at_[w] = lanes;
-    lanes += plan.nodes[w].count;
-    for (std::uint32_t k = 0; k < plan.nodes[w].count; ++k) {
-      const std::uint32_t index = plan.nodes[w].lanes[k];
-      if (topology.nodes[index].is_leaf()) leaf_of[index] = leaves++;
+  tree.leaves_.resize(layout.leaves);
+  tree.statistics_.resize(layout.lanes);
+  tree.statistics_at_ = std::move(layout.statistics_at);
+  const auto fill_lane = [&](std::size_t w, std::uint32_t lane, CellCounter& counter) {
+    WideNode& node = tree.nodes_[w];
+    const std::uint32_t index = plan.nodes[w].lanes[lane];
+    const TopologyNode& source = topology.nodes[index];
+    const auto triangles = std::span(corners).subspan(source.begin, source.end - source.begin);
+    NodeStatistics& statistics = tree.statistics_[tree.statistics_at_[w] + lane];
+    statistics = surface.statistics[index];
+    set_volume(node, lane, bounds[index], statistics);
+    relate_to_box(statistics, node, lane, triangles, options.tau, counter);
+    if (source.is_leaf()) {
+      const std::uint32_t leaf = layout.leaf_of[index];
+      node.child[lane] = ChildRef::leaf(leaf, source.count);
+      fill_leaf(tree.leaves_[leaf], node, lane, triangles,
+                std::span(topology.order).subspan(source.begin, source.count));
+    } else {
+      node.child[lane] = ChildRef::node(plan.node_of[index], layout.heights[plan.node_of[index]]);
     }
-  }
-  for (std::size_t w = plan.nodes.size(); w-- > 0;) {
-    for (std::uint32_t k = 0; k < plan.nodes[w].count; ++k) {
-      const std::uint32_t below = plan.node_of[plan.nodes[w].lanes[k]];
-      if (below != 0) heights[w] = std::max(heights[w], heights[below] + 1);
-    }
-  }
-  tree.statistics_.resize(lanes);
-  tree.leaves_.resize(leaves);
+    statistics.depth = static_cast<std::uint8_t>(plan.nodes[w].level - 1);
+    statistics.height = static_cast<std::uint8_t>(node.child[lane].height());
+  };
   for_parts(plan.nodes.size(), 256, [&](std::size_t begin, std::size_t end) {
     CellCounter counter;
     for (std::size_t w = begin; w < end; ++w) {
-      WideNode& node = tree.nodes_[w];
-      clear(node);
-      for (std::uint32_t k = 0; k < plan.nodes[w].count; ++k) {
-        const std::uint32_t index = plan.nodes[w].lanes[k];
-        const TopologyNode& source = topology.nodes[index];
-        const auto triangles = std::span(corners).subspan(source.begin, source.end - source.begin);
-        Vec3f half;
-        Vec3f center;
-        for (int i = 0; i < 3; ++i) {
-          enclose(bounds[index].lower[i], bounds[index].upper[i], center[i], half[i]);
-          node.center[i][k] = center[i];
-          node.half[i][k] = half[i];
-        }
-        fit_slab(node, k, surface.axes[index].col(0), triangles);
-        NodeStatistics& statistics = surface.statistics[index];
-        relate_area(statistics, volume::box_volume(half));
-        counter.begin(center.cast<double>(), Mat3::Identity(), half.cast<double>());
-        for (const TriangleCorners& triangle : triangles) counter.add(triangle[0], triangle[1], triangle[2]);
-        statistics.well_filled_cells = counter.count(options.tau);
-        node.log_density[k] = statistics.log_relative_area - statistics.log_volume / 3.0F;
-        node.flatness[k] = flatness_along(statistics, surface.axes[index].col(0));
-        if (source.is_leaf()) {
-          node.child[k] = ChildRef::leaf(leaf_of[index], source.count);
-          fill_leaf(tree.leaves_[leaf_of[index]], node, k, triangles,
-                    std::span(topology.order).subspan(source.begin, source.count));
-        } else {
-          node.child[k] = ChildRef::node(plan.node_of[index], heights[plan.node_of[index]]);
-        }
-        statistics.depth = static_cast<std::uint8_t>(plan.nodes[w].level - 1);
-        statistics.height = static_cast<std::uint8_t>(node.child[k].height());
-        tree.statistics_[tree.statistics_at_[w] + k] = statistics;
-      }
+      clear(tree.nodes_[w]);
+      for (std::uint32_t lane = 0; lane < plan.nodes[w].count; ++lane) fill_lane(w, lane, counter);
     }
   });
   if (progress) progress(1.0);

@@ -55,11 +55,9 @@ struct alignas(64) WideNode {
   float normal[3][wide_lanes];
   float offset[wide_lanes];
   float thickness[wide_lanes];
-  float log_density[wide_lanes];  ///< log2(area / volume^(2/3)) - log2(volume) / 3: what the kinematic rate adds up
-  float flatness[wide_lanes];     ///< E[(normal . n)^2] over the surface, 1/3 .. 1
   ChildRef child[wide_lanes];
 };
-static_assert(sizeof(WideNode) == 448);
+static_assert(sizeof(WideNode) == 384);
 
 /// Up to eight triangles. Corners are relative to the center of the leaf's lane, so that their rounding is relative to
 /// the leaf's size. Lanes beyond the leaf's count repeat its first triangle.
