@@ -2,16 +2,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 #include <vector>
 
 #include "odds/realtime/clock.hpp"
 #include "tool/command.hpp"
-#include "tool/mesh_argument.hpp"
-#include "tool/output_file.hpp"
-#include "tool/pair_argument.hpp"
-#include "tool/poses_csv.hpp"
+#include "tool/pose_run.hpp"
 #include "tool/progress_line.hpp"
 #include "tool/shared_options.hpp"
 
@@ -19,12 +15,8 @@ namespace odds::tool {
 namespace {
 
 struct DistanceOptions {
-  PairArgument pair;
-  std::string poses;
-  std::string out;
+  PoseRunArguments run;
   query::DistanceRequest request;
-  double budget_us = 0.0;  ///< 0: not given
-  std::uint64_t work = 0;  ///< 0: not given
 };
 
 constexpr std::string_view header =
@@ -52,36 +44,29 @@ void print_summary(std::vector<double> times, std::size_t proved, std::size_t fo
 }
 
 int run(const DistanceOptions& options) {
-  const Result<std::vector<math::Pose>> poses = read_poses(options.poses);
-  if (!poses.ok()) return fail(poses.error());
-  if (const auto error = refuse_overwriting(options.out, {options.poses, options.pair.mesh_a, options.pair.mesh_b})) {
-    return fail(*error);
-  }
-  Result<OutputFile> out = OutputFile::open(options.out);
-  if (!out.ok()) return fail(out.error());
-  Result<query::Pair> pair = make_pair(options.pair);
-  if (!pair.ok()) return fail(pair.error());
+  Result<PoseRun> opened = PoseRun::open(options.run);
+  if (!opened.ok()) return fail(opened.error());
+  auto& [poses, out, pair] = opened.value();
 
   query::DistanceRequest request = options.request;
-  if (options.budget_us > 0.0) request.budget.microseconds = options.budget_us;
-  if (options.work > 0) request.budget.work_units = options.work;
+  request.budget = options.run.limited(request.budget);
   const realtime::Clock clock = realtime::fastest_clock();
-  static_cast<void>(pair.value().distance(poses.value().front(), request));  // touches code and memory once
+  static_cast<void>(pair.distance(poses.front(), request));  // touches code and memory once
   std::vector<double> times;
   std::size_t proved = 0;
   std::size_t found = 0;
-  out.value().write(header);
+  out.write(header);
   ProgressLine progress("measuring");
-  for (std::size_t row = 0; row < poses.value().size(); ++row) {
+  for (std::size_t row = 0; row < poses.size(); ++row) {
     const std::int64_t begin = clock();
-    const query::DistanceAnswer answer = pair.value().distance(poses.value()[row], request);
+    const query::DistanceAnswer answer = pair.distance(poses[row], request);
     times.push_back(1e-3 * static_cast<double>(clock() - begin));
     proved += answer.proved ? 1U : 0U;
     found += answer.triangle_a != query::no_feature ? 1U : 0U;
-    out.value().write(line_of(row, answer, times.back()));
-    if (row % 64 == 0) progress.show(static_cast<double>(row) / static_cast<double>(poses.value().size()));
+    out.write(line_of(row, answer, times.back()));
+    if (row % 64 == 0) progress.show(static_cast<double>(row) / static_cast<double>(poses.size()));
   }
-  if (const auto error = out.value().commit()) return fail(*error);
+  if (const auto error = out.commit()) return fail(*error);
   print_summary(std::move(times), proved, found);
   return exit_good;
 }
@@ -92,20 +77,9 @@ void add_distance(CLI::App& app, Action& action) {
   const auto options = std::make_shared<DistanceOptions>();
   CLI::App* command =
       app.add_subcommand("distance", "Measure how far A and B are apart, for each pose of B in A's frame");
-  command->add_option("A", options->pair.mesh_a, "mesh: " + mesh_argument_help())->required();
-  command->add_option("B", options->pair.mesh_b, "mesh, as A")->required();
-  command->add_option("--poses", options->poses, "CSV with columns x,y,z (metres), qw,qx,qy,qz: pose of B in A's frame")
-      ->required();
-  command->add_option("--out", options->out, "CSV of distances in metres; - for standard output")->required();
+  add_pose_run_options(*command, options->run, "CSV of distances in metres; - for standard output");
   command->add_option("--within", options->request.within, "search no farther than this margin, metres, > 0")
       ->check(positive_and_finite());
-  CLI::Option* budget = command->add_option("--budget-us", options->budget_us, "microseconds for one query, > 0");
-  budget->check(positive_and_finite());
-  command->add_option("--work", options->work, "work units for one query, > 0: repeatable bit for bit")
-      ->check(whole_number(1, std::numeric_limits<std::uint64_t>::max()))
-      ->excludes(budget);
-  command->add_option("--scale-a", options->pair.scale_a, "metres per unit of A's file")->check(positive_and_finite());
-  command->add_option("--scale-b", options->pair.scale_b, "metres per unit of B's file")->check(positive_and_finite());
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }
 

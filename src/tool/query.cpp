@@ -13,10 +13,7 @@
 #include "tool/answer_table.hpp"
 #include "tool/answers_csv.hpp"
 #include "tool/command.hpp"
-#include "tool/mesh_argument.hpp"
-#include "tool/output_file.hpp"
-#include "tool/pair_argument.hpp"
-#include "tool/poses_csv.hpp"
+#include "tool/pose_run.hpp"
 #include "tool/progress_line.hpp"
 #include "tool/shared_options.hpp"
 
@@ -24,12 +21,8 @@ namespace odds::tool {
 namespace {
 
 struct QueryOptions {
-  PairArgument pair;
-  std::string poses;
-  std::string out;
+  PoseRunArguments run;
   query::Request request;
-  double budget_us = 0.0;  ///< 0: not given
-  std::uint64_t work = 0;  ///< 0: not given
   std::uint32_t repeat = 1;
 };
 
@@ -76,34 +69,27 @@ class Session {
 };
 
 int run(const QueryOptions& options) {
-  const Result<std::vector<math::Pose>> poses = read_poses(options.poses);
-  if (!poses.ok()) return fail(poses.error());
-  if (const auto error = refuse_overwriting(options.out, {options.poses, options.pair.mesh_a, options.pair.mesh_b})) {
-    return fail(*error);
-  }
-  Result<OutputFile> out = OutputFile::open(options.out);
-  if (!out.ok()) return fail(out.error());
-  Result<query::Pair> pair = make_pair(options.pair);
-  if (!pair.ok()) return fail(pair.error());
+  Result<PoseRun> opened = PoseRun::open(options.run);
+  if (!opened.ok()) return fail(opened.error());
+  auto& [poses, out, pair] = opened.value();
 
   query::Request request = options.request;
-  if (options.budget_us > 0.0) request.budget.microseconds = options.budget_us;
-  if (options.work > 0) request.budget.work_units = options.work;
+  request.budget = options.run.limited(request.budget);
   std::vector<AnswerRecord> records;
-  records.reserve(poses.value().size());
+  records.reserve(poses.size());
   {
     ProgressLine progress("querying");
-    Session session(pair.value(), poses.value(), request, options.repeat);
-    for (std::size_t row = 0; row < poses.value().size(); ++row) {
+    Session session(pair, poses, request, options.repeat);
+    for (std::size_t row = 0; row < poses.size(); ++row) {
       records.push_back(session.answer(row));
-      if (row % 64 == 0) progress.show(static_cast<double>(row) / static_cast<double>(poses.value().size()));
+      if (row % 64 == 0) progress.show(static_cast<double>(row) / static_cast<double>(poses.size()));
     }
   }
-  out.value().write(answers_header);
-  for (std::size_t row = 0; row < records.size(); ++row) out.value().write(answer_line(row, records[row]));
-  if (const auto error = out.value().commit()) return fail(*error);
-  const std::string table = answer_table(records, options.budget_us > 0.0);
-  fmt::print(out.value().is_standard_output() ? stderr : stdout, "{}", table);
+  out.write(answers_header);
+  for (std::size_t row = 0; row < records.size(); ++row) out.write(answer_line(row, records[row]));
+  if (const auto error = out.commit()) return fail(*error);
+  const std::string table = answer_table(records, options.run.budget_us > 0.0);
+  fmt::print(out.is_standard_output() ? stderr : stdout, "{}", table);
   return exit_good;
 }
 
@@ -112,12 +98,8 @@ int run(const QueryOptions& options) {
 void add_query(CLI::App& app, Action& action) {
   const auto options = std::make_shared<QueryOptions>();
   CLI::App* command = app.add_subcommand("query", "Answer whether A and B meet, for each pose of B in A's frame");
-  command->add_option("A", options->pair.mesh_a, "mesh: " + mesh_argument_help())->required();
-  command->add_option("B", options->pair.mesh_b, "mesh, as A")->required();
-  command->add_option("--poses", options->poses, "CSV with columns x,y,z (metres), qw,qx,qy,qz: pose of B in A's frame")
-      ->required();
-  command->add_option("--out", options->out, "CSV of answers, rows counted from 0 as the poses; - for standard output")
-      ->required();
+  add_pose_run_options(*command, options->run,
+                       "CSV of answers, rows counted from 0 as the poses; - for standard output");
   const std::map<std::string, query::Method> methods = {{"exact", query::Method::exact},
                                                         {"incremental", query::Method::incremental},
                                                         {"time-critical", query::Method::time_critical}};
@@ -125,12 +107,7 @@ void add_query(CLI::App& app, Action& action) {
   const std::map<std::string, query::EstimatorKind> estimators = {{"cells", query::EstimatorKind::cells},
                                                                   {"kinematic", query::EstimatorKind::kinematic}};
   add_choice(*command, "--estimator", options->request.estimator, estimators, "cells or kinematic (default)");
-  add_shape_options(*command, options->pair.shape);
-  CLI::Option* budget = command->add_option("--budget-us", options->budget_us, "microseconds for one query, > 0");
-  budget->check(positive_and_finite());
-  command->add_option("--work", options->work, "work units for one query, > 0: repeatable bit for bit")
-      ->check(whole_number(1, std::numeric_limits<std::uint64_t>::max()))
-      ->excludes(budget);
+  add_shape_options(*command, options->run.pair.shape);
   command
       ->add_option("--p-min", options->request.p_min,
                    "probability from which on a pair of nodes counts, (0, 1]; 1: never")
@@ -142,8 +119,6 @@ void add_query(CLI::App& app, Action& action) {
                     "judge leaves by probability, not by their triangles");
   command->add_option("--repeat", options->repeat, "run each query so often and take the median time, 1 .. 10000")
       ->check(whole_number(1, 10000));
-  command->add_option("--scale-a", options->pair.scale_a, "metres per unit of A's file")->check(positive_and_finite());
-  command->add_option("--scale-b", options->pair.scale_b, "metres per unit of B's file")->check(positive_and_finite());
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }
 
