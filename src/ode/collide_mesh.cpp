@@ -32,12 +32,23 @@ bool use_cell_pair(const query::Answer& answer, const Settings& settings) noexce
   return settings.undecided_policy == ODDS_UNDECIDED_HIT && answer.probability > settings.undecided_probability;
 }
 
-// A query that the budget ended before it had decided, or had made its contacts with care, keeps what the pair's last
-// careful run found, for a few runs: bodies that touched one tick ago do so still, and a body at rest is not thrown off
-// by a processor that was away for a moment.
-bool hold_last(const query::Answer& answer, const Settings& settings) noexcept {
-  if (answer.verdict == query::Verdict::hit && answer.basis == query::Basis::proved) return !answer.contacts_complete;
-  return answer.basis == query::Basis::budget && settings.undecided_policy == ODDS_UNDECIDED_HIT;
+// The answer's own contacts if they were made with care. If the budget ended before that, or before anything was
+// decided, what the pair holds from earlier ticks.
+std::span<const query::Contact> contacts_to_give(PairEntry& entry, const query::Answer& answer,
+                                                 const Settings& settings, const math::Pose& b_in_a) noexcept {
+  const bool proved = answer.basis == query::Basis::proved;
+  if (proved && answer.contacts_complete) {  // or clear, and there are none
+    entry.held.keep(answer.contacts, b_in_a, true);
+    return answer.contacts;
+  }
+  if (answer.basis == query::Basis::estimated || settings.undecided_policy != ODDS_UNDECIDED_HIT) {
+    return answer.contacts;
+  }
+  const double size = std::min(entry.pair->a().mesh().size(), entry.pair->b().mesh().size());
+  const std::span<const query::Contact> held = entry.held.at(b_in_a, size);
+  if (answer.contacts.empty() || (entry.held.better_than_rough() && !held.empty())) return held;
+  entry.held.keep(answer.contacts, b_in_a, false);
+  return answer.contacts;
 }
 
 // Contacts of an answer are in A's mesh frame with normals into A.
@@ -109,18 +120,14 @@ int answer_pair(PairEntry& entry, dGeomID o1, dGeomID o2, int flags, dContactGeo
   }
   const Settings settings = combine(entry.a->settings, entry.b->settings);
   const int limit = room_for(flags, settings.max_contacts);
-  const query::Answer& answer = entry.pair->run(pose_a->inverse() * *pose_b, request_for(settings, limit));
+  const math::Pose b_in_a = pose_a->inverse() * *pose_b;
+  const query::Answer& answer = entry.pair->run(b_in_a, request_for(settings, limit));
   count_basis(answer.basis);
   entry.last = record_of(answer, *pose_a);
   ContactWriter writer(o1, o2, limit, contacts, skip);
-  const bool careful = answer.basis == query::Basis::proved && answer.contacts_complete;
-  if (careful) entry.held.keep(answer.contacts);
-  if (!careful && hold_last(answer, settings) && entry.held.usable()) {
-    ++entry.held.runs;
-    for (std::size_t i = 0; i < entry.held.count; ++i) write_contact(writer, entry.held.contacts[i], *pose_a, o1_is_a);
-  } else if (!answer.contacts.empty()) {
-    for (const query::Contact& contact : answer.contacts) write_contact(writer, contact, *pose_a, o1_is_a);
-  } else if (use_cell_pair(answer, settings)) {
+  const std::span<const query::Contact> given = contacts_to_give(entry, answer, settings, b_in_a);
+  for (const query::Contact& contact : given) write_contact(writer, contact, *pose_a, o1_is_a);
+  if (given.empty() && use_cell_pair(answer, settings)) {
     // A place and a direction, but no push: a depth that nobody has measured could throw a body away.
     query::Contact contact = answer.cell_pair;
     if (answer.basis == query::Basis::budget) contact.depth = 0.0;

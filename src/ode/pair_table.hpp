@@ -1,34 +1,17 @@
 // Workspaces of pairs of geoms, found without a lock by the unordered pair of geom numbers.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
 #include <mutex>
 #include <optional>
-#include <span>
 
 #include "odds/query/pair.hpp"
 #include "ode/geom_data.hpp"
+#include "ode/held_contacts.hpp"
 
 namespace odds::ode {
-
-/// The contacts of a pair's last proof, in A's mesh frame: what an undecided query falls back on.
-struct HeldContacts {
-  /// A stalled processor is away for some milliseconds; what is older says nothing any more.
-  static constexpr int most_runs = 10;
-  std::array<query::Contact, 8> contacts;
-  std::size_t count = 0;
-  int runs = 0;  ///< undecided runs since the proof
-
-  void keep(std::span<const query::Contact> found) noexcept {
-    count = std::min(found.size(), contacts.size());
-    std::copy_n(found.begin(), count, contacts.begin());
-    runs = 0;
-  }
-  [[nodiscard]] bool usable() const noexcept { return count > 0 && runs < most_runs; }
-};
 
 /// The memory of one pair. `a` is the geom that was created first, whatever the order of any call.
 struct PairEntry {

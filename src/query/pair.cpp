@@ -7,41 +7,12 @@
 
 #include "odds/math/tolerances.hpp"
 #include "odds/query/ray.hpp"
-#include "query/bottom_slice.hpp"
-#include "query/first_contact.hpp"
+#include "query/pair_memory.hpp"
+#include "query/rough_contacts.hpp"
 #include "query/search.hpp"
 #include "query/shape_data.hpp"
-#include "query/wide/searches.hpp"
 
 namespace odds::query {
-
-/// All scratch memory, and the last answer.
-struct Pair::Implementation {
-  Implementation(std::shared_ptr<const Shape> shape_a, std::shared_ptr<const Shape> shape_b, const PairOptions& options)
-      : a(std::move(shape_a)),
-        b(std::move(shape_b)),
-        queue(options.queue_capacity),
-        hits(options.hit_capacity),
-        slice(a->volume() == volume::Kind::wide ? 1 : options.slice_capacity),
-        front(a->volume() == volume::Kind::wide ? options.slice_capacity : 1),
-        patches(options.hit_capacity),
-        wide(wide::searches_for(options.instruction_set)) {}
-
-  std::shared_ptr<const Shape> a;
-  std::shared_ptr<const Shape> b;
-  BucketQueue queue;
-  HitList hits;
-  BottomSlice slice;         ///< of the incremental method with volumes of the generic framework
-  wide::KineticFront front;  ///< of the same with the wide engine
-  bool has_witness = false;
-  TrianglePair witness;  ///< the pair of triangles that proved the last incremental hit
-  PatchBuilder patches;
-  const wide::Searches* wide;
-  Vec3 previous_normal = Vec3::Zero();    ///< of the last run's first contact, in A's frame; zero: none
-  Vec3 previous_position = Vec3::Zero();  ///< of that contact
-  Contact quick_contact;
-  Answer answer;
-};
 
 namespace {
 
@@ -52,6 +23,7 @@ constexpr double least_hits = 64.0;
 // contact.
 constexpr std::int64_t patch_finish_ns = 7000;
 constexpr std::int64_t single_finish_ns = 3000;
+constexpr std::int64_t rough_finish_ns = 800;  ///< of one more rough contact, and the writing of the answer
 
 /// Hits that are wanted: one proves; a patch takes as many as its making has time for: 1 to 2 us each, and some 30 us
 /// for rays.
@@ -164,16 +136,41 @@ bool probe_depth(const void* shape, const Vec3& origin, const Vec3& direction, d
   return true;
 }
 
-void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request,
-                   Pair::Implementation& pair, Spending& spending) noexcept {
+double deepest_of(std::span<const Contact> contacts) noexcept {
+  double deepest = 0.0;
+  for (const Contact& contact : contacts) deepest = std::max(deepest, contact.depth);
+  return deepest;
+}
+
+/// A direction from a part of the rim may be far off: nothing is believed that is deeper than can be.
+void limit_depth(double most_depth, Pair::Implementation& pair) noexcept {
+  const std::size_t count = std::min(pair.answer.contacts.size(), pair.rough.size());
+  std::copy_n(pair.answer.contacts.begin(), count, pair.rough.begin());
+  for (Contact& contact : pair.rough) contact.depth = std::min(contact.depth, most_depth);
+  pair.answer.contacts = std::span(pair.rough).first(count);
+}
+
+/// What single pairs of triangles say, when there is no time for a patch.
+void make_rough_contacts(const PosedMeshes& meshes, double most_depth, const Request& request,
+                         Pair::Implementation& pair, Spending& spending) noexcept {
   const Vec3 centre_b = meshes.pose().translation + meshes.origin_a();
-  if (!spending.begin_contacts(request.max_contacts > 1 ? patch_finish_ns : single_finish_ns)) {
-    const Vec3 towards_a = pair.previous_normal.isZero() ? Vec3(meshes.origin_a() - centre_b) : pair.previous_normal;
-    pair.quick_contact =
-        first_contact(meshes, pair.hits.pairs().front(), pair.a->is_solid() && pair.b->is_solid(), towards_a);
-    pair.quick_contact.depth = 0.0;
-    pair.answer.contacts = {&pair.quick_contact, 1};
-    pair.answer.contacts_complete = false;
+  const Vec3 towards_a = pair.previous_normal.isZero() ? Vec3(meshes.origin_a() - centre_b) : pair.previous_normal;
+  spending.reserve_for_contacts(rough_finish_ns);
+  const auto room = std::span(pair.rough).first(std::min<std::size_t>(request.max_contacts, pair.rough.size()));
+  const double believed = pair.known_depth.known() ? most_depth : 0.0;
+  const std::size_t count = rough_contacts(meshes, pair.hits.pairs(), pair.a->is_solid() && pair.b->is_solid(),
+                                           towards_a, believed, room, [&] { return spending.may_make_contacts(); });
+  pair.answer.contacts = room.first(count);
+  pair.answer.contacts_complete = false;
+}
+
+/// `ended`: how the search did that found the hits; `most_depth`: what is known of the depth, metres.
+void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, Progressed ended, double most_depth,
+                   const Request& request, Pair::Implementation& pair, Spending& spending) noexcept {
+  const Vec3 centre_b = meshes.pose().translation + meshes.origin_a();
+  spending.reserve_for_contacts(request.max_contacts > 1 ? patch_finish_ns : single_finish_ns);
+  if (!spending.may_make_contacts()) {
+    make_rough_contacts(meshes, most_depth, request, pair, spending);
     return;
   }
   PatchInput input;
@@ -199,8 +196,15 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   const Deadline deadline{[](void* state) noexcept { return !static_cast<Spending*>(state)->may_make_contacts(); },
                           &spending};
   pair.answer.contacts = pair.patches.build(input, deadline);
-  pair.answer.contacts_complete = spending.may_make_contacts();
   if (pair.answer.contacts.empty()) return;
+  if (!spending.may_make_contacts()) {  // a patch that was cut short may point anywhere
+    make_rough_contacts(meshes, most_depth, request, pair, spending);
+    return;
+  }
+  pair.answer.contacts_complete = ended != Progressed::spent;
+  if (ended != Progressed::finished || !pair.answer.contacts_complete) limit_depth(most_depth, pair);
+  if (!pair.answer.contacts_complete) return;
+  if (ended == Progressed::finished) pair.known_depth.note(meshes.pose(), deepest_of(pair.answer.contacts));
   pair.previous_normal = pair.answer.contacts.front().normal;
   pair.previous_position = pair.answer.contacts.front().position;
 }
@@ -237,9 +241,11 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
     answer.cell_pair_probability = candidate_probability;
   }
   if (!pair.hits.empty() && request.max_contacts > 0) {
-    make_contacts(meshes, pose_b_in_a, request, pair, spending);
+    const double most_depth = pair.known_depth.most(meshes.pose(), b.reach());
+    make_contacts(meshes, pose_b_in_a, result.ended, most_depth, request, pair, spending);
   } else {
     pair.previous_normal.setZero();
+    if (answer.basis == Basis::proved && answer.verdict == Verdict::clear) pair.known_depth.note(meshes.pose(), 0.0);
   }
   answer.cost = spending.close();
 }
@@ -304,44 +310,6 @@ const Answer& Pair::run(const math::Pose& pose_b_in_a, const Request& request) n
   return pair.answer;
 }
 
-DistanceAnswer Pair::distance(const math::Pose& pose_b_in_a, const DistanceRequest& request) const noexcept {
-  const Implementation& pair = *implementation_;
-  DistanceAnswer answer;
-  const auto* a = std::get_if<tree::WideTree>(&pair.a->data().tree);
-  const auto* b = std::get_if<tree::WideTree>(&pair.b->data().tree);
-  if (a == nullptr || b == nullptr || !pose_b_in_a.is_rigid(tolerances::pose_orthonormality) ||
-      !(request.within >= 0.0) || !(request.budget.microseconds > 0.0) || request.budget.work_units == 0) {
-    return answer;
-  }
-  Spending spending(request.budget);
-  const PosedMeshes meshes(pair.a->mesh(), pair.b->mesh(), a->origin(), b->origin(), pose_b_in_a);
-  const double apart = meshes.pose().translation.norm();
-  const double reach = a->reach() + b->reach();
-  answer.lower = std::max(0.0, apart - reach * (1.0 + 1e-12));
-  // No two points are farther apart than this, so the nearest are not.
-  const double farthest = (apart + reach) * (1.0 + 1e-6);
-  if (answer.lower > request.within) {
-    answer.lower = request.within;
-    answer.proved = true;
-  } else if (apart <= 1000.0 * reach && std::isfinite(farthest)) {
-    const wide::Encounter encounter(*a, *b, meshes, EstimatorKind::kinematic);
-    wide::NearestTask task{encounter, spending, std::min(request.within, farthest)};
-    pair.wide->nearest(task);
-    answer.proved = task.finished;
-    if (task.found) {
-      answer.upper = task.bound;
-      answer.on_a = task.points.on_a + a->origin();
-      answer.on_b = task.points.on_b + a->origin();
-      answer.triangle_a = task.triangles.a;
-      answer.triangle_b = task.triangles.b;
-    }
-    answer.lower = std::max(answer.lower, task.finished ? task.bound : std::min(task.lower, task.bound));
-    answer.lower = std::min(answer.lower, answer.upper);
-  }
-  answer.cost = spending.close();
-  return answer;
-}
-
 std::uint32_t Pair::slice_size() const noexcept {
   if (implementation_->a->volume() != volume::Kind::wide) return implementation_->slice.size();
   return std::max(implementation_->front.size(), 1U);
@@ -353,6 +321,7 @@ void Pair::reset() noexcept {
   implementation_->slice.reset();
   implementation_->front.reset();
   implementation_->previous_normal.setZero();
+  implementation_->known_depth.forget();
   implementation_->has_witness = false;
 }
 

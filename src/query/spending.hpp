@@ -62,12 +62,10 @@ class Spending {
     if (units_left_ <= start_units_end_) return false;
     return unpolled_units_ < units || poll() < start_deadline_ns_;
   }
-  /// Whether there is time for a patch of contacts that takes up to `finishing_ns` from the moment that it hears that
-  /// the time is up; if so, `may_make_contacts` says when that is.
-  [[nodiscard]] bool begin_contacts(std::int64_t finishing_ns) noexcept {
-    if (!timed_) return true;
-    contacts_deadline_ns_ = deadline_ns_ - finishing_ns;
-    return poll() < contacts_deadline_ns_;
+  /// Contacts take up to `finishing_ns` from the moment that they hear that the time is up: `may_make_contacts` says
+  /// when that is.
+  void reserve_for_contacts(std::int64_t finishing_ns) noexcept {
+    if (timed_) contacts_deadline_ns_ = deadline_ns_ - finishing_ns;
   }
   [[nodiscard]] bool may_make_contacts() noexcept { return poll() < contacts_deadline_ns_; }
 

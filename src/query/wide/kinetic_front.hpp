@@ -8,6 +8,7 @@
 
 #include "odds/math/pose.hpp"
 #include "odds/tree/wide_tree.hpp"
+#include "query/motion.hpp"
 
 namespace odds::query::wide {
 
@@ -38,12 +39,7 @@ class KineticFront {
       travelled_ = 0.0;
       add({tree::WideTree::root, tree::WideTree::root, 0}, at_once);
     } else {
-      // A rotation by an angle differs from the identity by 2 sin(angle / 2) in the spectral norm, and by sqrt(2) times
-      // that in the Frobenius norm.
-      constexpr double root_half = 0.70710678118654757;
-      travelled_ += ((pose.translation - pose_.translation).norm() +
-                     reach * root_half * (pose.rotation - pose_.rotation).norm()) *
-                    (1.0 + 1e-12);
+      travelled_ += motion_bound(pose_, pose, reach);
     }
     pose_ = pose;
   }

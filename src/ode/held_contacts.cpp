@@ -1,0 +1,41 @@
+#include "ode/held_contacts.hpp"
+
+#include <algorithm>
+
+namespace odds::ode {
+
+HeldContacts::Held HeldContacts::held(const query::Contact& contact, const math::Pose& b_in_a) noexcept {
+  // The normal points into A: A's own surface has come that far against it.
+  const Vec3 half = 0.5 * contact.depth * contact.normal;
+  return {contact.position - half, b_in_a.inverse() * Vec3(contact.position + half), contact};
+}
+
+void HeldContacts::keep(std::span<const query::Contact> found, const math::Pose& b_in_a, bool careful) noexcept {
+  count_ = std::min(found.size(), most);
+  for (std::size_t i = 0; i < count_; ++i) held_[i] = held(found[i], b_in_a);
+  careful_ = careful;
+  runs_ = 0;
+}
+
+std::span<const query::Contact> HeldContacts::at(const math::Pose& b_in_a, double size) noexcept {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < count_; ++i) {
+    Held held = held_[i];
+    const Vec3 on_b = b_in_a * held.on_b;
+    const Vec3 across = on_b - held.on_a;
+    const double depth = held.contact.normal.dot(across);
+    const double slip = (across - depth * held.contact.normal).norm();
+    if (!(slip <= most_slip * size && depth >= -most_gap * size)) continue;
+    held.contact.position = 0.5 * (held.on_a + on_b);
+    held.contact.depth = std::max(depth, 0.0);
+    touching_[kept] = held.contact;
+    held_[kept++] = held;
+  }
+  count_ = kept;
+  runs_ = std::min(runs_ + 1, most_runs);
+  std::sort(touching_.begin(), touching_.begin() + static_cast<std::ptrdiff_t>(kept),
+            [](const query::Contact& x, const query::Contact& y) { return x.depth > y.depth; });
+  return {touching_.data(), kept};
+}
+
+}  // namespace odds::ode

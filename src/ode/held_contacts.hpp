@@ -1,0 +1,51 @@
+// The contacts of a pair from tick to tick: what a query that had no time for new ones falls back on.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "odds/math/pose.hpp"
+#include "odds/query/answer.hpp"
+
+namespace odds::ode {
+
+/// Each contact is held as two points, one fixed in each body: as the bodies move on, its depth follows, and it is let
+/// go once the points have slid or come apart. A body at rest is then not thrown off by a processor that was away for a
+/// moment. All in A's mesh frame, metres. No allocation.
+class HeldContacts {
+ public:
+  static constexpr std::size_t most = 8;
+  /// Of the smaller body's size: how far the two points of a contact may slide, or come apart, until it is let go.
+  static constexpr double most_slip = 0.02;
+  static constexpr double most_gap = 0.002;
+  /// A stalled processor is away for some milliseconds.
+  static constexpr int most_runs = 10;
+
+  /// Takes the place of all that was held. `careful`: not what a run gave that had no time to measure.
+  void keep(std::span<const query::Contact> found, const math::Pose& b_in_a, bool careful) noexcept;
+
+  /// Whether what is held is better than what a run gives now that had no time to measure: made with care, and not long
+  /// ago, for bodies that turn come to touch in other places.
+  [[nodiscard]] bool better_than_rough() const noexcept { return careful_ && runs_ < most_runs; }
+
+  /// Lets go what has slid or parted by the new pose; the others as contacts, deepest first, those that have parted by
+  /// less with depth 0. Valid until the next call. `size`: diameter of the smaller body.
+  [[nodiscard]] std::span<const query::Contact> at(const math::Pose& b_in_a, double size) noexcept;
+
+ private:
+  struct Held {
+    Vec3 on_a;
+    Vec3 on_b;  ///< in B's mesh frame
+    query::Contact contact;
+  };
+  [[nodiscard]] static Held held(const query::Contact& contact, const math::Pose& b_in_a) noexcept;
+
+  std::array<Held, most> held_;
+  std::array<query::Contact, most> touching_;
+  std::size_t count_ = 0;
+  bool careful_ = false;
+  int runs_ = 0;  // since what is held was made
+};
+
+}  // namespace odds::ode

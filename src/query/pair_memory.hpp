@@ -1,0 +1,43 @@
+// What a pair keeps between its construction and its end.
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "odds/query/pair.hpp"
+#include "query/bottom_slice.hpp"
+#include "query/known_depth.hpp"
+#include "query/wide/searches.hpp"
+
+namespace odds::query {
+
+/// All scratch memory, and the last answer.
+struct Pair::Implementation {
+  Implementation(std::shared_ptr<const Shape> shape_a, std::shared_ptr<const Shape> shape_b, const PairOptions& options)
+      : a(std::move(shape_a)),
+        b(std::move(shape_b)),
+        queue(options.queue_capacity),
+        hits(options.hit_capacity),
+        slice(a->volume() == volume::Kind::wide ? 1 : options.slice_capacity),
+        front(a->volume() == volume::Kind::wide ? options.slice_capacity : 1),
+        patches(options.hit_capacity),
+        wide(wide::searches_for(options.instruction_set)) {}
+
+  std::shared_ptr<const Shape> a;
+  std::shared_ptr<const Shape> b;
+  BucketQueue queue;
+  HitList hits;
+  BottomSlice slice;         ///< of the incremental method with volumes of the generic framework
+  wide::KineticFront front;  ///< of the same with the wide engine
+  bool has_witness = false;
+  TrianglePair witness;  ///< the pair of triangles that proved the last incremental hit
+  PatchBuilder patches;
+  const wide::Searches* wide;
+  Vec3 previous_normal = Vec3::Zero();    ///< of the last run's first contact, in A's frame; zero: none
+  Vec3 previous_position = Vec3::Zero();  ///< of that contact
+  KnownDepth known_depth;
+  std::array<Contact, most_contacts> rough;  ///< contacts that there was no time to make with care
+  Answer answer;
+};
+
+}  // namespace odds::query

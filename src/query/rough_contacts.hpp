@@ -1,0 +1,121 @@
+// Contacts from single pairs of triangles: what a budget without time for a patch still gives.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <utility>
+
+#include "odds/primitive/triangle_triangle.hpp"
+#include "odds/query/answer.hpp"
+#include "odds/query/contact_patch.hpp"
+#include "query/posed_meshes.hpp"
+
+namespace odds::query {
+
+/// A pair of triangles and the segment in which they meet, in A's hierarchy frame; metres.
+struct Crossing {
+  tree::TriangleCorners a;
+  tree::TriangleCorners b;
+  Vec3 normal_a;  ///< unit, or zero for a triangle without area
+  Vec3 normal_b;
+  primitive::IntersectionSegment segment;  ///< turned so that it runs along normal_a x normal_b
+
+  [[nodiscard]] static Crossing of(const PosedMeshes& meshes, TrianglePair hit) noexcept {
+    Crossing crossing{meshes.corners_a(hit.a), meshes.corners_b(hit.b), {}, {}, {}};
+    crossing.normal_a = unit_normal(crossing.a);
+    crossing.normal_b = unit_normal(crossing.b);
+    const Vec3 middle = (crossing.a[0] + crossing.a[1] + crossing.a[2]) / 3.0;
+    crossing.segment.begin = crossing.segment.end = middle;
+    static_cast<void>(primitive::intersection_segment(crossing.a.data(), crossing.b.data(), crossing.segment));
+    const Vec3 along = crossing.segment.end - crossing.segment.begin;
+    if (along.dot(crossing.normal_a.cross(crossing.normal_b)) < 0.0) {
+      std::swap(crossing.segment.begin, crossing.segment.end);
+    }
+    return crossing;
+  }
+  [[nodiscard]] Vec3 middle() const noexcept { return 0.5 * (segment.begin + segment.end); }
+  /// How far the triangles overlap along a direction into A, >= 0.
+  [[nodiscard]] double overlap_along(const Vec3& direction) const noexcept {
+    const double top_b = std::max({direction.dot(b[0]), direction.dot(b[1]), direction.dot(b[2])});
+    const double bottom_a = std::min({direction.dot(a[0]), direction.dot(a[1]), direction.dot(a[2])});
+    return std::max(top_b - bottom_a, 0.0);
+  }
+
+ private:
+  [[nodiscard]] static Vec3 unit_normal(const tree::TriangleCorners& t) noexcept {
+    const Vec3 cross = (t[1] - t[0]).cross(t[2] - t[0]);
+    const double length = cross.norm();
+    return length > 0.0 ? Vec3(cross / length) : Vec3(Vec3::Zero());
+  }
+};
+
+/// The direction into A of least common volume, from some of the crossings of one overlap: the vector area that their
+/// segments span about their middle (see PatchBuilder; exact if they are all), or where they span none the sum of the
+/// differences of normals, for what the sides of an overlap say sideways cancels out. `towards_a`: last resort, and the
+/// side of surfaces that have none. Unit.
+[[nodiscard]] inline Vec3 rough_direction(std::span<const Crossing> crossings, bool both_solid,
+                                          const Vec3& towards_a) noexcept {
+  Vec3 middle = Vec3::Zero();
+  Vec3 apart = Vec3::Zero();
+  double length = 0.0;
+  for (const Crossing& crossing : crossings) {
+    middle += crossing.middle() / static_cast<double>(crossings.size());
+    apart += crossing.normal_b - crossing.normal_a;
+    length += (crossing.segment.end - crossing.segment.begin).norm();
+  }
+  Vec3 area = Vec3::Zero();
+  for (const Crossing& crossing : crossings) {
+    area += 0.5 * (crossing.segment.begin - middle).cross(crossing.segment.end - middle);
+  }
+  if (!both_solid && apart.dot(towards_a) < 0.0) apart = -apart;
+  if (area.dot(apart) < 0.0) area = -area;
+  // A closed curve of this length spans at most 1 / (4 pi) of its square; one that is long and thin, or a piece of one,
+  // must not point elsewhere than the normals do.
+  const double spanned = area.norm();
+  const bool wide = spanned > 0.01 * length * length;
+  if (spanned > 1e-5 * length * length && (wide || area.dot(apart) > 0.5 * spanned * apart.norm())) {
+    return area / spanned;
+  }
+  if (apart.norm() > 1e-6) return apart.normalized();
+  return towards_a.norm() > 0.0 ? Vec3(towards_a.normalized()) : Vec3(Vec3::UnitZ());
+}
+
+/// Diagonal of the box about all segments.
+[[nodiscard]] inline double extent_of(std::span<const Crossing> crossings) noexcept {
+  Vec3 lower = crossings.front().segment.begin;
+  Vec3 upper = lower;
+  for (const Crossing& crossing : crossings) {
+    lower = lower.cwiseMin(crossing.segment.begin).cwiseMin(crossing.segment.end);
+    upper = upper.cwiseMax(crossing.segment.begin).cwiseMax(crossing.segment.end);
+  }
+  return (upper - lower).norm();
+}
+
+/// As many contacts as there is room for, spread over the hits, all with one direction and one depth: the least overlap
+/// of these pairs of triangles along it, at most `most_depth` (metres) and the extent of what was cut. In A's mesh
+/// frame. About 0.4 us each; `may_go_on()` is asked before every one after the first. Returns how many.
+template <class MayGoOn>
+std::size_t rough_contacts(const PosedMeshes& meshes, std::span<const TrianglePair> hits, bool both_solid,
+                           const Vec3& towards_a, double most_depth, std::span<Contact> written,
+                           MayGoOn may_go_on) noexcept {
+  std::array<Crossing, most_contacts> crossings;
+  const std::size_t most = std::min({hits.size(), written.size(), crossings.size()});
+  std::size_t count = 0;
+  while (count < most && (count == 0 || may_go_on())) {
+    crossings[count] = Crossing::of(meshes, hits[count * hits.size() / most]);
+    ++count;
+  }
+  const std::span<const Crossing> made = std::span(crossings).first(count);
+  const Vec3 direction = rough_direction(made, both_solid, towards_a);
+  // A corner that has just come through is not deeper than its rim is wide, though the triangles reach on.
+  double depth = std::min(most_depth, extent_of(made));
+  for (const Crossing& crossing : made) depth = std::min(depth, crossing.overlap_along(direction));
+  for (std::size_t i = 0; i < count; ++i) {
+    const TrianglePair& hit = hits[i * hits.size() / most];
+    written[i] = {made[i].middle() + meshes.origin_a(), direction, depth, hit.a, hit.b};
+  }
+  return count;
+}
+
+}  // namespace odds::query
