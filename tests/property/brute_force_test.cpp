@@ -1,9 +1,9 @@
 // Searches against every triangle with every triangle: other places, scales, orders of arguments and of triangles.
 #include <gtest/gtest.h>
 
-#include "odds/primitive/triangle_triangle.hpp"
 #include "odds/query/pair.hpp"
 #include "support/all_kinds.hpp"
+#include "support/brute_force.hpp"
 #include "support/near_poses.hpp"
 #include "support/shapes.hpp"
 
@@ -14,26 +14,8 @@ constexpr Method methods[] = {Method::exact, Method::time_critical, Method::incr
 
 using Mesh = std::shared_ptr<const mesh::TriangleMesh>;
 
-Mesh changed(const mesh::TriangleMesh& mesh, double scale, const Vec3& offset, std::uint32_t rotate_triangles) {
-  std::vector<Vec3> vertices(mesh.vertices().begin(), mesh.vertices().end());
-  for (Vec3& vertex : vertices) vertex = scale * vertex + offset;
-  std::vector<mesh::Triangle> triangles(mesh.triangles().begin(), mesh.triangles().end());
-  std::rotate(triangles.begin(), triangles.begin() + rotate_triangles, triangles.end());
-  return std::make_shared<const mesh::TriangleMesh>(
-      std::move(mesh::TriangleMesh::make(std::move(vertices), std::move(triangles))).value());
-}
-
-bool brute_force(const mesh::TriangleMesh& a, const mesh::TriangleMesh& b, const math::Pose& pose) {
-  std::vector<Vec3> moved;
-  for (const Vec3& vertex : b.vertices()) moved.push_back(pose * vertex);
-  for (const mesh::Triangle& tb : b.triangles()) {
-    const Vec3 corners_b[3] = {moved[tb[0]], moved[tb[1]], moved[tb[2]]};
-    for (const mesh::Triangle& ta : a.triangles()) {
-      const Vec3 corners_a[3] = {a.vertices()[ta[0]], a.vertices()[ta[1]], a.vertices()[ta[2]]};
-      if (primitive::triangles_intersect(corners_a, corners_b)) return true;
-    }
-  }
-  return false;
+Mesh changed(const mesh::TriangleMesh& mesh, double scale, const Vec3& offset, std::size_t rotate_triangles) {
+  return testing::changed(mesh, scale, {Mat3::Identity(), offset}, rotate_triangles);
 }
 
 Pair pair_of(const Mesh& a, const Mesh& b, volume::Kind kind) {
@@ -67,7 +49,7 @@ TEST_P(AgainstBruteForce, AgreesInEveryBandAndBothOrders) {
     for (const double band : {0.1, 1e-3, 1e-6, 1e-9, -1e-9, -1e-6, -1e-3, -0.1}) {
       math::Pose pose = start.pose;
       pose.translation += band * start.direction;
-      const bool expected = brute_force(*a_, *b_, pose);
+      const bool expected = testing::brute_force(*a_, *b_, pose);
       ++queries;
       hits += expected ? 1 : 0;
       for (const Method method : methods) {
@@ -81,7 +63,7 @@ TEST_P(AgainstBruteForce, AgreesInEveryBandAndBothOrders) {
 }
 
 TEST_P(AgainstBruteForce, NothingChangesWithScaleOrOrderOfTriangles) {
-  for (const double scale : {0x1p-40, 1.0, 0x1p40}) {
+  for (const double scale : {0x1p-140, 0x1p-100, 0x1p-40, 1.0, 0x1p40, 0x1p48}) {
     const Mesh big_a = changed(*a_, scale, Vec3::Zero(), 17);
     const Mesh big_b = changed(*b_, scale, Vec3::Zero(), 5);
     Pair pair = pair_of(big_a, big_b, GetParam());
@@ -90,7 +72,7 @@ TEST_P(AgainstBruteForce, NothingChangesWithScaleOrOrderOfTriangles) {
       for (const double band : {1e-7, -1e-7}) {
         math::Pose pose = start.pose;
         pose.translation += band * start.direction;
-        const bool expected = brute_force(*a_, *b_, pose);
+        const bool expected = testing::brute_force(*a_, *b_, pose);
         pose.translation *= scale;
         for (const Method method : methods) {
           ASSERT_EQ(pair.run(pose, {.method = method}).verdict == Verdict::hit, expected) << scale << " " << band;
@@ -112,7 +94,7 @@ TEST_P(AgainstBruteForce, NoContactIsMissedFarFromTheOrigin) {
     for (const double band : {1e-5, -1e-5}) {  // rounding of such coordinates is about 1e-9 m, of the rotation 1e-9 m
       math::Pose pose = start.pose;
       pose.translation += band * start.direction;
-      const bool expected = brute_force(*a_, *b_, pose);
+      const bool expected = testing::brute_force(*a_, *b_, pose);
       pose.translation += offset_a - pose.rotation * offset_b;
       for (const Method method : methods) {
         ASSERT_EQ(pair.run(pose, {.method = method}).verdict == Verdict::hit, expected) << i << " " << band;

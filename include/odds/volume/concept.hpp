@@ -28,7 +28,7 @@ struct RaySegment {
                                        double reach) noexcept {
     const double scale = origin.norm() + length + reach;
     return {origin.cast<float>(), direction.cast<float>(), static_cast<float>(length * (1.0 + 1e-6)),
-            static_cast<float>(scale * 16.0 * 0x1p-24)};
+            std::max(static_cast<float>(scale * 16.0 * 0x1p-24), least_margin)};
   }
 };
 

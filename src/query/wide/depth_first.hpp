@@ -23,8 +23,7 @@ class DepthFirst {
   [[nodiscard]] const SlotPairs& leaf_pairs() const noexcept { return leaf_pairs_; }
 
   void run(Slot start_a, Slot start_b) noexcept {
-    const bool leaves = met_.nodes(0)[start_a / wide_lanes].child[start_a % wide_lanes].is_leaf() &&
-                        met_.nodes(1)[start_b / wide_lanes].child[start_b % wide_lanes].is_leaf();
+    const bool leaves = met_.are_leaves(start_a, start_b);
     SlotPairs& start = leaves ? leaf_pairs_ : open_;
     start.of[0][0] = start_a;
     start.of[1][0] = start_b;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "query/node_odds.hpp"
 #include "query/wide/searches.hpp"
 
 namespace odds::query::wide {
@@ -24,7 +23,12 @@ Turn make_turn(const volume::RelativePose& pose) noexcept {
 
 Encounter::Encounter(const tree::WideTree& a, const tree::WideTree& b, const PosedMeshes& meshes,
                      EstimatorKind estimator) noexcept
-    : a_(a), b_(b), meshes_(meshes), nodes_{a.nodes(), b.nodes()}, estimator_(estimator) {
+    : a_(a),
+      b_(b),
+      meshes_(meshes),
+      nodes_{a.nodes(), b.nodes()},
+      leaves_{a.leaves(), b.leaves()},
+      estimator_(estimator) {
   const math::Pose& pose = meshes.pose();
   // Bodies that are farther apart than their own sizes are only asked for their distance.
   const double reach = std::max(a.reach() + b.reach(), pose.translation.norm());
@@ -73,20 +77,19 @@ volume::Aabb Encounter::box(const tree::WideTree& tree, Slot slot) noexcept {
   return box;
 }
 
-float Encounter::rank(Slot slot_a, Slot slot_b) const noexcept {
+NodesMet Encounter::met(Slot slot_a, Slot slot_b) const noexcept {
   const volume::Aabb a = box(a_, slot_a);
   const volume::Aabb b = box(b_, slot_b);
-  return met_rank({a_.statistics(slot_a), b_.statistics(slot_b), relative_.rotation, a.volume(), b.volume(),
-                   overlap_volume(a, b, relative_)},
-                  estimator_, {a_.levels(), b_.levels()});
+  return {a_.statistics(slot_a),          b_.statistics(slot_b), relative_.rotation, a.volume(), b.volume(),
+          overlap_volume(a, b, relative_)};
+}
+
+float Encounter::rank(Slot slot_a, Slot slot_b) const noexcept {
+  return met_rank(met(slot_a, slot_b), estimator_, {a_.levels(), b_.levels()});
 }
 
 float Encounter::probability(Slot slot_a, Slot slot_b) const noexcept {
-  const volume::Aabb a = box(a_, slot_a);
-  const volume::Aabb b = box(b_, slot_b);
-  return met_probability({a_.statistics(slot_a), b_.statistics(slot_b), relative_.rotation, a.volume(), b.volume(),
-                          overlap_volume(a, b, relative_)},
-                         estimator_, {a_.levels(), b_.levels()});
+  return met_probability(met(slot_a, slot_b), estimator_, {a_.levels(), b_.levels()});
 }
 
 Contact Encounter::cell_contact(Slot slot_a, Slot slot_b, double probability) const noexcept {

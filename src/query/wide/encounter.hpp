@@ -7,8 +7,9 @@
 #include "odds/query/request.hpp"
 #include "odds/tree/wide_tree.hpp"
 #include "odds/volume/aabb.hpp"
+#include "query/node_odds.hpp"
 #include "query/posed_meshes.hpp"
-#include "query/wide/kernel.hpp"
+#include "query/wide/triangle_kernel.hpp"
 
 namespace odds::query::wide {
 
@@ -27,6 +28,16 @@ class Encounter {
   [[nodiscard]] const tree::WideTree& b() const noexcept { return b_; }
   /// Sides are 0 (A) and 1 (B).
   [[nodiscard]] const WideNode* nodes(std::uint32_t side) const noexcept { return nodes_[side]; }
+  [[nodiscard]] tree::ChildRef child(std::uint32_t side, Slot slot) const noexcept {
+    return nodes_[side][slot / wide_lanes].child[slot % wide_lanes];
+  }
+  [[nodiscard]] bool are_leaves(Slot slot_a, Slot slot_b) const noexcept {
+    return child(0, slot_a).is_leaf() && child(1, slot_b).is_leaf();
+  }
+  /// `slot` must lead to a leaf.
+  [[nodiscard]] PlacedLeaf leaf(std::uint32_t side, Slot slot) const noexcept {
+    return {nodes_[side][slot / wide_lanes], slot % wide_lanes, leaves_[side][child(side, slot).index()]};
+  }
   /// How the other tree's frame stands in this side's.
   [[nodiscard]] const Turn& turn_into(std::uint32_t side) const noexcept { return turns_[side]; }
   /// Covers the rounding of all tests of bounding volumes, metres.
@@ -48,12 +59,14 @@ class Encounter {
 
  private:
   [[nodiscard]] static volume::Aabb box(const tree::WideTree& tree, Slot slot) noexcept;
+  [[nodiscard]] NodesMet met(Slot slot_a, Slot slot_b) const noexcept;
 
   const tree::WideTree& a_;
   const tree::WideTree& b_;
   const PosedMeshes& meshes_;
   volume::RelativePose relative_;
   const WideNode* nodes_[2];
+  const WideLeaf* leaves_[2];
   Turn turns_[2];
   float margin_ = 0.0F;
   bool far_apart_ = false;

@@ -17,15 +17,24 @@ class Incremental {
   }
 
  private:
+  /// Entries passed over between two looks at the clock: some 250 ns.
+  static constexpr std::uint32_t entries_between_polls = 256;
+
   Incremental(Task& task, KineticFront& front) noexcept : task_(task), met_(task.encounter), front_(front) {}
 
   void run() noexcept {
     const std::uint32_t kept = front_.size();
     for (std::uint32_t i = 0; i < kept; ++i) {
-      if (!front_.expired(i)) continue;
+      if (!front_.expired(i)) {
+        if (i % entries_between_polls == entries_between_polls - 1 && !task_.spending.may_go_on()) {
+          task_.result.ended = Progressed::spent;
+          return;
+        }
+        continue;
+      }
       if (!may_go_on()) return;
       KineticFront::Entry& entry = front_.entry(i);
-      if (is_leaf_pair(entry.a, entry.b)) {
+      if (met_.are_leaves(entry.a, entry.b)) {
         front_.set_expiry(i, KineticFront::at_once);
         double expiry = KineticFront::at_once;
         if (!test_leaves(entry.a, entry.b, expiry)) return;
@@ -43,11 +52,6 @@ class Incremental {
     }
     task_.result.ended = Progressed::spent;
     return false;
-  }
-
-  [[nodiscard]] bool is_leaf_pair(Slot a, Slot b) const noexcept {
-    return met_.nodes(0)[a / wide_lanes].child[a % wide_lanes].is_leaf() &&
-           met_.nodes(1)[b / wide_lanes].child[b % wide_lanes].is_leaf();
   }
 
   /// Puts the lanes that overlap and were not open on the stack; returns when the others must be looked at again.
@@ -73,7 +77,7 @@ class Incremental {
       KineticFront::Entry entry{pair.of[0], pair.of[1], 0};
       double expiry = KineticFront::at_once;
       bool goes_on = true;
-      if (is_leaf_pair(entry.a, entry.b)) {
+      if (met_.are_leaves(entry.a, entry.b)) {
         goes_on = test_leaves(entry.a, entry.b, expiry);
       } else {
         expiry = open(entry);
@@ -111,14 +115,9 @@ class Incremental {
   }
 
   [[nodiscard]] float gap_of_leaves(Slot slot_a, Slot slot_b) const noexcept {
-    const WideNode& node_a = met_.nodes(0)[slot_a / wide_lanes];
-    const WideNode& node_b = met_.nodes(1)[slot_b / wide_lanes];
-    const std::uint32_t lane_a = slot_a % wide_lanes;
-    const std::uint32_t lane_b = slot_b % wide_lanes;
     float shift[3];
     met_.shift(slot_a, slot_b, shift);
-    return leaf_gap<L>(met_.a().leaves()[node_a.child[lane_a].index()], met_.b().leaves()[node_b.child[lane_b].index()],
-                       node_a, lane_a, node_b, lane_b, met_.turn_into(0), shift, met_.margin());
+    return leaf_gap<L>(met_.leaf(0, slot_a), met_.leaf(1, slot_b), met_.turn_into(0), shift, met_.margin());
   }
 
   Task& task_;

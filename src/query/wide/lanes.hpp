@@ -30,6 +30,23 @@ inline constexpr LaneOrder lane_order = [] {
   return order;
 }();
 
+/// Writing for processors that cannot permute lanes by a register.
+template <class L>
+struct WritesInOrder {
+  ODDS_LANES_INLINE static void write_lanes(std::uint32_t* to, std::uint32_t first, unsigned mask) noexcept {
+    for (int i = 0; i < 8; ++i) to[i] = first + lane_order.of[mask][i];
+  }
+  template <class Float>
+  ODDS_LANES_INLINE static void write_some(float* to, const Float& a, unsigned mask) noexcept {
+    alignas(32) float lanes[8];
+    L::store(lanes, a);
+    for (int i = 0; i < 8; ++i) to[i] = lanes[lane_order.of[mask][i]];
+  }
+  ODDS_LANES_INLINE static void write_all(std::uint32_t* to, std::uint32_t value) noexcept {
+    for (int i = 0; i < 8; ++i) to[i] = value;
+  }
+};
+
 #if defined(__AVX2__)
 struct Avx2 {
   struct Float {
@@ -88,7 +105,7 @@ ODDS_LANES_INLINE Avx2::Float operator*(Avx2::Float a, Avx2::Float b) noexcept {
 #endif
 
 #if defined(__SSE2__)
-struct Sse2 {
+struct Sse2 : WritesInOrder<Sse2> {
   struct Float {
     __m128 lo, hi;
   };
@@ -127,17 +144,6 @@ struct Sse2 {
     return static_cast<unsigned>(_mm_movemask_ps(_mm_cmple_ps(a.lo, b.lo))) |
            (static_cast<unsigned>(_mm_movemask_ps(_mm_cmple_ps(a.hi, b.hi))) << 4U);
   }
-  ODDS_LANES_INLINE static void write_lanes(std::uint32_t* to, std::uint32_t first, unsigned mask) noexcept {
-    for (int i = 0; i < 8; ++i) to[i] = first + lane_order.of[mask][i];
-  }
-  ODDS_LANES_INLINE static void write_some(float* to, const Float& a, unsigned mask) noexcept {
-    alignas(32) float lanes[8];
-    store(lanes, a);
-    for (int i = 0; i < 8; ++i) to[i] = lanes[lane_order.of[mask][i]];
-  }
-  ODDS_LANES_INLINE static void write_all(std::uint32_t* to, std::uint32_t value) noexcept {
-    for (int i = 0; i < 8; ++i) to[i] = value;
-  }
   ODDS_LANES_INLINE static unsigned highest_bits(const void* eight) noexcept {
     const auto* lanes = static_cast<const float*>(eight);
     return static_cast<unsigned>(_mm_movemask_ps(_mm_load_ps(lanes))) |
@@ -162,7 +168,7 @@ ODDS_LANES_INLINE Sse2::Float operator*(Sse2::Float a, Sse2::Float b) noexcept {
 #endif
 
 /// For every other processor; compilers make vector code of these loops where it has any.
-struct Portable {
+struct Portable : WritesInOrder<Portable> {
   struct Float {
     float v[8];
   };
@@ -216,17 +222,6 @@ struct Portable {
     unsigned mask = 0;
     for (int i = 0; i < 8; ++i) mask |= (a.v[i] <= b.v[i] ? 1U : 0U) << static_cast<unsigned>(i);
     return mask;
-  }
-  ODDS_LANES_INLINE static void write_lanes(std::uint32_t* to, std::uint32_t first, unsigned mask) noexcept {
-    for (int i = 0; i < 8; ++i) to[i] = first + lane_order.of[mask][i];
-  }
-  ODDS_LANES_INLINE static void write_some(float* to, const Float& a, unsigned mask) noexcept {
-    alignas(32) float lanes[8];
-    store(lanes, a);
-    for (int i = 0; i < 8; ++i) to[i] = lanes[lane_order.of[mask][i]];
-  }
-  ODDS_LANES_INLINE static void write_all(std::uint32_t* to, std::uint32_t value) noexcept {
-    for (int i = 0; i < 8; ++i) to[i] = value;
   }
   ODDS_LANES_INLINE static unsigned highest_bits(const void* eight) noexcept {
     std::uint32_t lanes[8];

@@ -44,9 +44,7 @@ class Nearest {
     task_.finished = true;
   }
 
-  [[nodiscard]] bool is_leaf(std::uint32_t side, Slot slot) const noexcept {
-    return met_.nodes(side)[slot / wide_lanes].child[slot % wide_lanes].is_leaf();
-  }
+  [[nodiscard]] bool is_leaf(std::uint32_t side, Slot slot) const noexcept { return met_.child(side, slot).is_leaf(); }
 
   [[nodiscard]] double least_distance(float gap) const noexcept {
     return static_cast<double>(gap) - static_cast<double>(met_.margin());
@@ -73,24 +71,20 @@ class Nearest {
 
   /// False if the budget ended it.
   bool compare_leaves(const SlotPair& pair) noexcept {
-    const WideNode& node_a = met_.nodes(0)[pair.of[0] / wide_lanes];
-    const WideNode& node_b = met_.nodes(1)[pair.of[1] / wide_lanes];
-    const std::uint32_t lane_a = pair.of[0] % wide_lanes;
-    const std::uint32_t lane_b = pair.of[1] % wide_lanes;
-    const WideLeaf& leaf_a = met_.a().leaves()[node_a.child[lane_a].index()];
-    const WideLeaf& leaf_b = met_.b().leaves()[node_b.child[lane_b].index()];
+    const PlacedLeaf in_a = met_.leaf(0, pair.of[0]);
+    const PlacedLeaf in_b = met_.leaf(1, pair.of[1]);
     float shift[3];
     met_.shift(pair.of[0], pair.of[1], shift);
     alignas(64) float gaps[wide_lanes][wide_lanes];
-    triangle_gaps<L>(leaf_a, leaf_b, node_a, lane_a, node_b, lane_b, met_.turn_into(0), shift, met_.margin(), gaps);
-    const std::uint32_t rows = node_b.child[lane_b].count();
+    triangle_gaps<L>(in_a, in_b, met_.turn_into(0), shift, met_.margin(), gaps);
+    const std::uint32_t rows = in_b.count();
     task_.spending.spend_triangle_pairs(rows);
     for (std::uint32_t row = 0; row < rows; ++row) {
-      for (std::uint32_t lane = 0; lane < node_a.child[lane_a].count(); ++lane) {
+      for (std::uint32_t lane = 0; lane < in_a.count(); ++lane) {
         if (!(static_cast<double>(gaps[row][lane]) < task_.bound)) continue;
         if (!task_.spending.may_go_on() || !task_.spending.allows(1)) return false;
         task_.spending.spend_triangle_pairs(1);
-        met_.bring_nearer(leaf_a.triangle[lane], leaf_b.triangle[row], task_);
+        met_.bring_nearer(in_a.leaf.triangle[lane], in_b.leaf.triangle[row], task_);
       }
     }
     return true;

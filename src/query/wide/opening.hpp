@@ -16,22 +16,17 @@ inline constexpr std::uint32_t units_between_polls = 16;
 template <class L>
 ODDS_LANES_INLINE bool visit_leaves(Task& task, Slot slot_a, Slot slot_b) noexcept {
   const Encounter& met = task.encounter;
-  const WideNode& node_a = met.a().nodes()[slot_a / wide_lanes];
-  const WideNode& node_b = met.b().nodes()[slot_b / wide_lanes];
-  const std::uint32_t lane_a = slot_a % wide_lanes;
-  const std::uint32_t lane_b = slot_b % wide_lanes;
-  const WideLeaf& leaf_a = met.a().leaves()[node_a.child[lane_a].index()];
-  const WideLeaf& leaf_b = met.b().leaves()[node_b.child[lane_b].index()];
+  const PlacedLeaf in_a = met.leaf(0, slot_a);
+  const PlacedLeaf in_b = met.leaf(1, slot_b);
   float shift[3];
   met.shift(slot_a, slot_b, shift);
-  const LeafPairs pairs =
-      leaf_pairs<L>(leaf_a, leaf_b, node_a, lane_a, node_b, lane_b, met.turn_into(0), shift, met.margin());
+  const LeafPairs pairs = leaf_pairs<L>(in_a, in_b, met.turn_into(0), shift, met.margin());
   task.spending.spend_triangle_pairs(pairs.tested);
   for (unsigned rows = pairs.rows; rows != 0; rows &= rows - 1U) {
     const auto row = static_cast<unsigned>(std::countr_zero(rows));
     for (unsigned lanes = pairs.lanes_a[row]; lanes != 0; lanes &= lanes - 1U) {
-      const std::uint32_t a = leaf_a.triangle[std::countr_zero(lanes)];
-      const std::uint32_t b = leaf_b.triangle[row];
+      const std::uint32_t a = in_a.leaf.triangle[std::countr_zero(lanes)];
+      const std::uint32_t b = in_b.leaf.triangle[row];
       if (!task.spending.allows(1) || !task.spending.may_go_on()) {
         task.result.ended = Progressed::spent;
         return false;

@@ -1,0 +1,309 @@
+// What leaves ask: eight triangles against eight, in single precision; pairs that may meet go to the exact test.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "query/wide/box_kernel.hpp"
+
+namespace odds::query::wide {
+
+using tree::WideLeaf;
+
+/// A leaf: the node and lane that hold its box, and its triangles.
+struct PlacedLeaf {
+  const WideNode& node;
+  std::uint32_t lane;
+  const WideLeaf& leaf;
+
+  [[nodiscard]] std::uint32_t count() const noexcept { return node.child[lane].count(); }
+};
+
+/// For each triangle of leaf B the triangles of leaf A that it may meet, as bits.
+struct LeafPairs {
+  std::uint8_t lanes_a[wide_lanes];
+  std::uint32_t rows = 0;    ///< bits of B's triangles with any
+  std::uint32_t tested = 0;  ///< of B's triangles compared with all of A's at once
+};
+
+/// Products of three lengths between these bounds neither overflow nor lose more to underflow than `least_product`.
+inline constexpr float least_span = 1e-9F;
+inline constexpr float greatest_span = 1e12F;
+inline constexpr float least_product = 1e-37F;
+
+template <class L>
+struct EightTriangles {
+  using F = typename L::Float;
+  F corner[3][3];  // [corner][axis]
+  F lower[3];
+  F upper[3];
+  F normal[3];
+  F tolerance;  // of a product with the normal
+
+  ODDS_LANES_INLINE void scale(float factor) noexcept {
+    for (auto& point : corner) {
+      for (F& x : point) x = x * L::all(factor);
+    }
+  }
+  ODDS_LANES_INLINE void bound() noexcept {
+    for (int i = 0; i < 3; ++i) {
+      lower[i] = L::min(L::min(corner[0][i], corner[1][i]), corner[2][i]);
+      upper[i] = L::max(L::max(corner[0][i], corner[1][i]), corner[2][i]);
+    }
+  }
+  /// `delta`: error of a coordinate; `span`: bound of all coordinates.
+  ODDS_LANES_INLINE void find_planes(float delta, float span) noexcept {
+    F u[3];
+    F v[3];
+    F longest = L::all(0.0F);
+    for (int i = 0; i < 3; ++i) {
+      u[i] = corner[1][i] - corner[0][i];
+      v[i] = corner[2][i] - corner[0][i];
+      longest = L::max(longest, L::max(L::abs(u[i]), L::abs(v[i])));
+    }
+    normal[0] = u[1] * v[2] - u[2] * v[1];
+    normal[1] = u[2] * v[0] - u[0] * v[2];
+    normal[2] = u[0] * v[1] - u[1] * v[0];
+    // A normal's component errs by 9 delta E, a difference of points by 2 delta and is at most 2 span long: the sum of
+    // three products errs by less than 32 delta E (2 span + E), their own rounding included.
+    tolerance = L::all(32.0F * delta) * longest * (L::all(2.0F * span) + longest) + L::all(least_product);
+  }
+  [[nodiscard]] ODDS_LANES_INLINE F lengths_of_normals() const noexcept {
+    return L::root((normal[0] * normal[0] + normal[1] * normal[1]) + normal[2] * normal[2]);
+  }
+};
+
+/// B's triangles one by one, for tests against eight of A at once.
+template <class L>
+struct Rows {
+  using F = typename L::Float;
+  alignas(64) float corner[3][3][wide_lanes];
+  alignas(64) float lower[3][wide_lanes];
+  alignas(64) float upper[3][wide_lanes];
+  alignas(64) float normal[3][wide_lanes];
+  alignas(64) float tolerance[wide_lanes];
+
+  ODDS_LANES_INLINE explicit Rows(const EightTriangles<L>& b) noexcept {
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < 3; ++k) L::store(corner[k][i], b.corner[k][i]);
+      L::store(lower[i], b.lower[i]);
+      L::store(upper[i], b.upper[i]);
+      L::store(normal[i], b.normal[i]);
+    }
+    L::store(tolerance, b.tolerance);
+  }
+  ODDS_LANES_INLINE void spread_corner(unsigned row, int k, F (&point)[3]) const noexcept {
+    for (int i = 0; i < 3; ++i) point[i] = L::all(corner[k][i][row]);
+  }
+  ODDS_LANES_INLINE void spread_normal(unsigned row, F (&direction)[3]) const noexcept {
+    for (int i = 0; i < 3; ++i) direction[i] = L::all(normal[i][row]);
+  }
+};
+
+/// How far three points stay from a plane, times the length of its normal; 0 or less where they are on both sides.
+template <class L>
+class PlaneGap {
+ public:
+  using F = typename L::Float;
+  ODDS_LANES_INLINE void add(const F (&normal)[3], const F (&foot)[3], const F (&point)[3], bool first) noexcept {
+    F height = normal[0] * (point[0] - foot[0]);
+    height = height + normal[1] * (point[1] - foot[1]);
+    height = height + normal[2] * (point[2] - foot[2]);
+    low_ = first ? height : L::min(low_, height);
+    high_ = first ? height : L::max(high_, height);
+  }
+  [[nodiscard]] ODDS_LANES_INLINE F value() const noexcept { return L::max(low_, L::all(0.0F) - high_); }
+
+ private:
+  F low_ = L::all(0.0F);
+  F high_ = L::all(0.0F);
+};
+
+/// A's corners from the plane of one of B's triangles.
+template <class L>
+ODDS_LANES_INLINE typename L::Float plane_gap_of_b(const EightTriangles<L>& a, const Rows<L>& b,
+                                                   unsigned row) noexcept {
+  typename L::Float normal[3];
+  typename L::Float foot[3];
+  b.spread_normal(row, normal);
+  b.spread_corner(row, 0, foot);
+  PlaneGap<L> gap;
+  for (int k = 0; k < 3; ++k) gap.add(normal, foot, a.corner[k], k == 0);
+  return gap.value();
+}
+
+/// B's corners from the planes of A's triangles.
+template <class L>
+ODDS_LANES_INLINE typename L::Float plane_gap_of_a(const EightTriangles<L>& a, const Rows<L>& b,
+                                                   unsigned row) noexcept {
+  PlaneGap<L> gap;
+  for (int k = 0; k < 3; ++k) {
+    typename L::Float point[3];
+    b.spread_corner(row, k, point);
+    gap.add(a.normal, a.corner[0], point, k == 0);
+  }
+  return gap.value();
+}
+
+/// One triangle against eight: false lanes are certainly apart. `slack`: error of a difference of coordinates.
+template <class L>
+ODDS_LANES_INLINE unsigned may_meet(const EightTriangles<L>& a, const Rows<L>& b, unsigned row, float slack) noexcept {
+  unsigned mask = 0xFFU;
+  for (int i = 0; i < 3; ++i) {
+    mask &= L::less_equal(a.lower[i], L::all(b.upper[i][row] + slack)) &
+            L::less_equal(L::all(b.lower[i][row] - slack), a.upper[i]);
+  }
+  if (mask == 0) return 0;
+  mask &= L::less_equal(plane_gap_of_b<L>(a, b, row), L::all(b.tolerance[row]));
+  if (mask == 0) return 0;
+  return mask & L::less_equal(plane_gap_of_a<L>(a, b, row), a.tolerance);
+}
+
+/// Two leaves in A's frame, about the centre of A's lane, times `scale`.
+template <class L>
+struct TwoLeaves {
+  EightTriangles<L> a;
+  EightTriangles<L> b;
+  float scale = 1.0F;  ///< a power of two; 1 unless the leaves are so large or small that products of lengths suffer
+  float delta;         ///< error of a coordinate
+  float span;          ///< bound of all coordinates
+  unsigned lanes_a;
+  unsigned lanes_b;
+
+  /// Bounds the coordinates: B's box reaches at most this far from A's centre, and each coordinate errs by at most
+  /// `delta`: half a rounding of A, half of B and of the rotation times the box, three products and sums.
+  ODDS_LANES_INLINE void measure(const PlacedLeaf& in_a, const PlacedLeaf& in_b, const Turn& turn, const float shift[3],
+                                 float margin) noexcept {
+    span = 0.0F;
+    for (int i = 0; i < 3; ++i) {
+      const float extent = (turn.abs_column[0][i] * in_b.node.half[0][in_b.lane] +
+                            turn.abs_column[1][i] * in_b.node.half[1][in_b.lane]) +
+                           turn.abs_column[2][i] * in_b.node.half[2][in_b.lane];
+      const float away = shift[i] < 0.0F ? -shift[i] : shift[i];
+      span = std::max(span, std::max(in_a.node.half[i][in_a.lane], away + extent));
+    }
+    span = span + margin;
+    delta = 12.0F * 0x1p-24F * span + std::numeric_limits<float>::min();
+    if (!(span >= least_span && span <= greatest_span)) [[unlikely]] {
+      scale = std::ldexp(1.0F, -std::clamp(std::ilogb(span), -126, 126));
+      span *= scale;
+      delta *= scale;
+    }
+    lanes_a = (2U << (in_a.count() - 1U)) - 1U;
+    lanes_b = (2U << (in_b.count() - 1U)) - 1U;
+  }
+
+  /// `shift`: where B's leaf centre stands from A's, in A's frame.
+  ODDS_LANES_INLINE void place_b(const WideLeaf& leaf, const Turn& turn, const float shift[3]) noexcept {
+    using F = typename L::Float;
+    for (int k = 0; k < 3; ++k) {
+      F x[3];
+      for (int i = 0; i < 3; ++i) x[i] = L::load(leaf.corner[k][i]);
+      for (int i = 0; i < 3; ++i) {
+        b.corner[k][i] =
+            ((L::all(turn.column[0][i]) * x[0] + L::all(turn.column[1][i]) * x[1]) + L::all(turn.column[2][i]) * x[2]) +
+            L::all(shift[i]);
+      }
+    }
+    if (scale != 1.0F) [[unlikely]]
+      b.scale(scale);
+    b.bound();
+  }
+
+  /// And all planes.
+  ODDS_LANES_INLINE void place_a(const WideLeaf& leaf) noexcept {
+    for (int k = 0; k < 3; ++k) {
+      for (int i = 0; i < 3; ++i) a.corner[k][i] = L::load(leaf.corner[k][i]);
+    }
+    if (scale != 1.0F) [[unlikely]]
+      a.scale(scale);
+    a.bound();
+    a.find_planes(delta, span);
+    b.find_planes(delta, span);
+  }
+};
+
+/// Pairs of triangles of two leaves that no box, no plane separates. `shift`: where B's leaf centre stands from A's, in
+/// A's frame; `margin`: that of the encounter.
+template <class L>
+ODDS_LANES_INLINE LeafPairs leaf_pairs(const PlacedLeaf& in_a, const PlacedLeaf& in_b, const Turn& turn,
+                                       const float shift[3], float margin) noexcept {
+  LeafPairs found;
+  TwoLeaves<L> leaves;
+  leaves.measure(in_a, in_b, turn, shift, margin);
+  leaves.place_b(in_b.leaf, turn, shift);
+  const float delta = leaves.delta;
+  unsigned rows = leaves.lanes_b;
+  for (int i = 0; i < 3; ++i) {  // only B's triangles that come near A's box
+    const float half = in_a.node.half[i][in_a.lane] * leaves.scale + delta;
+    rows &= L::less_equal(leaves.b.lower[i], L::all(half)) & L::less_equal(L::all(-half), leaves.b.upper[i]);
+  }
+  if (rows == 0) return found;
+  leaves.place_a(in_a.leaf);
+  const Rows<L> b(leaves.b);
+  for (unsigned left = rows; left != 0; left &= left - 1U) {
+    const auto row = static_cast<unsigned>(__builtin_ctz(left));
+    const unsigned met = leaves.lanes_a & may_meet<L>(leaves.a, b, row, 2.0F * delta);
+    ++found.tested;
+    if (met == 0) continue;
+    found.lanes_a[row] = static_cast<std::uint8_t>(met);
+    found.rows |= 1U << row;
+  }
+  return found;
+}
+
+/// For each of B's triangles (rows) and A's (lanes) a lower bound of their distance, from boxes and planes; 0 or less
+/// says nothing. Metres. Lanes and rows beyond the leaves' counts say nothing.
+template <class L>
+ODDS_LANES_INLINE void triangle_gaps(const PlacedLeaf& in_a, const PlacedLeaf& in_b, const Turn& turn,
+                                     const float shift[3], float margin,
+                                     float (&gaps)[wide_lanes][wide_lanes]) noexcept {
+  using F = typename L::Float;
+  constexpr float shortest_normal = 1e-18F;  // shorter ones have lost digits to underflow
+  constexpr float below = 0.999999F;         // covers the rounding of roots and quotients
+  TwoLeaves<L> leaves;
+  leaves.measure(in_a, in_b, turn, shift, margin);
+  leaves.place_b(in_b.leaf, turn, shift);
+  leaves.place_a(in_a.leaf);
+  const Rows<L> b(leaves.b);
+  const EightTriangles<L>& a = leaves.a;
+  const F inverse_a = L::divide(L::all(below), L::max(a.lengths_of_normals(), L::all(shortest_normal)));
+  alignas(64) float lengths_b[wide_lanes];
+  L::store(lengths_b, leaves.b.lengths_of_normals());
+  const F slack = L::all(2.0F * leaves.delta);
+  const F unscale = L::all(1.0F / leaves.scale);
+  for (unsigned row = 0; row < in_b.count(); ++row) {
+    F squares = L::all(0.0F);  // boxes apart along several axes are apart by their legs
+    for (int i = 0; i < 3; ++i) {
+      const F leg = L::max(L::all(b.lower[i][row]) - a.upper[i], a.lower[i] - L::all(b.upper[i][row])) - slack;
+      squares = squares + L::max(leg, L::all(0.0F)) * L::max(leg, L::all(0.0F));
+    }
+    F gap = L::root(squares) * L::all(below);
+    if (lengths_b[row] > shortest_normal) {
+      const F planes_b = plane_gap_of_b<L>(a, b, row) - L::all(b.tolerance[row]);
+      gap = L::max(gap, planes_b * L::all(below / lengths_b[row]));
+    }
+    const F planes_a = plane_gap_of_a<L>(a, b, row) - a.tolerance;
+    gap = L::max(gap, planes_a * inverse_a);
+    L::store(gaps[row], gap * unscale);
+  }
+}
+
+/// The least of these.
+template <class L>
+ODDS_LANES_INLINE float leaf_gap(const PlacedLeaf& in_a, const PlacedLeaf& in_b, const Turn& turn, const float shift[3],
+                                 float margin) noexcept {
+  alignas(64) float gaps[wide_lanes][wide_lanes];
+  triangle_gaps<L>(in_a, in_b, turn, shift, margin, gaps);
+  typename L::Float least = L::load(gaps[0]);
+  for (unsigned row = 1; row < in_b.count(); ++row) least = L::min(least, L::load(gaps[row]));
+  alignas(64) float of[wide_lanes];
+  L::store(of, least);
+  float smallest = of[0];
+  for (std::uint32_t lane = 1; lane < in_a.count(); ++lane) smallest = std::min(smallest, of[lane]);
+  return smallest;
+}
+
+}  // namespace odds::query::wide
