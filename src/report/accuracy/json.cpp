@@ -53,7 +53,7 @@ bool plausible(const Study& study) {
 
 Trial::Kind kind_from(const std::string& limit) {
   for (const Trial::Kind kind : {Trial::Kind::time, Trial::Kind::work, Trial::Kind::exact}) {
-    if (limit == word(kind)) return kind;
+    if (limit == name(kind)) return kind;
   }
   throw std::invalid_argument("limit");
 }
