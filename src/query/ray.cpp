@@ -1,34 +1,16 @@
 #include "odds/query/ray.hpp"
 
 #include <array>
-#include <bit>
 #include <cmath>
 #include <variant>
 
+#include "odds/primitive/ray_triangle.hpp"
 #include "query/search.hpp"
 #include "query/shape_data.hpp"
-#include "query/wide/lookup.hpp"
+#include "query/wide/searches.hpp"
 
 namespace odds::query {
 namespace {
-
-/// Distance along the ray to the triangle, or a negative number.
-double distance_to(const tree::TriangleCorners& triangle, const Vec3& origin, const Vec3& direction) noexcept {
-  const Vec3 edge1 = triangle[1] - triangle[0];
-  const Vec3 edge2 = triangle[2] - triangle[0];
-  const Vec3 p = direction.cross(edge2);
-  const double determinant = edge1.dot(p);
-  if (determinant == 0.0) return -1.0;  // parallel or degenerate; its neighbours are met instead
-  // Borders are widened by a few roundings: a crossing counted twice does no harm to the nearest one, a gap would.
-  constexpr double slack = 1e-12;
-  const Vec3 from_corner = origin - triangle[0];
-  const double u = from_corner.dot(p) / determinant;
-  if (!(u >= -slack && u <= 1.0 + slack)) return -1.0;
-  const Vec3 q = from_corner.cross(edge1);
-  const double v = direction.dot(q) / determinant;
-  if (!(v >= -slack && u + v <= 1.0 + slack)) return -1.0;
-  return edge2.dot(q) / determinant;
-}
 
 template <volume::BoundingVolume V>
 std::optional<RayHit> cast(const tree::Hierarchy<V>& hierarchy, const Vec3& origin, const Vec3& direction,
@@ -51,7 +33,7 @@ std::optional<RayHit> cast(const tree::Hierarchy<V>& hierarchy, const Vec3& orig
       continue;
     }
     for (std::uint32_t t = node.first; t < node.first + node.count; ++t) {
-      const double distance = distance_to(hierarchy.corners()[t], origin, direction);
+      const double distance = primitive::distance_along_ray(hierarchy.corners()[t].data(), origin, direction);
       if (!(distance >= 0.0 && distance <= length)) continue;
       if (nearest && distance >= nearest->distance) continue;
       nearest = RayHit{distance, hierarchy.order()[t]};
@@ -63,46 +45,7 @@ std::optional<RayHit> cast(const tree::Hierarchy<V>& hierarchy, const Vec3& orig
 
 std::optional<RayHit> cast(const mesh::TriangleMesh& mesh, const tree::WideTree& tree, const Vec3& origin,
                            const Vec3& direction, double length, std::uint64_t budget_nodes) noexcept {
-  volume::RaySegment segment = volume::RaySegment::make(origin, direction, length, tree.reach());
-  struct Open {
-    tree::ChildRef child;
-    float enter;
-  };
-  std::array<Open, (tree::wide_lanes - 1) * (tree::deepest_level + 2)> stack;
-  std::size_t size = 0;
-  stack[size++] = {tree.nodes()[0].child[0], 0.0F};
-  std::optional<RayHit> nearest;
-  for (std::uint64_t visited = 0; size != 0 && visited < budget_nodes; ++visited) {
-    const Open open = stack[--size];
-    if (open.enter > segment.length + segment.margin) continue;
-    if (!open.child.is_leaf()) {
-      const tree::WideNode& node = tree.nodes()[open.child.index()];
-      float enter[tree::wide_lanes];
-      const unsigned met = wide::lanes_met_by(node, segment, enter);
-      const std::size_t first = size;
-      for (unsigned lanes = met; lanes != 0; lanes &= lanes - 1U) {
-        const auto lane = static_cast<unsigned>(std::countr_zero(lanes));
-        // The nearest last, for it is visited first and shortens the segment.
-        std::size_t at = size++;
-        for (; at > first && stack[at - 1].enter < enter[lane]; --at) stack[at] = stack[at - 1];
-        stack[at] = {node.child[lane], enter[lane]};
-      }
-      continue;
-    }
-    const tree::WideLeaf& leaf = tree.leaves()[open.child.index()];
-    for (std::uint32_t t = 0; t < open.child.count(); ++t) {
-      const mesh::Triangle& triangle = mesh.triangles()[leaf.triangle[t]];
-      const tree::TriangleCorners corners = {mesh.vertices()[triangle[0]] - tree.origin(),
-                                             mesh.vertices()[triangle[1]] - tree.origin(),
-                                             mesh.vertices()[triangle[2]] - tree.origin()};
-      const double distance = distance_to(corners, origin, direction);
-      if (!(distance >= 0.0 && distance <= length)) continue;
-      if (nearest && distance >= nearest->distance) continue;
-      nearest = RayHit{distance, leaf.triangle[t]};
-      segment.length = static_cast<float>(distance * (1.0 + 1e-6));
-    }
-  }
-  return nearest;
+  return wide::searches_for(InstructionSet::best)->ray({mesh, tree, origin, direction, length, budget_nodes});
 }
 
 template <volume::BoundingVolume V>

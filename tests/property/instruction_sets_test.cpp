@@ -7,6 +7,7 @@
 
 #include "odds/math/random.hpp"
 #include "odds/query/pair.hpp"
+#include "query/wide/searches.hpp"
 #include "support/near_poses.hpp"
 #include "support/shapes.hpp"
 
@@ -62,6 +63,31 @@ TEST(InstructionSets, GiveTheSameBitsForEveryMethodAndBudget) {
 #else
   EXPECT_EQ(others, 0);
 #endif
+}
+
+TEST(InstructionSets, CastTheSameRays) {
+  const auto mesh = testing::wavy_sphere(20, 0.3);
+  const auto tree = tree::WideTree::build(*mesh, {.leaf_triangles = 8});
+  const wide::Searches* portable = wide::searches_for(InstructionSet::portable);
+  for (const InstructionSet set : {InstructionSet::sse2, InstructionSet::avx2}) {
+    const wide::Searches* searches = wide::searches_for(set);
+    if (searches == nullptr) continue;
+    math::Random random(6);
+    int met = 0;
+    for (int i = 0; i < 500; ++i) {
+      const std::uint64_t nodes = i % 4 == 0 ? 1 + static_cast<std::uint64_t>(i) / 20 : UINT64_MAX;
+      const wide::RayTask task{*mesh, tree, 1.5 * random.uniform() * random.direction(), random.direction(),
+                               5.0,   nodes};
+      const auto expected = portable->ray(task);
+      const auto found = searches->ray(task);
+      ASSERT_EQ(found.has_value(), expected.has_value()) << i;
+      if (!expected) continue;
+      ++met;
+      ASSERT_EQ(found->distance, expected->distance);
+      ASSERT_EQ(found->triangle, expected->triangle);
+    }
+    EXPECT_GT(met, 100);
+  }
 }
 
 }  // namespace

@@ -5,7 +5,10 @@
 
 #include <random>
 
+#include "odds/math/random.hpp"
+#include "odds/primitive/ray_triangle.hpp"
 #include "support/all_kinds.hpp"
+#include "support/brute_force.hpp"
 #include "support/shapes.hpp"
 
 namespace odds::query {
@@ -53,6 +56,48 @@ TEST_P(Rays, MeetWhatBruteForceMeets) {
   }
   EXPECT_GT(met, 500);
   EXPECT_LT(met, 1800);
+}
+
+/// With the very kernel and frame of the search, so that even grazing rays must agree.
+std::optional<double> every_triangle(const mesh::TriangleMesh& mesh, const Vec3& origin, const Vec3& direction) {
+  const Vec3 frame = 0.5 * mesh.lower() + 0.5 * mesh.upper();
+  std::optional<double> nearest;
+  for (const mesh::Triangle& t : mesh.triangles()) {
+    const Vec3 corners[3] = {mesh.vertices()[t[0]] - frame, mesh.vertices()[t[1]] - frame,
+                             mesh.vertices()[t[2]] - frame};
+    const double distance = primitive::distance_along_ray(corners, origin - frame, direction);
+    if (distance >= 0.0 && (!nearest || distance < *nearest)) nearest = distance;
+  }
+  return nearest;
+}
+
+TEST_P(Rays, GrazeNothingAwayAtAnySizeInAnyDirection) {
+  math::Random random(3);
+  for (const double scale : {0x1p-100, 0x1p-40, 1.0, 0x1p40}) {
+    for (const auto& mesh : {testing::changed(*testing::wavy_sphere(10, 0.3), scale, {}, 0),
+                             testing::changed(*testing::wavy_sphere(9, 0.0), scale,
+                                              {Vec3(1.0, 1.0, 0.0).asDiagonal(), Vec3::Zero()}, 0)}) {  // flat: a sheet
+      const auto shape = Shape::build(mesh, {.volume = GetParam()}).value();
+      int met = 0;
+      for (int i = 0; i < 400; ++i) {
+        Vec3 direction = i % 3 == 0 ? Vec3(random.direction()) : Vec3(Vec3::Unit(i % 4 % 3));
+        if (i % 3 == 1)
+          direction = (direction + std::pow(10.0, -random.uniform(3.0, 12.0)) * random.direction()).normalized();
+        const Vec3 through = mesh->vertices()[static_cast<std::size_t>(random.uniform() * 0.999 *
+                                                                       static_cast<double>(mesh->vertices().size()))];
+        const Vec3 aside = scale * std::pow(10.0, -random.uniform(0.0, 12.0)) * random.direction();
+        const Vec3 origin = through + aside - scale * random.uniform(0.0, 50.0) * direction;
+        const auto expected = every_triangle(*mesh, origin, direction);
+        const auto found = cast_ray(*shape, origin, direction, INFINITY);
+        ASSERT_EQ(expected.has_value(), found.has_value()) << scale << " ray " << i;
+        if (!expected) continue;
+        ASSERT_EQ(*expected, found->distance) << scale << " ray " << i;
+        ++met;
+      }
+      EXPECT_GT(met, 100);
+      EXPECT_LT(met, 390);
+    }
+  }
 }
 
 TEST_P(Rays, RefuseWhatIsNoRay) {

@@ -7,28 +7,6 @@
 
 namespace odds::query::wide {
 
-unsigned lanes_met_by(const tree::WideNode& node, const volume::RaySegment& ray,
-                      float enter[tree::wide_lanes]) noexcept {
-  unsigned met = 0;
-  for (std::uint32_t lane = 0; lane < tree::wide_lanes; ++lane) {
-    if (node.child[lane].is_nothing()) break;  // lanes in use come first
-    float first = 0.0F;
-    float last = ray.length;
-    bool inside = true;
-    for (int i = 0; i < 3; ++i) {
-      inside = inside && volume::clip_to_slab(node.half[i][lane] + ray.margin, ray.origin[i] - node.center[i][lane],
-                                              ray.direction[i], ray.length, first, last);
-    }
-    const Vec3f normal(node.normal[0][lane], node.normal[1][lane], node.normal[2][lane]);
-    inside =
-        inside && volume::clip_to_slab(node.thickness[lane] + ray.margin, normal.dot(ray.origin) - node.offset[lane],
-                                       normal.dot(ray.direction), ray.length, first, last);
-    enter[lane] = first;
-    if (inside && volume::anything_left(first, last)) met |= 1U << lane;
-  }
-  return met;
-}
-
 unsigned lanes_in_box(const tree::WideNode& node, const Vec3f& center, const Mat3f& axes, const Vec3f& half,
                       float margin) noexcept {
   unsigned met = 0;

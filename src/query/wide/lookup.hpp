@@ -1,4 +1,4 @@
-// Lookups in one wide tree: rays and boxes.
+// Lookups in one wide tree: boxes.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,6 @@
 #include "odds/volume/concept.hpp"
 
 namespace odds::query::wide {
-
-/// Bits of the lanes whose boxes and slabs the segment may meet, and where it enters them at the earliest (metres).
-[[nodiscard]] unsigned lanes_met_by(const tree::WideNode& node, const volume::RaySegment& ray,
-                                    float enter[tree::wide_lanes]) noexcept;
 
 /// Bits of the lanes whose boxes meet the oriented box {center + axes * x, |x_i| <= half_i}, all widened by `margin`.
 [[nodiscard]] unsigned lanes_in_box(const tree::WideNode& node, const Vec3f& center, const Mat3f& axes,

@@ -1,8 +1,12 @@
-// The searches of the wide engine: depth-first and time-critical, compiled once for each instruction set.
+// The searches of the wide engine: depth-first, time-critical, incremental, nearest points and
+// rays, compiled once for each instruction set.
 #pragma once
+
+#include <optional>
 
 #include "odds/primitive/triangle_distance.hpp"
 #include "odds/query/pair.hpp"
+#include "odds/query/ray.hpp"
 #include "odds/query/request.hpp"
 #include "query/search.hpp"
 #include "query/wide/encounter.hpp"
@@ -33,7 +37,17 @@ struct NearestTask {
   TrianglePair triangles = {};
 };
 
-/// One instruction set's searches. Each starts from the pair of roots, which is known to overlap.
+/// The first crossing of a ray with one tree.
+struct RayTask {
+  const mesh::TriangleMesh& mesh;
+  const tree::WideTree& tree;
+  Vec3 origin;     ///< tree's frame, metres
+  Vec3 direction;  ///< unit
+  double length;   ///< finite, metres
+  std::uint64_t budget_nodes;
+};
+
+/// One instruction set's searches. Each of two trees starts from the pair of roots, which is known to overlap.
 struct Searches {
   const char* instruction_set;
   void (*depth_first)(Task& task, Slot slot_a, Slot slot_b) noexcept;
@@ -42,6 +56,7 @@ struct Searches {
   void (*incremental)(Task& task, KineticFront& front) noexcept;
   /// The nearest points; the bodies may be apart.
   void (*nearest)(NearestTask& task) noexcept;
+  std::optional<RayHit> (*ray)(const RayTask& task) noexcept;
 };
 
 /// Null where the program was not built with them.

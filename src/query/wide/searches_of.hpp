@@ -4,13 +4,15 @@
 #include "query/wide/depth_first.hpp"
 #include "query/wide/incremental.hpp"
 #include "query/wide/nearest.hpp"
+#include "query/wide/ray_cast.hpp"
 #include "query/wide/time_critical.hpp"
 
 namespace odds::query::wide {
 
 template <class L>
 constexpr Searches searches_of() noexcept {
-  return {L::name, &DepthFirst<L>::run, &TimeCritical<L>::run, &Incremental<L>::run, &Nearest<L>::run};
+  return {L::name,          &DepthFirst<L>::run, &TimeCritical<L>::run, &Incremental<L>::run,
+          &Nearest<L>::run, &RayCast<L>::run};
 }
 
 }  // namespace odds::query::wide

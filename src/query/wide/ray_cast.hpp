@@ -1,0 +1,179 @@
+// Rays through the wide tree: eight boxes cut by slabs at once, then eight triangles.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <limits>
+
+#include "odds/primitive/ray_triangle.hpp"
+#include "odds/tree/topology.hpp"
+#include "odds/volume/concept.hpp"
+#include "query/wide/lanes.hpp"
+#include "query/wide/searches.hpp"
+
+namespace odds::query::wide {
+
+/// Where a ray is in the slabs {|x - center| <= half} across one direction: between middle - reach and middle + reach,
+/// with middle = (center - origin) * turned and reach = (half + margin) * inverse. A ray that hardly moves across is
+/// taken to move by 1e-6 of its way: its slab is crossed later than it is, by less than the margin covers.
+template <class L>
+struct SlabCrossing {
+  using F = typename L::Float;
+  F enter;
+  F leave;
+
+  ODDS_LANES_INLINE void clip(F from_origin, F half, F turned, F inverse) noexcept {
+    const F middle = from_origin * turned;
+    const F reach = half * inverse;
+    enter = L::max(enter, middle - reach);
+    leave = L::min(leave, middle + reach);
+  }
+};
+
+template <class L>
+class RayCast {
+ public:
+  static std::optional<RayHit> run(const RayTask& task) noexcept { return RayCast(task).run(); }
+
+ private:
+  using F = typename L::Float;
+  struct Open {
+    tree::Slot slot;
+    float enter;
+  };
+  static constexpr float least_motion = 1e-6F;
+
+  explicit RayCast(const RayTask& task) noexcept
+      : task_(task), segment_(volume::RaySegment::make(task.origin, task.direction, task.length, task.tree.reach())) {
+    // The motion across a slab may be off by 2e-6 of the way, and the way is at most a millionth of 16 margins.
+    margin_ = 4.0F * segment_.margin;
+    for (int i = 0; i < 3; ++i) {
+      const float across = segment_.direction[i];
+      const float motion = std::max(across < 0.0F ? -across : across, least_motion);
+      inverse_[i] = 1.0F / motion;
+      turned_[i] = across * inverse_[i] * inverse_[i];
+    }
+  }
+
+  std::optional<RayHit> run() noexcept {
+    stack_[size_++] = {tree::WideTree::root, 0.0F};
+    for (std::uint64_t visited = 0; size_ != 0 && visited < task_.budget_nodes; ++visited) {
+      const Open open = stack_[--size_];
+      if (open.enter > segment_.length + margin_) continue;
+      const tree::ChildRef child = node_of(open.slot).child[open.slot % tree::wide_lanes];
+      if (child.is_leaf()) {
+        test_leaf(open, child);
+      } else {
+        push_children(child.index());
+      }
+    }
+    return nearest_;
+  }
+
+  [[nodiscard]] const tree::WideNode& node_of(tree::Slot slot) const noexcept {
+    return task_.tree.nodes()[slot / tree::wide_lanes];
+  }
+
+  /// Lanes that the segment may meet, and where it enters each.
+  ODDS_LANES_INLINE unsigned lanes_met(const tree::WideNode& node, float (&enter)[tree::wide_lanes]) const noexcept {
+    SlabCrossing<L> crossing{L::all(0.0F), L::all(segment_.length)};
+    const F margin = L::all(margin_);
+    F from[3];
+    for (int i = 0; i < 3; ++i) {
+      from[i] = L::load(node.center[i]) - L::all(segment_.origin[i]);
+      crossing.clip(from[i], L::load(node.half[i]) + margin, L::all(turned_[i]), L::all(inverse_[i]));
+    }
+    F origin_along = L::all(0.0F);
+    F across = L::all(0.0F);
+    for (int i = 0; i < 3; ++i) {
+      const F normal = L::load(node.normal[i]);
+      origin_along = origin_along + normal * L::all(segment_.origin[i]);
+      across = across + normal * L::all(segment_.direction[i]);
+    }
+    const F inverse = L::divide(L::all(1.0F), L::max(L::abs(across), L::all(least_motion)));
+    crossing.clip(L::load(node.offset) - origin_along, L::load(node.thickness) + margin, across * inverse * inverse,
+                  inverse);
+    L::store(enter, crossing.enter);
+    // Each end is wrong by a few roundings of its own size.
+    const F slack = L::all(4e-7F) * (L::abs(crossing.enter) + L::abs(crossing.leave));
+    return L::less_equal(crossing.enter, crossing.leave + slack);
+  }
+
+  void push_children(std::uint32_t index) noexcept {
+    alignas(64) float enter[tree::wide_lanes];
+    const std::size_t first = size_;
+    for (unsigned lanes = lanes_met(task_.tree.nodes()[index], enter); lanes != 0; lanes &= lanes - 1U) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
+      // The nearest last, for it is visited first and shortens the segment.
+      std::size_t at = size_++;
+      for (; at > first && stack_[at - 1].enter < enter[lane]; --at) stack_[at] = stack_[at - 1];
+      stack_[at] = {index * static_cast<std::uint32_t>(tree::wide_lanes) + lane, enter[lane]};
+    }
+  }
+
+  /// Triangles of the leaf that the ray's line may cross: those about whose three edges it does not certainly turn both
+  /// ways. In single precision from where the ray enters, about the leaf's centre, so that errors are relative to the
+  /// leaf's size.
+  ODDS_LANES_INLINE unsigned triangles_met(const Open& open, const tree::WideLeaf& leaf) const noexcept {
+    const tree::WideNode& node = node_of(open.slot);
+    const std::uint32_t lane = open.slot % tree::wide_lanes;
+    float span = 0.0F;
+    F from[3];
+    for (int i = 0; i < 3; ++i) {
+      const double at = task_.origin[i] + static_cast<double>(open.enter) * task_.direction[i] -
+                        static_cast<double>(node.center[i][lane]);
+      const auto place = static_cast<float>(at);
+      from[i] = L::all(place);
+      span = std::max(span, node.half[i][lane] + (place < 0.0F ? -place : place));
+    }
+    F corner[3][3];
+    for (int k = 0; k < 3; ++k) {
+      for (int i = 0; i < 3; ++i) corner[k][i] = L::load(leaf.corner[k][i]) - from[i];
+    }
+    F low = L::all(0.0F);
+    F high = low;
+    for (int k = 0; k < 3; ++k) {
+      const F(&u)[3] = corner[k];
+      const F(&v)[3] = corner[(k + 1) % 3];
+      const F turn = (L::all(segment_.direction[0]) * (u[1] * v[2] - u[2] * v[1]) +
+                      L::all(segment_.direction[1]) * (u[2] * v[0] - u[0] * v[2])) +
+                     L::all(segment_.direction[2]) * (u[0] * v[1] - u[1] * v[0]);
+      low = k == 0 ? turn : L::min(low, turn);
+      high = k == 0 ? turn : L::max(high, turn);
+    }
+    // A coordinate errs by 3 roundings of `span`, a direction's by one: three sums of products of two below
+    // 40 roundings of span^2. Where they underflow all are candidates.
+    const F tolerance = L::all(64.0F * 0x1p-24F * span * span + std::numeric_limits<float>::min());
+    const unsigned apart = ~L::less_equal(low * L::all(-1.0F), tolerance) & ~L::less_equal(high, tolerance);
+    return ~apart & 0xFFU;
+  }
+
+  void test_leaf(const Open& open, tree::ChildRef child) noexcept {
+    const tree::WideLeaf& leaf = task_.tree.leaves()[child.index()];
+    const unsigned used = (2U << (child.count() - 1U)) - 1U;
+    for (unsigned lanes = triangles_met(open, leaf) & used; lanes != 0; lanes &= lanes - 1U) {
+      const std::uint32_t index = leaf.triangle[std::countr_zero(lanes)];
+      const mesh::Triangle& triangle = task_.mesh.triangles()[index];
+      const Vec3 corners[3] = {task_.mesh.vertices()[triangle[0]] - task_.tree.origin(),
+                               task_.mesh.vertices()[triangle[1]] - task_.tree.origin(),
+                               task_.mesh.vertices()[triangle[2]] - task_.tree.origin()};
+      const double distance = primitive::distance_along_ray(corners, task_.origin, task_.direction);
+      if (!(distance >= 0.0 && distance <= task_.length)) continue;
+      if (nearest_ && distance >= nearest_->distance) continue;
+      nearest_ = RayHit{distance, index};
+      segment_.length = static_cast<float>(distance * (1.0 + 1e-6));
+    }
+  }
+
+  const RayTask& task_;
+  volume::RaySegment segment_;
+  float margin_;
+  float inverse_[3];
+  float turned_[3];
+  std::array<Open, (tree::wide_lanes - 1) * (tree::deepest_level + 2)> stack_;
+  std::size_t size_ = 0;
+  std::optional<RayHit> nearest_;
+};
+
+}  // namespace odds::query::wide
