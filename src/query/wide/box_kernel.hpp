@@ -30,22 +30,30 @@ struct TurnedBox {
   Vector center;
   Vector extent;  ///< of the box along this frame's axes
   Vector normal;
-  float half[3];  ///< along its own axes, the columns of u
+  float half[3];        ///< along its own axes, the columns of u
+  float own_normal[3];  ///< the normal in its own axes
   float offset;
   float thickness;
+  float shifted;  ///< where the slab's middle stands from the box's, along the normal
 };
 
 ODDS_LANES_INLINE TurnedBox turn(const WideNode& node, std::uint32_t lane, const Turn& turn) noexcept {
   TurnedBox box;
   const Vector(&u)[3] = turn.column;
   const Vector(&au)[3] = turn.abs_column;
-  for (int i = 0; i < 3; ++i) box.half[i] = node.half[i][lane];
+  for (int i = 0; i < 3; ++i) {
+    box.half[i] = node.half[i][lane];
+    box.own_normal[i] = node.normal[i][lane];
+  }
   box.center = ((u[0] * node.center[0][lane] + u[1] * node.center[1][lane]) + u[2] * node.center[2][lane]) + turn.t;
   box.extent = (au[0] * box.half[0] + au[1] * box.half[1]) + au[2] * box.half[2];
   box.normal = (u[0] * node.normal[0][lane] + u[1] * node.normal[1][lane]) + u[2] * node.normal[2][lane];
   const Vector along = box.normal * turn.t;
   box.offset = ((along[0] + along[1]) + along[2]) + node.offset[lane];
   box.thickness = node.thickness[lane];
+  box.shifted =
+      node.offset[lane] - ((box.own_normal[0] * node.center[0][lane] + box.own_normal[1] * node.center[1][lane]) +
+                           box.own_normal[2] * node.center[2][lane]);
   return box;
 }
 
@@ -81,23 +89,28 @@ ODDS_LANES_INLINE typename L::Float gaps(const WideNode& node, const TurnedBox& 
     if constexpr (far) squares = squares + L::max(one, none) * L::max(one, none);
   }
   if constexpr (far) gap = L::max(gap, L::root(squares) * L::all(0.999999F));
-  {  // the box's slab
-    const F along = (L::all(box.normal[0]) * c[0] + L::all(box.normal[1]) * c[1]) + L::all(box.normal[2]) * c[2];
-    const F reach = (L::abs(L::all(box.normal[0])) * h[0] + L::abs(L::all(box.normal[1])) * h[1]) +
-                    L::abs(L::all(box.normal[2])) * h[2];
-    gap = L::max(gap, L::abs(along - L::all(box.offset)) - (reach + L::all(box.thickness)));
-  }
+  // Along one slab's normal n the other volume reaches no farther than its own slab and box let it: with its normal m
+  // and cosine = n . m, n = cosine m + rest, and it is bounded along m by its slab and along the rest by its box.
   F n[3];
   for (int i = 0; i < 3; ++i) n[i] = L::load(node.normal[i]);
+  const F cosine = (L::all(box.normal[0]) * n[0] + L::all(box.normal[1]) * n[1]) + L::all(box.normal[2]) * n[2];
+  const F thickness = L::load(node.thickness);
+  {  // the box's slab
+    const F along = (L::all(box.normal[0]) * c[0] + L::all(box.normal[1]) * c[1]) + L::all(box.normal[2]) * c[2];
+    const F shifted = L::load(node.offset) - ((n[0] * c[0] + n[1] * c[1]) + n[2] * c[2]);
+    F reach = L::abs(cosine) * thickness;
+    for (int i = 0; i < 3; ++i) reach = reach + L::abs(L::all(box.normal[i]) - cosine * n[i]) * h[i];
+    gap = L::max(gap, L::abs((along + cosine * shifted) - L::all(box.offset)) - (reach + L::all(box.thickness)));
+  }
   {  // the lanes' slabs
     const F along = (n[0] * L::all(box.center[0]) + n[1] * L::all(box.center[1])) + n[2] * L::all(box.center[2]);
-    F reach = L::load(node.thickness);
+    F reach = L::abs(cosine) * L::all(box.thickness);
     for (int j = 0; j < 3; ++j) {
-      const F cosine =
+      const F own =
           (n[0] * L::all(turn.column[j][0]) + n[1] * L::all(turn.column[j][1])) + n[2] * L::all(turn.column[j][2]);
-      reach = reach + L::abs(cosine) * L::all(box.half[j]);
+      reach = reach + L::abs(own - cosine * L::all(box.own_normal[j])) * L::all(box.half[j]);
     }
-    gap = L::max(gap, L::abs(along - L::load(node.offset)) - reach);
+    gap = L::max(gap, L::abs((along + cosine * L::all(box.shifted)) - L::load(node.offset)) - (reach + thickness));
   }
   for (int j = 0; j < 3; ++j) {  // the box's own axes
     const F along =
