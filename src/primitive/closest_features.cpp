@@ -7,17 +7,30 @@
 namespace odds::primitive::detail {
 namespace {
 
-Vec3 closest_on_segment(const Vec3& x, const Vec3& p, const Vec3& q) noexcept {
-  const Vec3 direction = q - p;
-  const double length2 = direction.squaredNorm();
-  if (!(length2 > 0.0)) return p;
-  const double t = direction.dot(x - p) / length2;
-  if (!(t > 0.0)) return p;
-  if (t >= 1.0) return q;
-  return p + t * direction;
-}
+/// A polygon with what every comparison with it needs.
+struct Side {
+  const Vec3* corner;
+  int count;
+  int edges;
+  Vec3 edge[3];
+  double length2[3];
+  Vec3 normal = Vec3::Zero();
+  double normal2 = 0.0;
 
-// Keeps the closest pair seen.
+  explicit Side(CornerSpan polygon) noexcept
+      : corner(polygon.corner), count(polygon.count), edges(count == 3 ? 3 : count - 1) {
+    for (int i = 0; i < edges; ++i) {
+      edge[i] = corner[(i + 1) % count] - corner[i];
+      length2[i] = edge[i].squaredNorm();
+    }
+    if (count == 3) {
+      normal = edge[0].cross(corner[2] - corner[0]);
+      normal2 = normal.squaredNorm();
+    }
+  }
+};
+
+/// Keeps the closest pair seen.
 struct Closest {
   ClosestPoints best{HUGE_VAL, Vec3::Zero(), Vec3::Zero()};
 
@@ -29,53 +42,62 @@ struct Closest {
 
 // A corner against all edges and the face of a polygon; calls offer(point of polygon).
 template <class Offer>
-void corner_to_polygon(const Vec3& x, CornerSpan polygon, const Offer& offer) noexcept {
-  const Vec3* corner = polygon.corner;
-  if (polygon.count == 1) return offer(corner[0]);
-  if (polygon.count == 2) return offer(closest_on_segment(x, corner[0], corner[1]));
-  for (int i = 0; i < 3; ++i) offer(closest_on_segment(x, corner[i], corner[(i + 1) % 3]));
-  const Vec3 u = corner[1] - corner[0];
-  const Vec3 v = corner[2] - corner[0];
-  const Vec3 normal = u.cross(v);
-  const double normal2 = normal.squaredNorm();
-  if (!(normal2 > 0.0)) return;
-  const Vec3 w = x - corner[0];
-  const double along_u = w.cross(v).dot(normal) / normal2;
-  const double along_v = u.cross(w).dot(normal) / normal2;
+void corner_to_polygon(const Vec3& x, const Side& side, const Closest& closest, const Offer& offer) noexcept {
+  if (side.count == 1) return offer(side.corner[0]);
+  for (int i = 0; i < side.edges; ++i) {
+    const Vec3& from = side.corner[i];
+    const double along = side.edge[i].dot(x - from);
+    if (!(along > 0.0)) {
+      offer(from);
+    } else if (along < side.length2[i]) {
+      offer(from + (along / side.length2[i]) * side.edge[i]);
+    } else if (side.count == 2) {  // a triangle's next edge begins there
+      offer(side.corner[1]);
+    }
+  }
+  if (!(side.normal2 > 0.0)) return;
+  const Vec3 w = x - side.corner[0];
+  const double height = side.normal.dot(w);
+  if (height * height >= closest.best.squared_distance * side.normal2) return;
+  const Vec3 v = -side.edge[2];
+  const double along_u = w.cross(v).dot(side.normal) / side.normal2;
+  const double along_v = side.edge[0].cross(w).dot(side.normal) / side.normal2;
   // Whatever rounding does to a sliver's normal, the point offered is one of the triangle's.
-  if (along_u >= 0.0 && along_v >= 0.0 && along_u + along_v <= 1.0) offer(corner[0] + along_u * u + along_v * v);
+  if (along_u >= 0.0 && along_v >= 0.0 && along_u + along_v <= 1.0) {
+    offer(side.corner[0] + along_u * side.edge[0] + along_v * v);
+  }
 }
 
 // The pair of points inside both segments at which they pass; corners are left to corner_to_polygon. Dividing by the
 // squared cross product keeps near-parallel segments accurate, where the usual a c - b^2 cancels.
-void edge_to_edge(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s, Closest& closest) noexcept {
-  const Vec3 u = q - p;
-  const Vec3 v = s - r;
+void edge_to_edge(const Side& a, int i, const Side& b, int j, Closest& closest) noexcept {
+  const Vec3& u = a.edge[i];
+  const Vec3& v = b.edge[j];
   const Vec3 normal = u.cross(v);
   const double normal2 = normal.squaredNorm();
   if (!(normal2 > 0.0)) return;
-  const Vec3 w = r - p;
-  const double along_u = w.cross(v).dot(normal) / normal2;
-  const double along_v = w.cross(u).dot(normal) / normal2;
-  if (along_u >= 0.0 && along_u <= 1.0 && along_v >= 0.0 && along_v <= 1.0) {
-    closest.offer(p + along_u * u, r + along_v * v);
+  const Vec3 w = b.corner[j] - a.corner[i];
+  const double height = w.dot(normal);
+  if (height * height >= closest.best.squared_distance * normal2) return;  // so far apart are the lines
+  const double along_u = w.cross(v).dot(normal);
+  const double along_v = w.cross(u).dot(normal);
+  if (along_u >= 0.0 && along_u <= normal2 && along_v >= 0.0 && along_v <= normal2) {
+    closest.offer(a.corner[i] + (along_u / normal2) * u, b.corner[j] + (along_v / normal2) * v);
   }
 }
 
-int edges_of(CornerSpan polygon) noexcept { return polygon.count == 3 ? 3 : polygon.count - 1; }
-
-ClosestPoints all_pairs(CornerSpan a, CornerSpan b) noexcept {
+ClosestPoints all_pairs(CornerSpan polygon_a, CornerSpan polygon_b) noexcept {
+  const Side a(polygon_a);
+  const Side b(polygon_b);
   Closest closest;
   for (int i = 0; i < a.count; ++i) {
-    corner_to_polygon(a.corner[i], b, [&](const Vec3& on_b) { closest.offer(a.corner[i], on_b); });
+    corner_to_polygon(a.corner[i], b, closest, [&](const Vec3& on_b) { closest.offer(a.corner[i], on_b); });
   }
   for (int j = 0; j < b.count; ++j) {
-    corner_to_polygon(b.corner[j], a, [&](const Vec3& on_a) { closest.offer(on_a, b.corner[j]); });
+    corner_to_polygon(b.corner[j], a, closest, [&](const Vec3& on_a) { closest.offer(on_a, b.corner[j]); });
   }
-  for (int i = 0; i < edges_of(a); ++i) {
-    for (int j = 0; j < edges_of(b); ++j) {
-      edge_to_edge(a.corner[i], a.corner[(i + 1) % a.count], b.corner[j], b.corner[(j + 1) % b.count], closest);
-    }
+  for (int i = 0; i < a.edges; ++i) {
+    for (int j = 0; j < b.edges; ++j) edge_to_edge(a, i, b, j, closest);
   }
   return closest.best;
 }

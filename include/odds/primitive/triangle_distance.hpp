@@ -24,7 +24,7 @@ struct ClosestPoints {
                                                             const Vec3 triangle[3]) noexcept;
 
 /// Two triangles. If they meet (exactly as triangles_intersect says) both points are the middle of the segment in which
-/// they do. Some 500 ns.
+/// they do. Some 200 ns.
 [[nodiscard]] ClosestPoints closest_points(const Vec3 a[3], const Vec3 b[3]) noexcept;
 
 }  // namespace odds::primitive

@@ -1,6 +1,8 @@
 // The distance between two wide trees: nearest pair of slots first, by branch and bound.
 #pragma once
 
+#include <limits>
+
 #include "query/wide/opening.hpp"
 
 namespace odds::query::wide {
@@ -79,15 +81,24 @@ class Nearest {
     triangle_gaps<L>(in_a, in_b, met_.turn_into(0), shift, met_.margin(), gaps);
     const std::uint32_t rows = in_b.count();
     task_.spending.spend_triangle_pairs(rows);
-    for (std::uint32_t row = 0; row < rows; ++row) {
-      for (std::uint32_t lane = 0; lane < in_a.count(); ++lane) {
-        if (!(static_cast<double>(gaps[row][lane]) < task_.bound)) continue;
-        if (!task_.spending.may_go_on() || !task_.spending.allows(1)) return false;
-        task_.spending.spend_triangle_pairs(1);
-        met_.bring_nearer(in_a.leaf.triangle[lane], in_b.leaf.triangle[row], task_);
+    // The nearest first, so that the bound sinks before the others are asked.
+    for (;;) {
+      std::uint32_t row = 0;
+      std::uint32_t lane = 0;
+      for (std::uint32_t r = 0; r < rows; ++r) {
+        for (std::uint32_t l = 0; l < in_a.count(); ++l) {
+          if (gaps[r][l] < gaps[row][lane]) {
+            row = r;
+            lane = l;
+          }
+        }
       }
+      if (!(static_cast<double>(gaps[row][lane]) < task_.bound)) return true;
+      gaps[row][lane] = std::numeric_limits<float>::infinity();
+      if (!task_.spending.may_go_on() || !task_.spending.allows(1)) return false;
+      task_.spending.spend_triangle_pairs(1);
+      met_.bring_nearer(in_a.leaf.triangle[lane], in_b.leaf.triangle[row], task_);
     }
-    return true;
   }
 
   void leave() noexcept {
