@@ -303,7 +303,12 @@ Result<Scene> read_scene(const std::filesystem::path& path) {
   std::ostringstream text;
   text << file.rdbuf();
   if (!file) return Error{path.string(), "", "cannot be read", "check that it is a file and may be read"};
-  return parse_scene(text.str(), path.string(), path.parent_path());
+  const std::string whole = text.str();
+  if (const std::size_t begin = whole.find_first_not_of(" \t\r\n"); begin != std::string::npos && whole[begin] == '<') {
+    return Error{path.string(), "1:1", "is XML, not a scene",
+                 "make a scene from a URDF or SDFormat file: odds import FILE --out DIR"};
+  }
+  return parse_scene(whole, path.string(), path.parent_path());
 }
 
 ode::WorldOptions Scene::world_options(const haptics::EffectSet& asked) const {

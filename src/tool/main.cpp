@@ -37,6 +37,7 @@ int main(int argc, char** argv) {
   odds::tool::add_accuracy(app, action);
   odds::tool::add_run(app, action);
   odds::tool::add_explain(app, action);
+  odds::tool::add_import(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& parse_error) {

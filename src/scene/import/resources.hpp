@@ -1,0 +1,36 @@
+// Where the meshes of a description are, and what they hold.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "odds/mesh/triangle_mesh.hpp"
+#include "odds/scene/import.hpp"
+#include "scene/import/xml_reader.hpp"
+
+namespace odds::scene {
+
+/// Mesh files by the way they are named in descriptions; each is read once.
+class Resources {
+ public:
+  Resources(const std::filesystem::path& description, const ImportOptions& options)
+      : description_(description), options_(options) {}
+
+  [[nodiscard]] const std::filesystem::path& description() const { return description_; }
+  /// In the file's own units. Throws ImportFailure, which names the description, the place of the collision and every
+  /// path that was tried.
+  std::shared_ptr<const mesh::TriangleMesh> mesh(const std::string& uri, haptics::Place place);
+
+ private:
+  [[nodiscard]] std::filesystem::path locate(const std::string& uri, haptics::Place place) const;
+  [[nodiscard]] std::vector<std::filesystem::path> candidates(const std::string& uri) const;
+  [[noreturn]] void fail(haptics::Place place, const std::string& what, const std::string& remedy) const;
+
+  std::filesystem::path description_;
+  const ImportOptions& options_;
+  std::map<std::filesystem::path, std::shared_ptr<const mesh::TriangleMesh>> read_;
+};
+
+}  // namespace odds::scene

@@ -1,0 +1,157 @@
+// Reading XML: size, syntax, places, numbers.
+#include "scene/import/xml_reader.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+namespace odds::scene {
+namespace {
+
+constexpr std::uintmax_t largest_file = std::uintmax_t{8} << 20;
+constexpr double greatest_number = 1e12;
+
+[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& place, const std::string& what,
+                         const std::string& remedy) {
+  throw ImportFailure{{path.string(), place, what, remedy}};
+}
+
+std::string read_whole(const std::filesystem::path& path) {
+  std::error_code code;
+  const std::uintmax_t size = std::filesystem::file_size(path, code);
+  if (code) refuse(path, "", "cannot be read: " + code.message(), "check the path of the description");
+  if (size > largest_file) refuse(path, "", "is larger than 8 MiB", "descriptions are small; check the path");
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  if (!file) refuse(path, "", "cannot be read", "check that it is a file and may be read");
+  return text.str();
+}
+
+haptics::Place place_at(const std::vector<std::size_t>& line_ends, std::size_t offset) {
+  const auto line = std::lower_bound(line_ends.begin(), line_ends.end(), offset);
+  const std::size_t begin = line == line_ends.begin() ? 0 : *(line - 1) + 1;
+  return {static_cast<std::uint32_t>(line - line_ends.begin() + 1), static_cast<std::uint32_t>(offset - begin + 1)};
+}
+
+}  // namespace
+
+XmlReader::XmlReader(const std::filesystem::path& path) : path_(path), text_(read_whole(path)) {
+  for (std::size_t i = 0; i < text_.size(); ++i) {
+    if (text_[i] == '\n') line_ends_.push_back(i);
+  }
+  // The parser neither recurses nor expands entities of a DOCTYPE, which it skips: a bomb stays what it is.
+  const pugi::xml_parse_result parsed =
+      document_.load_buffer(text_.data(), text_.size(), pugi::parse_default, pugi::encoding_utf8);
+  if (!parsed) {
+    const auto offset = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, parsed.offset));
+    refuse(path_, place_at(line_ends_, offset).text(), fmt::format("not valid XML: {}", parsed.description()),
+           "correct the syntax at this place");
+  }
+  if (!root()) refuse(path_, "1:1", "has no element", "give a URDF or SDFormat description");
+  if (text_.find("http://www.ros.org/wiki/xacro") != std::string::npos || text_.find("<xacro:") != std::string::npos) {
+    refuse(path_, place_of(root()).text(), "is a xacro file, which a preprocessor makes a URDF from",
+           "run it first: xacro FILE > robot.urdf");
+  }
+}
+
+haptics::Place XmlReader::place_of(pugi::xml_node node) const {
+  const std::ptrdiff_t offset = node.offset_debug();
+  return offset < 0 ? haptics::Place{} : place_at(line_ends_, static_cast<std::size_t>(offset));
+}
+
+void XmlReader::fail(pugi::xml_node node, const std::string& what, const std::string& remedy) const {
+  refuse(path_, place_of(node).text(), what, remedy);
+}
+
+std::string XmlReader::text(pugi::xml_node node, const char* attribute) const {
+  const std::string value = node.attribute(attribute).value();
+  if (value.empty()) {
+    fail(node, fmt::format("<{}> lacks the attribute '{}'", node.name(), attribute),
+         fmt::format("add {}=\"...\"", attribute));
+  }
+  return value;
+}
+
+pugi::xml_node XmlReader::child(pugi::xml_node node, const char* name) const {
+  const pugi::xml_node found = node.child(name);
+  if (!found) fail(node, fmt::format("<{}> lacks the element <{}>", node.name(), name), fmt::format("add <{}>", name));
+  return found;
+}
+
+std::string XmlReader::child_text(pugi::xml_node node, const char* name) const {
+  return child(node, name).text().get();
+}
+
+std::vector<double> XmlReader::numbers(pugi::xml_node node, std::string_view text, std::size_t count,
+                                       std::string_view what) const {
+  std::vector<double> found;
+  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; };
+  for (std::size_t at = 0; at < text.size();) {
+    if (blank(text[at])) {
+      ++at;
+      continue;
+    }
+    std::size_t end = at;
+    while (end < text.size() && !blank(text[end])) ++end;
+    const char* begin = text.data() + at + (text[at] == '+' ? 1 : 0);
+    double number = 0.0;
+    const auto [rest, status] = std::from_chars(begin, text.data() + end, number);
+    if (status != std::errc{} || rest != text.data() + end || !std::isfinite(number)) {
+      fail(node,
+           fmt::format("{}: '{}' is not a finite number", what, text.substr(at, std::min<std::size_t>(end - at, 40))),
+           "give a plain number");
+    }
+    if (std::abs(number) > greatest_number) {
+      fail(node, fmt::format("{}: {} is beyond 1e12", what, number), "give a smaller number, in SI units");
+    }
+    found.push_back(number);
+    if (found.size() > count) break;
+    at = end;
+  }
+  if (found.size() != count) {
+    fail(node,
+         fmt::format("{} has {} numbers, not {}", what, found.size() > count ? "more" : std::to_string(found.size()),
+                     count),
+         fmt::format("give {} numbers", count));
+  }
+  return found;
+}
+
+double XmlReader::positive(pugi::xml_node node, std::string_view text, std::string_view what) const {
+  const double value = numbers(node, text, 1, what).front();
+  if (!(value > 0.0)) fail(node, fmt::format("{} is {}, not greater than 0", what, value), "give a positive number");
+  return value;
+}
+
+Vec3 XmlReader::vector(pugi::xml_node node, std::string_view text, std::string_view what) const {
+  const std::vector<double> v = numbers(node, text, 3, what);
+  return {v[0], v[1], v[2]};
+}
+
+Vec3 XmlReader::positive_vector(pugi::xml_node node, std::string_view text, std::string_view what) const {
+  const Vec3 v = vector(node, text, what);
+  if (!(v.minCoeff() > 0.0)) fail(node, fmt::format("{} is not greater than 0", what), "give positive numbers");
+  return v;
+}
+
+std::string XmlReader::nearest(std::string_view name, std::vector<std::string_view> candidates) {
+  constexpr std::size_t longest = 100;  // the search takes the product of both lengths
+  constexpr std::size_t most = 1000;
+  if (name.size() > longest) return "";
+  std::erase_if(candidates, [](std::string_view other) { return other.size() > longest; });
+  if (candidates.size() > most) candidates.resize(most);
+  return haptics::nearest_name(name, candidates);
+}
+
+Mat3 rotation_of_rpy(const Vec3& rpy_rad) {
+  return (Eigen::AngleAxisd(rpy_rad.z(), Vec3::UnitZ()) * Eigen::AngleAxisd(rpy_rad.y(), Vec3::UnitY()) *
+          Eigen::AngleAxisd(rpy_rad.x(), Vec3::UnitX()))
+      .toRotationMatrix();
+}
+
+}  // namespace odds::scene

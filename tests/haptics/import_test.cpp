@@ -1,0 +1,333 @@
+// Descriptions of robots and worlds become scenes: frames, units, groups, masses; and what is refused, where.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <numbers>
+
+#include "odds/mesh/faults.hpp"
+#include "odds/mesh/made/by_name.hpp"
+#include "odds/mesh/write.hpp"
+#include "odds/scene/import.hpp"
+#include "odds/scene/scene.hpp"
+#include "odds/scene/simulation.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace odds::scene {
+namespace {
+
+class Import : public ::testing::Test {
+ protected:
+  Result<ImportedScene> import(const std::string& name, const std::string& text, const ImportOptions& options = {}) {
+    folder_.write(name, text);
+    return import_description(folder_ / name, options);
+  }
+  ImportedScene good(const std::string& name, const std::string& text, const ImportOptions& options = {}) {
+    auto imported = import(name, text, options);
+    EXPECT_TRUE(imported.ok()) << (imported.ok() ? "" : imported.error().message());
+    return imported.ok() ? std::move(imported).value() : ImportedScene{};
+  }
+  Error refused(const std::string& name, const std::string& text) {
+    const auto imported = import(name, text);
+    EXPECT_FALSE(imported.ok()) << text.substr(0, 300);
+    if (imported.ok()) return {};
+    EXPECT_EQ(imported.error().file, folder_ / name);
+    EXPECT_FALSE(imported.error().what.empty());
+    EXPECT_FALSE(imported.error().remedy.empty()) << imported.error().message();
+    return imported.error();
+  }
+  Scene scene_of(const ImportedScene& imported) {
+    EXPECT_FALSE(write_imported(imported, folder_.path() / "out"));
+    auto scene = read_scene(folder_.path() / "out/scene.toml");
+    EXPECT_TRUE(scene.ok()) << scene.error().message();
+    return std::move(scene).value();
+  }
+  static bool assumes(const ImportedScene& scene, const std::string& words) {
+    for (const std::string& sentence : scene.assumptions) {
+      if (sentence.find(words) != std::string::npos) return true;
+    }
+    return false;
+  }
+  testing::TemporaryFolder folder_;
+};
+
+void expect_box(const mesh::TriangleMesh& mesh, const Vec3& lower, const Vec3& upper, double within) {
+  EXPECT_LT((mesh.lower() - lower).norm(), within) << mesh.lower().transpose();
+  EXPECT_LT((mesh.upper() - upper).norm(), within) << mesh.upper().transpose();
+}
+
+std::string urdf(const std::string& inside) {
+  return "<?xml version=\"1.0\"?>\n<robot name=\"r\">\n" + inside + "\n</robot>\n";
+}
+std::string sdf(const std::string& inside) { return "<sdf version=\"1.9\">\n" + inside + "\n</sdf>\n"; }
+std::string link(const std::string& name, const std::string& inside) {
+  return "<link name=\"" + name + "\">" + inside + "</link>\n";
+}
+std::string box_of(const std::string& size, const std::string& origin = "") {
+  return "<collision>" + origin + "<geometry><box size=\"" + size + "\"/></geometry></collision>";
+}
+
+// Turned by 90 degrees about z, then about y: URDF's rpy is about fixed axes x, y, z in this order.
+TEST_F(Import, UrdfOriginsAreXyzAndRollPitchYawAboutFixedAxes) {
+  const std::string half_pi = std::to_string(std::numbers::pi / 2.0);
+  const ImportedScene imported =
+      good("r.urdf",
+           urdf(link("a", box_of("0.1 0.2 0.4", "<origin xyz=\"1 2 3\" rpy=\"0 " + half_pi + " " + half_pi + "\"/>"))));
+  ASSERT_EQ(imported.meshes.size(), 1U);
+  // x, y, z of the box go to -z, -x, y of the link.
+  expect_box(imported.meshes[0].mesh, {0.9, 1.8, 2.95}, {1.1, 2.2, 3.05}, 1e-6);
+}
+
+TEST_F(Import, LinksOnFixedJointsAreOneBodyAndOthersAreHeldAtZero) {
+  const std::string text =
+      urdf(link("world", "") + link("base", box_of("1 1 1")) + link("cover", box_of("0.2 0.2 0.2")) +
+           link("arm", box_of("0.1 0.1 0.1")) +
+           R"(<joint name="bolted" type="fixed"><parent link="world"/><child link="base"/><origin xyz="0 0 10"/></joint>
+         <joint name="glued" type="fixed"><parent link="base"/><child link="cover"/><origin xyz="0 0 1"/></joint>
+         <joint name="elbow" type="revolute"><parent link="cover"/><child link="arm"/>
+           <origin xyz="0 0 1" rpy="0 0 1.5707963267948966"/></joint>)");
+  const ImportedScene imported = good("r.urdf", text);
+  EXPECT_EQ(imported.links, 4U);
+  EXPECT_EQ(imported.joints, 3U);
+  EXPECT_TRUE(assumes(imported, "1 joints that move ('elbow', revolute and the like) are held at zero"));
+  const Scene scene = scene_of(imported);
+  ASSERT_EQ(scene.bodies.size(), 2U);
+  EXPECT_FALSE(scene.bodies[0].dynamic);
+  EXPECT_LT((scene.bodies[0].pose.translation - Vec3(0, 0, 10)).norm(), 1e-12);
+  expect_box(imported.meshes[0].mesh, {-0.5, -0.5, -0.5}, {0.5, 0.5, 1.1}, 1e-12);
+  EXPECT_LT((scene.bodies[1].pose.translation - Vec3(0, 0, 12)).norm(), 1e-12);
+  EXPECT_LT((scene.bodies[1].pose.rotation * Vec3::UnitX() - Vec3::UnitY()).norm(), 1e-12);
+}
+
+TEST_F(Import, ARobotThatStandsOnNothingMovesAsOneWithItsMass) {
+  const std::string inertial = "<inertial><mass value=\"2.5\"/></inertial>";
+  const ImportedScene imported =
+      good("r.urdf",
+           urdf(link("a", inertial + box_of("1 1 1") + "<visual/>") + link("b", inertial + box_of("1 1 1")) +
+                R"(<joint name="j" type="continuous"><parent link="a"/><child link="b"/><origin xyz="0 0 1"/></joint>
+              <gazebo reference="a"><mu1>0.3</mu1></gazebo><gazebo reference="b"><mu1 value="0.8"/></gazebo>)"));
+  EXPECT_TRUE(assumes(imported, "left out: 1 <visual>"));
+  EXPECT_TRUE(assumes(imported, "friction differs, from 0.3 to 0.8"));
+  Scene scene = scene_of(imported);
+  ASSERT_EQ(scene.bodies.size(), 1U);
+  EXPECT_TRUE(scene.bodies[0].dynamic);
+  EXPECT_EQ(scene.bodies[0].mass.mass_kg, 5.0);
+  ASSERT_NE(scene.find_effect("friction"), nullptr);
+  SimulationOptions options;
+  options.simulated_time = true;
+  options.seconds = 0.1;
+  auto simulation = Simulation::make(std::move(scene), options);
+  ASSERT_TRUE(simulation.ok()) << simulation.error().message();
+  const RunOutcome outcome = simulation.value()->run();
+  EXPECT_EQ(outcome.ticks.size(), 100U);
+  EXPECT_NEAR(simulation.value()->world().state({0}).velocity_m_per_s.z(), -0.981, 1e-3);
+}
+
+TEST_F(Import, MeshesAreScaledAndFoundInPackages) {
+  const auto block = mesh::made::make_shape("made:box:x=1,y=2,z=3");
+  ASSERT_TRUE(block.ok());
+  std::filesystem::create_directories(folder_.path() / "pack/meshes");
+  std::filesystem::create_directories(folder_.path() / "pack/urdf");
+  ASSERT_FALSE(mesh::write(block.value(), folder_.path() / "pack/meshes/block.stl"));
+  const auto text = [](const std::string& uri, const std::string& scale) {
+    return urdf(link("a", "<collision><geometry><mesh filename=\"" + uri + "\"" + scale + "/></geometry></collision>"));
+  };
+  // From inside of the package, by its folder's name; from elsewhere, by --package; by a plain path.
+  const std::string mirrored = " scale=\"0.001 0.001 -0.001\"";
+  const ImportedScene inside = good("pack/urdf/r.urdf", text("package://pack/meshes/block.stl", mirrored));
+  ASSERT_EQ(inside.meshes.size(), 1U);
+  expect_box(inside.meshes[0].mesh, {-0.0005, -0.001, -0.0015}, {0.0005, 0.001, 0.0015}, 1e-9);
+  EXPECT_TRUE(mesh::find_faults(inside.meshes[0].mesh).closed);
+  ImportOptions options;
+  options.packages["elsewhere"] = folder_.path() / "pack";
+  EXPECT_EQ(good("r.urdf", text("package://elsewhere/meshes/block.stl", ""), options).bodies, 1U);
+  EXPECT_EQ(good("r.urdf", text("pack/meshes/block.stl", "")).bodies, 1U);
+  EXPECT_EQ(good("r.urdf", text("file://" + folder_ / "pack/meshes/block.stl", "")).bodies, 1U);
+}
+
+TEST_F(Import, RoundShapesAreClosedAndOfTheirSize) {
+  const auto shape = [](const std::string& element) {
+    return urdf(link("a", "<collision><geometry>" + element + "</geometry></collision>"));
+  };
+  const ImportedScene cylinder = good("c.urdf", shape("<cylinder radius=\"0.1\" length=\"0.6\"/>"));
+  expect_box(cylinder.meshes.at(0).mesh, {-0.1, -0.1, -0.3}, {0.1, 0.1, 0.3}, 1e-12);
+  const ImportedScene sphere = good("s.urdf", shape("<sphere radius=\"0.1\"/>"));
+  expect_box(sphere.meshes.at(0).mesh, {-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1}, 1e-12);
+  const ImportedScene capsule = good("k.urdf", shape("<capsule radius=\"0.1\" length=\"0.6\"/>"));
+  expect_box(capsule.meshes.at(0).mesh, {-0.1, -0.1, -0.4}, {0.1, 0.1, 0.4}, 1e-12);
+  for (const ImportedScene* each : {&cylinder, &sphere, &capsule}) {
+    const mesh::TriangleMesh& mesh = each->meshes.at(0).mesh;
+    EXPECT_TRUE(mesh::find_faults(mesh).closed);
+    double volume = 0.0;
+    for (const mesh::Triangle& t : mesh.triangles()) {
+      volume += mesh.vertices()[t[0]].dot(mesh.vertices()[t[1]].cross(mesh.vertices()[t[2]])) / 6.0;
+    }
+    const double ball = 4.0 / 3.0 * std::numbers::pi * 0.001;
+    const double tube = std::numbers::pi * 0.01 * 0.6;
+    const double exact = each == &cylinder ? tube : each == &sphere ? ball : ball + tube;
+    EXPECT_NEAR(volume / exact, 0.99, 0.01);  // outward, and inscribed
+  }
+}
+
+TEST_F(Import, SdfPosesAreRelativeToWhatTheyName) {
+  const std::string box = "<collision name=\"c\"><geometry><box><size>0.2 0.2 0.2</size></box></geometry></collision>";
+  const ImportedScene imported = good("w.sdf", sdf(R"(<world name="w"><gravity>0 0 -1.62</gravity>
+    <model name="m"><pose>10 0 0 0 0 90</pose><static>true</static>
+      <frame name="mark" attached_to="b"><pose>0 0 1 0 0 0</pose></frame>
+      <link name="a">)" + box + R"(<pose relative_to="mark">0 0 0.5 0 0 0</pose></link>
+      <link name="b">)" + box + R"(<pose>1 0 0 0 0 0</pose></link>
+      <model name="inner"><pose relative_to="b" degrees="true">0 0 0 0 0 90</pose>
+        <link name="c"><pose rotation_format="quat_xyzw">0 1 0 0 0 0 1</pose>)" +
+                                                   box + R"(</link></model>
+    </model>
+    <model name="loose"><link name="l">)" + box + R"(<inertial><mass>3</mass></inertial></link></model>
+    <light name="sun"/></world>)"));
+  const Scene scene = scene_of(imported);
+  ASSERT_EQ(scene.bodies.size(), 4U);
+  const double c = std::cos(90.0);  // the model's yaw was given in radians
+  const double s = std::sin(90.0);
+  EXPECT_LT((scene.bodies[0].pose.translation - Vec3(10 + c, s, 1.5)).norm(), 1e-9);
+  EXPECT_LT((scene.bodies[1].pose.translation - Vec3(10 + c, s, 0)).norm(), 1e-9);
+  // b's frame, turned by 90 degrees; then 1 m along y of that.
+  EXPECT_LT((scene.bodies[2].pose.translation - Vec3(10 + c - c, s - s, 0)).norm(), 1e-9)
+      << scene.bodies[2].pose.translation.transpose();
+  EXPECT_FALSE(scene.bodies[2].dynamic);
+  EXPECT_TRUE(scene.bodies[3].dynamic);
+  EXPECT_EQ(scene.bodies[3].mass.mass_kg, 3.0);
+  EXPECT_TRUE(assumes(imported, "left out: 1 <light>"));
+  EXPECT_NE(imported.text.find("g_m_per_s2 = [0, 0, -1.62]"), std::string::npos) << imported.text;
+}
+
+TEST_F(Import, APlaneIsASlabWithItsTopThere) {
+  const ImportedScene imported = good("w.sdf", sdf(R"(<model name="ground"><static>1</static><link name="l">
+    <collision name="c"><geometry><plane><normal>0 0 2</normal><size>5 5</size></plane></geometry></collision>
+    </link></model>)"));
+  expect_box(imported.meshes.at(0).mesh, {-10, -10, -1}, {10, 10, 0}, 1e-12);
+  EXPECT_TRUE(assumes(imported, "1 planes are slabs of 20 m by 20 m"));
+}
+
+TEST_F(Import, MotionCanBeAskedFor) {
+  ImportOptions options;
+  options.motion = ImportMotion::fixed;
+  const std::string text = urdf(link("a", box_of("1 1 1")));
+  EXPECT_FALSE(scene_of(good("r.urdf", text, options)).bodies[0].dynamic);
+  options.motion = ImportMotion::dynamic;
+  const ImportedScene imported = good("r.urdf", text, options);
+  EXPECT_TRUE(scene_of(imported).bodies[0].dynamic);
+  EXPECT_TRUE(assumes(imported, "'r::a' has no mass: its density is 1000 kg/m^3"));
+}
+
+TEST_F(Import, RefusesWithPlaceAndRemedy) {
+  const std::string a = link("a", box_of("1 1 1"));
+  const auto joint = [](const std::string& type, const std::string& parent, const std::string& child) {
+    return "<joint name=\"j" + parent + child + "\" type=\"" + type + "\"><parent link=\"" + parent +
+           "\"/><child link=\"" + child + "\"/></joint>\n";
+  };
+  const std::vector<std::array<std::string, 3>> cases = {
+      {urdf(link("a", box_of("1 nan 1"))), "3:", "is not a finite number"},
+      {urdf(link("a", box_of("1 1"))), "3:", "size has 2 numbers, not 3"},
+      {urdf(link("a", box_of("1 1 1 1"))), "3:", "size has more numbers, not 3"},
+      {urdf(link("a", box_of("1 1 -1"))), "3:", "size is not greater than 0"},
+      {urdf(link("a", box_of("1 1 1e13"))), "3:", "beyond 1e12"},
+      {urdf(link("a", box_of("1,1,1"))), "3:", "is not a finite number"},
+      {urdf(a + a), "4:", "a second link named 'a'"},
+      {urdf(a + link("b", "")), "2:", "the links 'a' and 'b' have no parent both"},
+      {urdf(a + "\n" + joint("fixed", "a", "arm")), "5:", "there is no link named 'arm'"},
+      {urdf(a + joint("sliding", "a", "a")), "4:", "the joint type 'sliding' is not known"},
+      {urdf(a + link("b", "") + joint("fixed", "a", "b") + joint("fixed", "b", "a")), "2:", "joints lead in a circle"},
+      {urdf(a + link("b", "") + joint("fixed", "a", "b") + joint("fixed", "a", "b")), "6:", "has two parents"},
+      {urdf(link("a", "<collision><geometry><cone/></geometry></collision>")),
+       "3:", "the geometry 'cone' is not known"},
+      {urdf(link("a", "<collision/>")), "3:", "<collision> lacks the element <geometry>"},
+      {urdf(link("a", "")), "", "no link has collision geometry"},
+      {urdf(""), "2:", "the robot has no link"},
+      {"<robot>\n<link name=\"a\">\n</robot>", "3:", "not valid XML"},
+      {"", "", "not valid XML"},
+      {"<mujoco/>", "1:", "<mujoco> is no description that is known"},
+      {"<robot xmlns:xacro=\"http://www.ros.org/wiki/xacro\"/>", "1:", "is a xacro file"},
+      {urdf(link("a", "<collision><geometry><mesh filename=\"no.stl\"/></geometry></collision>")),
+       "3:", "the mesh 'no.stl' is not there"},
+      {urdf(link("a", "<collision><geometry><mesh filename=\"package://no/no.stl\"/></geometry></collision>")),
+       "3:", "the mesh 'package://no/no.stl' is not there"},
+      {urdf(link("a", "<collision><geometry><mesh filename=\"https://x/y.stl\"/></geometry></collision>")),
+       "3:", "addresses of this kind are not followed"},
+      {sdf("<model name=\"m\"><link name=\"a\"><pose relative_to=\"b\"/></link></model>"), "2:", "there is no frame"},
+      {sdf("<model name=\"m\"><link name=\"a\"><pose relative_to=\"b\"/></link>\n<link name=\"b\"><pose "
+           "relative_to=\"a\"/></link></model>"),
+       "2:", "leads back to itself"},
+      {sdf("<model name=\"m\"><link name=\"a\"><pose>1 2 3</pose></link></model>"), "2:", "pose has 3 numbers, not 6"},
+      {sdf("<model name=\"m\"></model>"), "2:", "the model 'm' has no link"},
+      {sdf(""), "1:", "there is no model"}};
+  for (const auto& [text, place, what] : cases) {
+    const Error error = refused("bad.xml", text);
+    EXPECT_EQ(error.place.rfind(place, 0), 0U) << error.message() << "\n" << text;
+    EXPECT_NE(error.what.find(what), std::string::npos) << error.message() << "\n" << text;
+  }
+  std::ofstream(folder_.path() / "x.dae") << "x";
+  EXPECT_NE(
+      refused("bad.xml", urdf(link("a", "<collision><geometry><mesh filename=\"x.dae\"/></geometry></collision>")))
+          .what.find("dae files are not read"),
+      std::string::npos);
+}
+
+TEST_F(Import, SuggestsTheNameThatWasMeant) {
+  const std::string text =
+      urdf(link("forearm", box_of("1 1 1")) + link("hand", "") +
+           "<joint name=\"j\" type=\"fixed\"><parent link=\"forarm\"/><child link=\"hand\"/></joint>");
+  EXPECT_EQ(refused("r.urdf", text).remedy, "did you mean 'forearm'?");
+}
+
+TEST_F(Import, HostileDescriptionsEndSoonAndHarmlessly) {
+  std::string bomb = "<?xml version=\"1.0\"?><!DOCTYPE robot [<!ENTITY a \"aaaaaaaaaa\">";
+  for (char c = 'b'; c <= 'z'; ++c) {
+    bomb += std::string("<!ENTITY ") + c + " \"";
+    for (int i = 0; i < 10; ++i) bomb += std::string("&") + static_cast<char>(c - 1) + ";";
+    bomb += "\">";
+  }
+  bomb += "]><robot name=\"&z;\"><link name=\"&z;\">" + box_of("1 1 1") + "</link></robot>";
+  const ImportedScene exploded = good("bomb.urdf", bomb);  // the name is what stands there, unexpanded
+  EXPECT_LT(exploded.text.size(), 2000U);
+
+  std::string deep;
+  for (int i = 0; i < 200'000; ++i) deep += "<a>";
+  EXPECT_NE(refused("deep.urdf", deep).what.find("not valid XML"), std::string::npos);
+  std::string closed = deep;
+  for (int i = 0; i < 200'000; ++i) closed += "</a>";
+  EXPECT_NE(refused("deep.urdf", "<robot>" + closed + "</robot>").what.find("no link"), std::string::npos);
+  std::string nested;
+  for (int i = 0; i < 1000; ++i) nested += "<model name=\"m\">";
+  for (int i = 0; i < 1000; ++i) nested += "</model>";
+  EXPECT_NE(refused("nested.sdf", sdf(nested)).what.find("nested deeper than 32"), std::string::npos);
+  std::string chain;
+  for (int i = 0; i < 20'000; ++i) {
+    chain += "<link name=\"l" + std::to_string(i) + "\"><pose relative_to=\"l" + std::to_string(i + 1) + "\"/></link>";
+  }
+  EXPECT_NE(refused("chain.sdf", sdf("<model name=\"m\">" + chain + "</model>")).what.find("no frame"),
+            std::string::npos);
+  refused("long.urdf", urdf(link("a", "") + "<joint name=\"j\" type=\"fixed\"><parent link=\"" +
+                            std::string(2'000'000, 'x') + "\"/><child link=\"a\"/></joint>"));
+  EXPECT_NE(refused("large.urdf", urdf(std::string(9'000'000, ' '))).what.find("larger than 8 MiB"), std::string::npos);
+  EXPECT_FALSE(import_description(folder_ / "not_there.urdf").ok());
+  EXPECT_FALSE(import_description(folder_.path()).ok());
+}
+
+TEST_F(Import, NamesCannotLeadOutOfTheFolderOrOfTheirPlaceInTheScene) {
+  const std::string evil = "../../../etc/x&quot;&#10;[effects.gravity]&#10;a = &quot;";
+  const ImportedScene imported =
+      good("r.urdf", urdf(link(evil, box_of("1 1 1")) + link(std::string(5000, 'n'), box_of("1 1 1")) +
+                          "<joint name=\"j\" type=\"revolute\"><parent link=\"" + evil + "\"/><child link=\"" +
+                          std::string(5000, 'n') + "\"/></joint>"));
+  for (const ImportedMesh& mesh : imported.meshes) {
+    EXPECT_EQ(mesh.file.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-/."),
+              std::string::npos);
+    EXPECT_EQ(mesh.file.find(".."), std::string::npos);
+    EXPECT_EQ(mesh.file.rfind("meshes/", 0), 0U);
+    EXPECT_LT(mesh.file.size(), 120U);
+  }
+  const Scene scene = scene_of(imported);
+  EXPECT_EQ(scene.bodies.size(), imported.bodies);
+}
+
+}  // namespace
+}  // namespace odds::scene
