@@ -5,6 +5,7 @@
 
 #include "ode/colliders.hpp"
 #include "ode/contact_writer.hpp"
+#include "ode/frame_share.hpp"
 #include "ode/last_error.hpp"
 #include "ode/pair_table.hpp"
 #include "ode/statistics.hpp"
@@ -118,11 +119,14 @@ int answer_pair(PairEntry& entry, dGeomID o1, dGeomID o2, int flags, dContactGeo
     entry.last = record_of_bad_pose();
     return 0;
   }
-  const Settings settings = combine(entry.a->settings, entry.b->settings);
+  const Settings settings = within_share(combine(entry.a->settings, entry.b->settings));
   const int limit = room_for(flags, settings.max_contacts);
   const math::Pose b_in_a = pose_a->inverse() * *pose_b;
   const query::Answer& answer = entry.pair->run(b_in_a, request_for(settings, limit));
   count_basis(answer.basis);
+  if (current_share != nullptr) {
+    current_share->spent += static_cast<unsigned long>(answer.cost.node_pairs + answer.cost.triangle_pairs);
+  }
   entry.last = record_of(answer, *pose_a);
   ContactWriter writer(o1, o2, limit, contacts, skip);
   const std::span<const query::Contact> given = contacts_to_give(entry, answer, settings, b_in_a);

@@ -6,15 +6,16 @@
 #include <cstdint>
 
 #include "odds/realtime/clock.hpp"
-#include "ode/geom_data.hpp"
+#include "ode/frame_share.hpp"
 
 namespace odds::ode {
 
 /// Work units and wall time of one collision; starts when it is made.
 class Limit {
  public:
-  explicit Limit(const Settings& settings) noexcept
-      : clock_(realtime::fastest_clock()), units(settings.work_units > 0 ? settings.work_units : most_units) {
+  explicit Limit(const Settings& own) noexcept : clock_(realtime::fastest_clock()) {
+    const Settings settings = within_share(own);
+    if (settings.work_units > 0) units = settings.work_units;
     const double ns = settings.budget_us * 1e3;
     timed_ = ns < 9e18;
     if (!timed_) return;
@@ -33,7 +34,7 @@ class Limit {
   bool timed_ = false;
 
  public:
-  std::uint64_t units;  ///< left; searches take from it
+  std::uint64_t units = most_units;  ///< left; searches take from it
 };
 
 }  // namespace odds::ode

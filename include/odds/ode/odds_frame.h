@@ -1,0 +1,63 @@
+/* One frame's time shared over all pairs of a space, by importance. Beside odds_ode.h, whose general rules hold. */
+#ifndef ODDS_FRAME_H
+#define ODDS_FRAME_H
+
+#include <ode/ode.h>
+
+#include "odds/ode/odds_ode.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A budget for the collisions of a whole frame, and what it remembers of their pairs from frame to frame. */
+typedef struct oddsFrameBudget* oddsFrameBudgetID;
+
+/* Takes memory for frames of at most `most_pairs` pairs (1 .. 1048576). Null with an error otherwise. Any number of
+ * budgets may be alive; one thread uses one at a time. */
+oddsFrameBudgetID oddsFrameBudgetCreate(int most_pairs) ODDS_NOTHROW;
+/* Null is allowed. */
+void oddsFrameBudgetDestroy(oddsFrameBudgetID budget) ODDS_NOTHROW;
+
+/* Wall time of a frame's collisions, broad phase and callbacks included, > 0; dInfinity: no limit (default). */
+int oddsFrameBudgetSetTime(oddsFrameBudgetID budget, dReal microseconds) ODDS_NOTHROW;
+
+/* Work of a frame's collisions between meshes: pairs of nodes plus pairs of triangles. Same bits on every run if the
+ * time is dInfinity. 0: no limit (default). */
+int oddsFrameBudgetSetWork(oddsFrameBudgetID budget, unsigned long units) ODDS_NOTHROW;
+
+/* Where somebody looks or feels, world frame; pairs near it count for more, down to a tenth far beyond `radius` metres
+ * (> 0). A null position: nowhere (default). */
+int oddsFrameBudgetSetAttention(oddsFrameBudgetID budget, const dReal* position, dReal radius) ODDS_NOTHROW;
+
+enum {
+  ODDS_SHARE_BY_IMPORTANCE = 0, /* default */
+  ODDS_SHARE_EQUALLY = 1        /* every pair as much, in ODE's order: for comparison */
+};
+int oddsFrameBudgetSetSharing(oddsFrameBudgetID budget, int sharing) ODDS_NOTHROW;
+
+/* What the last frame did. */
+typedef struct oddsFrameSummary {
+  int pairs;           /* that the broad phase gave */
+  int served;          /* whose callback ran; the others found no time left, and come first in the next frame */
+  int waiting_longest; /* frames that some pair has been without service by now */
+  int beyond_memory;   /* pairs beyond `most_pairs`: served at once, with the least share */
+  double gross_us;     /* of the whole frame */
+  double overshoot_us; /* beyond the budget, >= 0 */
+  unsigned long work;  /* units spent between meshes */
+} oddsFrameSummary;
+int oddsFrameBudgetGetSummary(oddsFrameBudgetID budget, oddsFrameSummary* summary) ODDS_NOTHROW;
+
+/* dSpaceCollide (data, callback as there) with all pairs of geoms put in order first: the callback, which calls
+ * dCollide once for its pair as always, is called for the most important pairs first. Each gets a share of what the
+ * frame has left; what it does not use goes to the next. The share bounds the collision in addition to the geoms' own
+ * budgets. Important is what probably touches, touched lately, moves fast against each other, is near to the attention,
+ * or has waited long. A pair that finds no time left is not called; a body may then sink in for a frame. One pair at
+ * least is called in every frame, and no pair waits for ever. Spaces inside of `space` are searched too. Allocates
+ * nothing. Returns 1, or 0 with an error. */
+int oddsSpaceCollide(dSpaceID space, void* data, dNearCallback* callback, oddsFrameBudgetID budget) ODDS_NOTHROW;
+
+#ifdef __cplusplus
+}
+#endif
+#endif
