@@ -48,8 +48,13 @@ std::string meshes_json(const RunReplay& replay) {
     std::vector<std::uint32_t> indices;
     for (const auto& v : mesh.vertices) vertices.insert(vertices.end(), v.begin(), v.end());
     for (const mesh::Triangle& t : mesh.triangles) indices.insert(indices.end(), t.begin(), t.end());
-    json += fmt::format("{}{{\"vertices\":{},\"indices\":{}}}", json.size() > 1 ? "," : "", packed(vertices),
-                        packed(indices));
+    std::vector<float> boxes;
+    for (const ReplayBox& box : mesh.boxes) {
+      boxes.insert(boxes.end(), box.center.begin(), box.center.end());
+      boxes.insert(boxes.end(), box.half.begin(), box.half.end());
+    }
+    json += fmt::format("{}{{\"vertices\":{},\"indices\":{},\"boxes\":{}}}", json.size() > 1 ? "," : "",
+                        packed(vertices), packed(indices), packed(boxes));
   }
   return json + "]";
 }
@@ -73,13 +78,22 @@ std::string replay_data(const RunInfo& info, const RunReplay& replay, std::span<
   const Vec3 origin_m = replay.bodies.empty() ? Vec3::Zero().eval() : replay.bodies.front().pose.translation;
   std::vector<float> times;
   std::vector<float> poses;
-  std::vector<float> felt;  // force, its size left to the page; device; depth in millimetres; contacts
+  std::vector<std::uint32_t> mark_ends;  // of each frame
+  std::vector<float> marks;  // position, normal, depth in millimetres, probability; of a cell pair below zero
+  std::vector<float> felt;   // force, its size left to the page; device; depth in millimetres; contacts
   for (const ReplayFrame& frame : replay.frames) {
     const auto tick =
         std::lower_bound(ticks.begin(), ticks.end(), frame.tick,
                          [](const haptics::TickRecord& t, std::uint64_t number) { return t.tick < number; });
     times.push_back(static_cast<float>(static_cast<double>(frame.tick) * static_cast<double>(info.period_ns) * 1e-9));
     for (const math::Pose& pose : frame.poses) append(poses, pose, origin_m);
+    for (const ReplayMark& mark : frame.marks) {
+      for (const double x : (mark.position_m - origin_m).eval()) marks.push_back(static_cast<float>(x));
+      for (const double x : mark.normal) marks.push_back(static_cast<float>(x));
+      marks.push_back(static_cast<float>(mark.depth_m * 1e3));
+      marks.push_back(static_cast<float>(mark.cell_pair ? -std::max(mark.probability, 1e-6) : mark.probability));
+    }
+    mark_ends.push_back(static_cast<std::uint32_t>(marks.size() / 8));
     const haptics::TickRecord record = tick == ticks.end() ? haptics::TickRecord{} : *tick;
     for (const double x : record.force_n) felt.push_back(static_cast<float>(x));
     for (int k = 0; k < 3; ++k) {
@@ -88,9 +102,11 @@ std::string replay_data(const RunInfo& info, const RunReplay& replay, std::span<
     felt.push_back(static_cast<float>(record.max_depth_m * 1e3));
     felt.push_back(static_cast<float>(record.contacts));
   }
-  return fmt::format("{{\"meshes\":{},\"bodies\":{},\"times\":{},\"poses\":{},\"felt\":{},\"hand\":{}}}",
-                     meshes_json(replay), bodies_json(replay, origin_m), packed(times), packed(poses), packed(felt),
-                     info.device.empty() || info.device == "none" ? "false" : "true");
+  return fmt::format(
+      "{{\"meshes\":{},\"bodies\":{},\"times\":{},\"poses\":{},\"felt\":{},\"markEnds\":{},\"marks\":{},"
+      "\"hand\":{}}}",
+      meshes_json(replay), bodies_json(replay, origin_m), packed(times), packed(poses), packed(felt), packed(mark_ends),
+      packed(marks), info.device.empty() || info.device == "none" ? "false" : "true");
 }
 
 std::string page_replay(const RunReplay& replay) {
@@ -103,13 +119,19 @@ std::string page_replay(const RunReplay& replay) {
   return fmt::format(
       "<h2 id=\"replay\">Replay</h2>\n<p>The run again: bodies where they were, the force on the hand as an arrow at "
       "the tool, "
-      "the hand as a dot. Drag to turn, wheel to come nearer, space to play.{}</p>\n<figure class=\"replay\"><canvas "
+      "the hand as a dot; contacts as red needles along their normals, the most probable pairs of cells of queries "
+      "without a proof as amber ones, the longer the likelier. <em>Front</em> shows which boxes of both hierarchies a "
+      "search has to open at this pose, down to seven levels. Drag to turn, wheel to come nearer, space to "
+      "play.{}</p>\n<figure class=\"replay\"><canvas "
       "id=\"replay-view\" "
       "tabindex=\"0\" role=\"img\" aria-label=\"the scene in three dimensions\"></canvas><div "
       "class=\"replay-bar\"><button "
       "id=\"replay-play\" type=\"button\">Play</button><input id=\"replay-time\" type=\"range\" min=\"0\" max=\"1\" "
       "value=\"0\" "
-      "step=\"1\" aria-label=\"time\"><output id=\"replay-text\"></output></div></figure>\n",
+      "step=\"1\" aria-label=\"time\"><output id=\"replay-text\"></output><span "
+      "class=\"replay-layers\"><label><input id=\"replay-marks\" type=\"checkbox\" "
+      "checked>contacts</label><label><input "
+      "id=\"replay-front\" type=\"checkbox\">front</label></span></div></figure>\n",
       shown < whole ? fmt::format(" For the eye the meshes are simplified from {} to {} triangles.", grouped(whole),
                                   grouped(shown))
                     : "");

@@ -27,5 +27,6 @@ void add_run(CLI::App& app, Action& action);
 void add_explain(CLI::App& app, Action& action);
 void add_accuracy(CLI::App& app, Action& action);
 void add_import(CLI::App& app, Action& action);
+void add_compare(CLI::App& app, Action& action);
 
 }  // namespace odds::tool

@@ -38,6 +38,7 @@ int main(int argc, char** argv) {
   odds::tool::add_run(app, action);
   odds::tool::add_explain(app, action);
   odds::tool::add_import(app, action);
+  odds::tool::add_compare(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& parse_error) {

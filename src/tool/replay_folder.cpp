@@ -57,7 +57,8 @@ std::optional<Error> write_events(const std::filesystem::path& path, const scene
 }  // namespace
 
 std::optional<Error> write_replay_folder(const std::filesystem::path& folder, const scene::Simulation& simulation,
-                                         const report::RunInfo& info, const scene::RunOutcome& outcome) {
+                                         const report::RunInfo& info, const scene::RunOutcome& outcome,
+                                         const std::string& glb) {
   std::error_code code;
   std::filesystem::create_directories(folder, code);
   if (code) return Error{folder.string(), "", "cannot be made: " + code.message(), "give another --out"};
@@ -67,6 +68,13 @@ std::optional<Error> write_replay_folder(const std::filesystem::path& folder, co
   if (auto error = outcome.poses.write(folder / "poses.csv")) return error;
   if (simulation.scene().find_effect("events") != nullptr) {
     if (auto error = write_events(folder / "events.csv", simulation.scene(), outcome)) return error;
+  }
+  std::ofstream picture(folder / "replay.glb", std::ios::binary);
+  picture << glb;
+  picture.flush();
+  if (!picture) {
+    return Error{(folder / "replay.glb").string(), "", "cannot be written",
+                 "check the folder, its permissions and the free space"};
   }
   const std::filesystem::path side_car = folder / "replay.json";
   std::ofstream file(side_car, std::ios::binary);

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "odds/math/error.hpp"
 #include "odds/report/run_info.hpp"
@@ -11,9 +12,10 @@
 namespace odds::tool {
 
 /// Writes device.csv (a track for the device type "replay"), poses.csv (moving bodies, for pictures) and replay.json
-/// (the side-car: scene, meshes, fixed poses, budget, units). Makes the folder; replaces files of an earlier run.
+/// (the side-car: scene, meshes, fixed poses, budget, units) and replay.glb (`glb`, for programs that draw). Makes the
+/// folder; replaces files of an earlier run.
 [[nodiscard]] std::optional<Error> write_replay_folder(const std::filesystem::path& folder,
                                                        const scene::Simulation& simulation, const report::RunInfo& info,
-                                                       const scene::RunOutcome& outcome);
+                                                       const scene::RunOutcome& outcome, const std::string& glb);
 
 }  // namespace odds::tool

@@ -3,18 +3,24 @@
 
 #include <algorithm>
 
+#include "tool/replay_marks.hpp"
+
 namespace odds::tool {
 namespace {
 
 constexpr std::size_t most_triangles = 20'000;  // of one mesh: a page that opens at once
 constexpr std::size_t most_frames = 6'000;
+constexpr int box_levels = 7;
 
 }  // namespace
 
 report::RunReplay replay_view(const scene::Simulation& simulation, const scene::RunOutcome& outcome) {
   report::RunReplay replay;
-  for (const auto& shape : simulation.shapes())
-    replay.meshes.push_back(report::simplified(shape->mesh(), most_triangles));
+  for (const auto& shape : simulation.shapes()) {
+    report::ReplayMesh mesh = report::simplified(shape->mesh(), most_triangles);
+    mesh.boxes = report::upper_boxes(mesh, box_levels);
+    replay.meshes.push_back(std::move(mesh));
+  }
   for (const scene::Body& body : simulation.scene().bodies) {
     replay.bodies.push_back({body.name, body.mesh, body.dynamic, body.follows_device, body.pose});
   }
@@ -22,6 +28,9 @@ report::RunReplay replay_view(const scene::Simulation& simulation, const scene::
   const std::size_t moving = outcome.poses.names().size();
   if (moving == 0) return replay;
   const std::size_t frames = rows.size() / moving;
+  ReplayMarks marks(simulation);
+  std::vector<math::Pose> everywhere;
+  for (const scene::Body& body : simulation.scene().bodies) everywhere.push_back(body.pose);
   const std::size_t stride = std::max<std::size_t>(1, (frames + most_frames - 1) / most_frames);
   for (std::size_t i = 0; i < frames; i += stride) {
     report::ReplayFrame frame;
@@ -30,6 +39,11 @@ report::RunReplay replay_view(const scene::Simulation& simulation, const scene::
       const scene::PoseTrack::Row& row = rows[i * moving + k];
       frame.poses.push_back(math::Pose::from_quaternion(row.position_m, row.orientation));
     }
+    std::size_t next = 0;
+    for (std::size_t k = 0; k < everywhere.size(); ++k) {
+      if (simulation.scene().bodies[k].dynamic) everywhere[k] = frame.poses[next++];
+    }
+    marks.add(everywhere, frame);
     replay.frames.push_back(std::move(frame));
   }
   return replay;

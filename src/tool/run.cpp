@@ -11,6 +11,7 @@
 
 #include "odds/realtime/fitness.hpp"
 #include "odds/realtime/host.hpp"
+#include "odds/report/replay_glb.hpp"
 #include "odds/report/run_report.hpp"
 #include "odds/scene/scene.hpp"
 #include "odds/scene/simulation.hpp"
@@ -117,7 +118,9 @@ int run(const RunArguments& arguments) {
   const report::RunReplay replay = replay_view(simulation, outcome);
   const auto files = report::write_run_report(arguments.out, info, summary, outcome.ticks, &replay);
   if (!files) return fail(files.error());
-  if (auto error = write_replay_folder(std::filesystem::path(arguments.out) / "replay", simulation, info, outcome)) {
+  const std::string glb = report::replay_glb(info, replay, outcome.ticks);
+  if (auto error =
+          write_replay_folder(std::filesystem::path(arguments.out) / "replay", simulation, info, outcome, glb)) {
     return fail(*error);
   }
   print_run_table(info, summary, outcome);

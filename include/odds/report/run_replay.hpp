@@ -11,12 +11,24 @@
 
 namespace odds::report {
 
+/// A box of a hierarchy, axes of the mesh's frame, metres.
+struct ReplayBox {
+  std::array<float, 3> center{};
+  std::array<float, 3> half{};
+};
+
 /// A mesh for the eye. Metres, in the mesh's own frame.
 struct ReplayMesh {
   std::vector<std::array<float, 3>> vertices;
   std::vector<mesh::Triangle> triangles;
   std::uint64_t triangles_of_mesh = 0;  ///< before it was simplified
+  /// The upper levels of a binary hierarchy over `triangles`, the children of box i at 2 i + 1 and 2 i + 2; 2^k - 1 of
+  /// them. The page shows with them which boxes a search has to open: the front.
+  std::vector<ReplayBox> boxes = {};
 };
+
+/// Boxes for ReplayMesh::boxes, `levels` in 1 .. 12. Empty for a mesh without triangles.
+[[nodiscard]] std::vector<ReplayBox> upper_boxes(const ReplayMesh& mesh, int levels);
 
 /// The mesh with at most about `most_triangles`: vertices that share a cell of a grid become one, triangles without
 /// an area vanish. Small features may disappear; the collision queries never see it.
@@ -30,10 +42,20 @@ struct ReplayBody {
   math::Pose pose;  ///< in the world, at the start
 };
 
+/// A place where two bodies met, or where they most probably did. World frame.
+struct ReplayMark {
+  Vec3 position_m = Vec3::Zero();
+  Vec3 normal = Vec3::UnitZ();  ///< unit
+  double depth_m = 0.0;         ///< >= 0
+  double probability = 1.0;     ///< of a hit there; 1 for a contact
+  bool cell_pair = false;       ///< true: the most probable pair of cells of a query without a proof
+};
+
 /// Where all moving bodies were at one time, in the order of the bodies that move.
 struct ReplayFrame {
   std::uint64_t tick = 0;
   std::vector<math::Pose> poses;
+  std::vector<ReplayMark> marks = {};  ///< at these poses
 };
 
 struct RunReplay {

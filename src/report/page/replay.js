@@ -1,6 +1,7 @@
 // Shows a run again in three dimensions. Data: the JSON in #replay-data; library: three.js.
 // Leaves on <html>: data-replay-frames, data-replay-triangles (what is drawn), data-replay-drawn (pixels that are not
-// background, of the first picture), data-error (a failure).
+// background, of the first picture), data-replay-marks (contacts and pairs of cells shown), data-replay-front (boxes
+// shown), data-error (a failure).
 'use strict';
 (() => {
   const root = document.documentElement;
@@ -10,6 +11,7 @@
   const whole = (text) => new Uint32Array(bytes(text).buffer);
   const data = JSON.parse(element('replay-data').textContent);
   const times = floats(data.times), poses = floats(data.poses), felt = floats(data.felt);
+  const markEnds = whole(data.markEnds), marks = floats(data.marks);
   const canvas = element('replay-view');
   const slider = element('replay-time');
   slider.max = Math.max(0, times.length - 1);
@@ -39,11 +41,12 @@
     geometry.computeBoundingSphere();
     return geometry;
   });
+  const boxes = data.meshes.map((mesh) => floats(mesh.boxes));
   const place = (object, numbers, at) => {
     object.position.set(numbers[at], numbers[at + 1], numbers[at + 2]);
     object.quaternion.set(numbers[at + 3], numbers[at + 4], numbers[at + 5], numbers[at + 6]);
   };
-  const movers = [];
+  const movers = [], objects = [];
   let tool = null, triangles = 0;
   for (const body of data.bodies) {
     const material = new THREE.MeshPhongMaterial({color: body.tool ? 0xc77700 : body.moves ? 0x3a9fd6 : 0x9aa5ad,
@@ -51,6 +54,8 @@
     const object = new THREE.Mesh(geometries[body.mesh], material);
     place(object, floats(body.pose), 0);
     scene.add(object);
+    object.userData = {boxes: boxes[body.mesh], moves: body.moves};
+    objects.push(object);
     triangles += geometries[body.mesh].index.count / 3;
     if (body.moves) movers.push(object);
     if (body.tool) tool = object;
@@ -78,6 +83,107 @@
   }
   if (data.hand) scene.add(arrow, hand);
 
+  // Contacts and pairs of cells: needles along the normal, seen through the bodies ---------------------------------------
+  const needles = new THREE.LineSegments(new THREE.BufferGeometry(),
+    new THREE.LineBasicMaterial({vertexColors: THREE.VertexColors || true, depthTest: false}));
+  const heads = new THREE.Points(new THREE.BufferGeometry(),
+    new THREE.PointsMaterial({size: 7, sizeAttenuation: false, vertexColors: THREE.VertexColors || true, depthTest: false}));
+  needles.renderOrder = heads.renderOrder = 2;
+  needles.frustumCulled = heads.frustumCulled = false;
+  scene.add(needles, heads);
+  const showMarks = () => {
+    const first = frame > 0 ? markEnds[frame - 1] : 0, end = element('replay-marks').checked ? markEnds[frame] || 0 : first;
+    const lines = [], points = [], lineColours = [], pointColours = [];
+    for (let i = first; i < end; ++i) {
+      const m = marks.subarray(8 * i, 8 * i + 8), cell = m[7] < 0;
+      const colour = cell ? [0.85, 0.55, 0.0] : [0.75, 0.05, 0.1], length = (0.08 + 0.12 * Math.abs(m[7])) * size;
+      lines.push(m[0], m[1], m[2], m[0] + length * m[3], m[1] + length * m[4], m[2] + length * m[5]);
+      points.push(m[0], m[1], m[2]);
+      lineColours.push(...colour, ...colour);
+      pointColours.push(...colour);
+    }
+    const set = (object, positions, colours) => {
+      object.geometry.dispose();
+      object.geometry = new THREE.BufferGeometry();
+      object.geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(positions), 3));
+      object.geometry.setAttribute('color', new THREE.BufferAttribute(new Float32Array(colours), 3));
+    };
+    set(needles, lines, lineColours);
+    set(heads, points, pointColours);
+    root.dataset.replayMarks = end - first;
+  };
+
+  // The front: which boxes a search has to open. Boxes are apart if one of 15 axes parts them -----------------------------
+  const front = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({color: 0x7b3fa0}));
+  front.frustumCulled = false;
+  scene.add(front);
+  const apart = (a, b, turn, shift) => {  // centres and halves; b's axes and origin in a's frame
+    const t = [0, 1, 2].map((k) => shift[k] + turn[k][0] * b[0] + turn[k][1] * b[1] + turn[k][2] * b[2] - a[k]);
+    const r = turn.map((row) => row.map((x) => Math.abs(x) + 1e-6));
+    for (let i = 0; i < 3; ++i) {
+      if (Math.abs(t[i]) > a[3 + i] + r[i][0] * b[3] + r[i][1] * b[4] + r[i][2] * b[5]) return true;
+      const along = t[0] * turn[0][i] + t[1] * turn[1][i] + t[2] * turn[2][i];
+      if (Math.abs(along) > b[3 + i] + r[0][i] * a[3] + r[1][i] * a[4] + r[2][i] * a[5]) return true;
+    }
+    for (let i = 0; i < 3; ++i) {
+      for (let j = 0; j < 3; ++j) {
+        const i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+        const gap = Math.abs(t[i2] * turn[i1][j] - t[i1] * turn[i2][j]);
+        if (gap > a[3 + i1] * r[i2][j] + a[3 + i2] * r[i1][j] + b[3 + j1] * r[i][j2] + b[3 + j2] * r[i][j1]) return true;
+      }
+    }
+    return false;
+  };
+  const openBoxes = (a, b, opened, left) => {  // objects; adds the deepest boxes of both that are not apart
+    const relative = new THREE.Matrix4().copy(a.matrixWorld);
+    const inverse = a.matrixWorld.clone();
+    if (inverse.invert) inverse.invert(); else inverse.getInverse(relative);
+    const e = inverse.multiply(b.matrixWorld).elements;
+    const turn = [[e[0], e[4], e[8]], [e[1], e[5], e[9]], [e[2], e[6], e[10]]], shift = [e[12], e[13], e[14]];
+    const boxA = a.userData.boxes, boxB = b.userData.boxes, countA = boxA.length / 6, countB = boxB.length / 6;
+    const stack = countA && countB ? [[0, 0]] : [];
+    while (stack.length && left.tests > 0) {
+      const [i, j] = stack.pop();
+      --left.tests;
+      if (apart(boxA.subarray(6 * i, 6 * i + 6), boxB.subarray(6 * j, 6 * j + 6), turn, shift)) continue;
+      const openA = 2 * i + 2 < countA, openB = 2 * j + 2 < countB;
+      if (!openA && !openB) {
+        opened.get(a).add(i);
+        opened.get(b).add(j);
+      } else if (openA && (!openB || boxA[6 * i + 3] + boxA[6 * i + 4] + boxA[6 * i + 5] >= boxB[6 * j + 3] + boxB[6 * j + 4] + boxB[6 * j + 5])) {
+        stack.push([2 * i + 1, j], [2 * i + 2, j]);
+      } else {
+        stack.push([i, 2 * j + 1], [i, 2 * j + 2]);
+      }
+    }
+  };
+  const edges = [0, 1, 1, 3, 3, 2, 2, 0, 4, 5, 5, 7, 7, 6, 6, 4, 0, 4, 1, 5, 2, 6, 3, 7];
+  const showFront = () => {
+    front.visible = element('replay-front').checked;
+    root.dataset.replayFront = 0;
+    if (!front.visible) return;
+    scene.updateMatrixWorld();
+    const opened = new Map(objects.map((object) => [object, new Set()])), left = {tests: 40000};
+    objects.forEach((a, i) => objects.slice(i + 1).forEach((b) => {
+      if (a.userData.moves || b.userData.moves) openBoxes(a, b, opened, left);
+    }));
+    const positions = [];
+    let shown = 0;
+    for (const [object, set] of opened) {
+      for (const i of set) {
+        const box = object.userData.boxes.subarray(6 * i, 6 * i + 6);
+        const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((c) => new THREE.Vector3(box[0] + (c & 1 ? 1 : -1) * box[3],
+          box[1] + (c & 2 ? 1 : -1) * box[4], box[2] + (c & 4 ? 1 : -1) * box[5]).applyMatrix4(object.matrixWorld));
+        for (const c of edges) positions.push(corners[c].x, corners[c].y, corners[c].z);
+        ++shown;
+      }
+    }
+    front.geometry.dispose();
+    front.geometry = new THREE.BufferGeometry();
+    front.geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(positions), 3));
+    root.dataset.replayFront = shown;
+  };
+
   let frame = 0;
   const show = () => {
     movers.forEach((object, k) => place(object, poses, 7 * (frame * movers.length + k)));
@@ -91,6 +197,8 @@
       if (arrow.visible) arrow.setDirection(force.clone().normalize());
       arrow.setLength(Math.max(1e-3, force.length() / mostForce) * 0.7 * size, size / 8, size / 14);
     }
+    showMarks();
+    showFront();
     const width = canvas.clientWidth || 800, height = canvas.clientHeight || 420;
     renderer.setPixelRatio(window.devicePixelRatio || 1);
     renderer.setSize(width, height, false);
@@ -149,6 +257,7 @@
     show();
   }, {passive: false});
   window.addEventListener('resize', show);
+  for (const id of ['replay-marks', 'replay-front']) element(id).addEventListener('change', show);
 
   if (times.length === 0) { renderer.render(scene, camera); return; }
   frame = strongest;
