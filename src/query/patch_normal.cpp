@@ -126,6 +126,7 @@ class LeastOverlap {
     }
     shift_ = -tolerances::pressing_share * size * pressing;
     spread_ = view.sums.length > 0.0;
+    if (spread_) find_places(Frame(pressing == Vec3::Zero() ? Vec3(Vec3::UnitZ()) : pressing));
   }
 
   void offer(const Vec3& direction, double factor) noexcept {
@@ -136,16 +137,9 @@ class LeastOverlap {
     if (facing < -tolerances::weak_side) return;  // towards the wrong side of a sheet
     const Vec3* previous = view_.input.previous_normal;
     if (previous != nullptr && previous->dot(unit) > tolerances::same_as_before) factor *= tolerances::hysteresis;
-    double overlap = overlap_along(unit);
-    if (found_ && !(factor * overlap < least_)) return;
-    // The rim's triangles reach only as far as they are large: a direction that seems the shortest is measured right
-    // through.
-    Witness through;
-    const Vec3 centre = view_.sums.centre(view_.rim.origin);
-    if (spread_ && probe_overlap(view_.input, centre, unit, 4.0 * view_.sums.diagonal(), watch_, through)) {
-      overlap = std::max(overlap, through.depth);
-    }
-    overlap *= factor;
+    double overlap = factor * overlap_of_pairs(unit);
+    if (found_ && !(overlap < least_)) return;
+    overlap = std::max(overlap, factor * overlap_through(unit, factor));
     if (found_ && !(overlap < least_)) return;
     found_ = true;
     least_ = overlap;
@@ -164,19 +158,66 @@ class LeastOverlap {
   [[nodiscard]] const PlacedPair& pair_at(std::size_t i) const noexcept {
     return view_.rim.pairs[view_.rim.pieces[view_.pieces[i]].pair];
   }
-  /// The overlap of the pairs, and no less than the rim's own width: the rim bounds the common volume on all sides.
-  [[nodiscard]] double overlap_along(const Vec3& direction) const noexcept {
+  [[nodiscard]] double overlap_of_pairs(const Vec3& direction) const noexcept {
     const Frame frame(direction);
     double deepest = 0.0;
+    for (std::size_t i = 0; i < view_.pieces.size(); i += stride()) {
+      deepest = std::max(deepest, pair_depth(pair_at(i), frame, shift_));
+    }
+    return deepest;
+  }
+
+  /// Places inside the overlap where directions are measured: the middle of the rim, and, between solids, a little
+  /// inside of a few of its pieces, first where the triangles overlap most. The middle of a crescent is not in it.
+  void find_places(const Frame& pressing) noexcept {
+    places_[place_count_++] = view_.sums.centre(view_.rim.origin);
+    if (!view_.input.solid_a || !view_.input.solid_b) return;
+    // A quarter of the mean width of the surface that the rim spans.
+    const double inwards = 0.5 * view_.sums.vector_area(view_.rim.origin).norm() / view_.sums.length;
+    const auto add = [&](std::size_t i) noexcept {
+      const RimPiece& piece = view_.rim.pieces[view_.pieces[i]];
+      const PlacedPair& placed = pair_at(i);
+      const Vec3 into_both = unit_or_zero(-placed.normal_a - placed.normal_b);
+      if (piece.counts && into_both != Vec3::Zero()) places_[place_count_++] = piece.middle() + inwards * into_both;
+    };
+    std::size_t deepest = 0;
+    double depth = -1.0;
+    for (std::size_t i = 0; i < view_.pieces.size(); i += stride()) {
+      const double here = pair_depth(pair_at(i), pressing, shift_);
+      if (here > depth) deepest = i;
+      depth = std::max(depth, here);
+    }
+    add(deepest);
+    add(view_.pieces.size() / 5);
+    add(view_.pieces.size() / 2);
+    add(view_.pieces.size() * 4 / 5);
+  }
+
+  /// The rim's triangles reach only as far as they are large: a direction that seems the shortest is measured right
+  /// through, until it is seen not to be. Where nothing can be measured it is taken for as long as the rim is wide, for
+  /// the rim bounds the common volume on all sides.
+  [[nodiscard]] double overlap_through(const Vec3& direction, double factor) noexcept {
+    if (!spread_) return 0.0;
+    const double reach = 4.0 * view_.sums.diagonal();
+    double deepest = -1.0;
+    for (std::size_t i = 0; i < place_count_ && !(found_ && factor * deepest >= least_); ++i) {
+      Witness through;
+      if (probe_overlap(view_.input, places_[i], direction, reach, watch_, through)) {
+        deepest = std::max(deepest, through.depth);
+      }
+    }
+    return deepest >= 0.0 ? deepest : width_of_rim(direction);
+  }
+
+  [[nodiscard]] double width_of_rim(const Vec3& direction) const noexcept {
     double low = std::numeric_limits<double>::infinity();
     double high = -low;
     for (std::size_t i = 0; i < view_.pieces.size(); i += stride()) {
       const double height = direction.dot(view_.rim.pieces[view_.pieces[i]].middle() - view_.rim.origin);
       low = std::min(low, height);
       high = std::max(high, height);
-      deepest = std::max(deepest, pair_depth(pair_at(i), frame, shift_));
     }
-    return std::max(deepest, spread_ ? high - low : 0.0);
+    return high - low;
   }
 
   const PatchView& view_;
@@ -185,6 +226,8 @@ class LeastOverlap {
   Vec3 shift_ = Vec3::Zero();
   Vec3 best_ = Vec3::Zero();
   double least_ = 0.0;
+  std::array<Vec3, 5> places_;
+  std::size_t place_count_ = 0;
   bool found_ = false;
   bool spread_ = false;
 };

@@ -342,6 +342,46 @@ TEST(ContactPatch, RingIsMeasuredAtItsSummit) {
   }
 }
 
+/// How far A must move along `direction` until no triangles meet any more.
+double way_out(ContactScene scene, const Vec3& direction) {
+  const Vec3 start = scene.pose_b_in_a.translation;
+  double near = 0.0;
+  double far = 0.01;
+  for (int i = 0; i < 24; ++i) {
+    const double middle = 0.5 * (near + far);
+    scene.pose_b_in_a.translation = start - middle * direction;  // B moves the other way
+    scene.find_hits();
+    (scene.hits.empty() ? far : near) = middle;
+  }
+  return far;
+}
+
+TEST(ContactPatch, CrescentIsAsDeepAsItsWayOutNotAsWideAsItsRim) {
+  // A peg beside the axis of its hole touches the hole's edge with its chamfer: the rim is a crescent of some
+  // millimetres around an overlap of some hundredths.
+  const Body peg = Body::made("peg:radius=0.01,length=0.06,along=2");
+  for (const double clearance : {1e-4, 2e-4}) {
+    const Body plate = Body::made("plate_with_hole:across=2,along=2,clearance=" + std::to_string(clearance));
+    for (const double beside : {1.5e-4, 3e-4, 5e-4}) {
+      for (const double press : {3e-5, 6e-5, 1e-4}) {  // radially
+        for (const double around : {0.0, 0.03, 0.7}) {
+          const Vec3 outwards(std::cos(around), std::sin(around), 0.0);
+          ContactScene scene{peg, plate, shift(0, 0, 0)};
+          scene.pose_b_in_a.translation = -beside * outwards + (0.001 - (beside - clearance) + press) * up;
+          if (scene.pose_b_in_a.translation.z() > 0.00099) continue;  // beyond the chamfer
+          const auto contacts = scene.contacts();
+          SCOPED_TRACE(testing::Message()
+                       << beside << " beside, clearance " << clearance << ", pressed " << press << ", at " << around);
+          ASSERT_FALSE(contacts.empty());
+          const Vec3 out_of_edge = (up - outwards).normalized();
+          EXPECT_LE(degrees_between(contacts[0].normal, out_of_edge), 6.0);
+          EXPECT_NEAR(contacts[0].depth, way_out(scene, contacts[0].normal), 0.1 * contacts[0].depth);
+        }
+      }
+    }
+  }
+}
+
 TEST(ContactPatch, FewHitsStillGiveTheNormal) {
   ContactScene scene{Body::box(0.2, 0.5, 0.248, 8), Body::box(1.0, 1.2, 0.3, 8), shift(-0.03, 0.02, -0.274 + 1e-4)};
   scene.find_hits();
