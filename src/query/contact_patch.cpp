@@ -186,7 +186,9 @@ bool PatchBuilder::Scratch::make_patches(const PatchInput& input, const Effort& 
     const Indices indices{by_patch.data() + first_of_patch[i], first_of_patch[i + 1] - first_of_patch[i]};
     if (indices.empty()) continue;
     if (patch_count > 0 && watch.late()) break;
-    patches[patch_count++] = make_patch(input, sums[i], indices, effort, watch);
+    patches[patch_count] = make_patch(input, sums[i], indices, effort, watch);
+    if (patch_count > 0 && watch.late()) break;  // half made, its direction or depth may be anything
+    ++patch_count;
   }
   return true;
 }

@@ -37,6 +37,12 @@ Vec3 side_of_bodies(const PatchView& view) noexcept {
   return side;
 }
 
+/// The inner rim of a ring whose outer rim is missing, for the search was cut short: it runs the other way round.
+bool is_hole_alone(const PatchView& view, const Vec3& normal) noexcept {
+  if (!view.input.solid_a || !view.input.solid_b) return false;
+  return normal.dot(view.sums.normals_b - view.sums.normals_a) < -tolerances::hole_rim * view.sums.length;
+}
+
 /// A few directions with weights; directions within two degrees are one.
 struct Directions {
   struct One {
@@ -271,6 +277,7 @@ Vec3 patch_normal(const PatchView& view, Watch& watch) noexcept {
   if (noticeable && roundness > (sums.closed() ? tolerances::round_closed_rim : tolerances::round_open_rim)) {
     normal = area.normalized();
     if (normal.dot(side_of_bodies(view)) < 0.0) normal = -normal;
+    if (is_hole_alone(view, normal)) normal = -normal;
   } else {
     normal = least_overlap(view, noticeable ? area : Vec3::Zero(), watch);
   }

@@ -276,6 +276,32 @@ TEST(ContactPatch, PipeStandsOnItsEnd) {
   EXPECT_NEAR(hull_area(contacts), 0.0064, 1e-4);
 }
 
+TEST(ContactPatch, InnerRimOfARingDoesNotPullWhereTheOuterIsMissing) {
+  // Of a torus that lies on the ground the search has found the inner rim only, or parts of the outer beside it.
+  const Body torus = Body::made("torus:ring=0.1,tube=0.03,around=48,across=24");
+  const Body ground = Body::box(1.0, 1.0, 0.2, 16);
+  ContactScene scene{torus, ground, shift(0.01, 0.02, -0.13 + 1e-3)};
+  scene.find_hits();
+  const std::vector<TrianglePair> all = scene.hits;
+  const auto is_inner = [&](const TrianglePair& hit) {
+    const mesh::Triangle& t = torus.triangles[hit.a];
+    const Vec3 middle = (torus.vertices[t[0]] + torus.vertices[t[1]] + torus.vertices[t[2]]) / 3.0;
+    return middle.head<2>().norm() < 0.1;
+  };
+  for (const std::size_t every : {1000000, 40, 7}) {
+    scene.hits.clear();
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (is_inner(all[i]) || i % every == every - 1) scene.hits.push_back(all[i]);
+    }
+    ASSERT_LT(scene.hits.size(), all.size());
+    ASSERT_GT(scene.hits.size(), 40u);
+    for (const Contact& c : scene.builder->build(scene.input())) {
+      EXPECT_LE(degrees_between(c.normal, up), 10.0) << "one of the outer in " << every;
+      EXPECT_LE(c.depth, 2e-3);
+    }
+  }
+}
+
 TEST(ContactPatch, CrossedPlatesPartTheShortWay) {
   const Body plate = Body::box(0.4, 0.3, 0.01, 4);
   // Upright plate stuck through the flat one, most of it above: out it goes upwards.
