@@ -1,0 +1,30 @@
+// What all scenes share.
+#include "ode_scenes/bullet.hpp"
+#include "ode_scenes/scenes.hpp"
+
+namespace odds::ode_scenes {
+
+std::vector<Collider> colliders(const Plan& plan, bool primitive) {
+  std::vector<Collider> list{{Collider::Kind::odds, 100.0}};
+  for (const double budget : plan.budgets_us) list.push_back({Collider::Kind::odds, budget});
+  if (!plan.others) return list;
+  list.push_back({Collider::Kind::stock});
+  if (primitive) list.push_back({Collider::Kind::primitive});
+  if (plan.gimpact && Bullet::available()) list.push_back({Collider::Kind::gimpact});
+  return list;
+}
+
+void add_common(Run& run, Arena& arena) {
+  const ContactCounts& counts = arena.counts;
+  const double collisions = std::max(1.0, static_cast<double>(counts.collisions));
+  run.figures.push_back({"contacts, mean", static_cast<double>(counts.contacts) / collisions, ""});
+  run.figures.push_back(
+      {"most", static_cast<double>(counts.most), "", run.ours ? std::optional<double>(8.0) : std::nullopt});
+  run.figures.push_back({"deepest", 1e3 * counts.deepest_m, "mm"});
+  run.figures.push_back({"collision, p50", percentile(arena.collide_us, 0.5), "µs"});
+  run.figures.push_back({"p99", percentile(arena.collide_us, 0.99), "µs"});
+  run.figures.push_back({"p99.9", percentile(arena.collide_us, 0.999), "µs"});
+  run.figures.push_back({"step, p50", percentile(arena.frame_us, 0.5), "µs"});
+}
+
+}  // namespace odds::ode_scenes

@@ -1,0 +1,105 @@
+// Runs the scenes, prints a line for each run, writes one page and one table. Exit status 1 if a bar is missed.
+#include <fmt/core.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+
+#include "ode_scenes/page.hpp"
+#include "ode_scenes/scenes.hpp"
+
+namespace odds::ode_scenes {
+namespace {
+
+struct Options {
+  std::string folder = "ode_scenes";
+  std::string only;
+  double soak_s = 0.0;
+  Plan plan;
+};
+
+using Scene = Section (*)(const Plan&);
+constexpr std::pair<const char*, Scene> all[] = {{"stacks", &stacks},     {"peg", &peg_in_hole}, {"gears", &gears},
+                                                 {"bolt", &bolt_and_nut}, {"drag", &drag},       {"crowd", &crowd}};
+
+int usage() {
+  fmt::print(stderr,
+             "usage: odds_ode_scenes [--out FOLDER] [--only stacks|peg|gears|bolt|drag|crowd] [--quick] [--seconds S]\n"
+             "                       [--ours] [--gimpact]\n"
+             "       odds_ode_scenes --soak [--seconds S] [--out FOLDER]   (stacks of five, ten minutes)\n"
+             "--quick: ten seconds, one gap, stacks of 2 and 5; --ours: without those that it is compared with;\n"
+             "--gimpact: Bullet's GImpact, too, if built with Bullet\n");
+  return 2;
+}
+
+bool read(int argc, char** argv, Options& options) {
+  double seconds = 0.0;
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    if (argument == "--out" && i + 1 < argc) {
+      options.folder = argv[++i];
+    } else if (argument == "--only" && i + 1 < argc) {
+      options.only = argv[++i];
+    } else if (argument == "--seconds" && i + 1 < argc) {
+      seconds = std::atof(argv[++i]);
+      if (!(seconds > 0.0)) return false;
+    } else if (argument == "--quick") {
+      options.plan.seconds = 10.0;
+      options.plan.gaps_mm = {0.1};
+      options.plan.bricks = {2, 5};
+    } else if (argument == "--ours") {
+      options.plan.others = false;
+    } else if (argument == "--gimpact") {
+      options.plan.gimpact = true;
+    } else if (argument == "--soak") {
+      options.soak_s = 600.0;
+    } else {
+      return false;
+    }
+  }
+  if (seconds > 0.0) (options.soak_s > 0.0 ? options.soak_s : options.plan.seconds) = seconds;
+  return true;
+}
+
+int run(const Options& options) {
+  std::filesystem::create_directories(options.folder);
+  const auto began = std::chrono::steady_clock::now();
+  std::vector<Section> sections;
+  if (options.soak_s > 0.0) {
+    sections.push_back(soak(options.soak_s));
+  } else {
+    for (const auto& [name, scene] : all) {
+      if (options.only.empty() || options.only == name) sections.push_back(scene(options.plan));
+    }
+  }
+  if (sections.empty()) return usage();
+  const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  std::ofstream page(options.folder + "/ode_scenes.html");
+  page << page_of(sections, took_s);
+  std::ofstream table(options.folder + "/ode_scenes.csv");
+  table << csv_of(sections);
+  if (!page.flush() || !table.flush()) {
+    fmt::print(stderr, "error: {}: cannot be written; give another folder with --out\n", options.folder);
+    return 1;
+  }
+  const std::vector<std::string> missed = misses(sections);
+  for (const std::string& miss : missed) fmt::print("missed: {}\n", miss);
+  fmt::print("page: {}/ode_scenes.html, table: {}/ode_scenes.csv\n", options.folder, options.folder);
+  return missed.empty() ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace odds::ode_scenes
+
+int main(int argc, char** argv) {
+  odds::ode_scenes::Options options;
+  if (!odds::ode_scenes::read(argc, argv, options)) return odds::ode_scenes::usage();
+  try {
+    return odds::ode_scenes::run(options);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "error: {}\n", error.what());
+    return 1;
+  }
+}
