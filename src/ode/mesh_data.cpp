@@ -19,7 +19,8 @@ std::optional<Error> check(const oddsBuildParams& params, const std::string& nam
     return Error{name, "", "oddsBuildParams.volume is unknown", "use one of ODDS_VOLUME_AABB ... ODDS_VOLUME_WIDE"};
   }
   if (params.leaf_triangles < 0 || params.leaf_triangles > 16) {
-    return Error{name, "", "oddsBuildParams.leaf_triangles is out of range", "use 1 .. 16, or 0 for what suits the volume (default)"};
+    return Error{name, "", "oddsBuildParams.leaf_triangles is out of range",
+                 "use 1 .. 16, or 0 for what suits the volume (default)"};
   }
   if (!(params.tau > 0.0 && params.tau <= 1.0)) {
     return Error{name, "", "oddsBuildParams.tau is out of range", "use 0 < tau <= 1 (default 0.25)"};
@@ -113,6 +114,10 @@ int build_mesh_data(oddsMeshDataID data, std::vector<Vec3> vertices, std::vector
 oddsMeshDataID oddsMeshDataFromShape(std::shared_ptr<const query::Shape> shape) noexcept {
   if (shape == nullptr) {
     set_last_error("oddsMeshDataFromShape: the shape is null; build one with query::Shape::build");
+    return nullptr;
+  }
+  if (!shape->has_polygons()) {
+    set_last_error("oddsMeshDataFromShape: the shape's polygons were dropped; give one that has them");
     return nullptr;
   }
   std::unique_ptr<oddsMeshData> data(oddsMeshDataCreate());

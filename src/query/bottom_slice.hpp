@@ -69,7 +69,8 @@ class BottomSlice {
     Spending& spending;
     SearchResult& result;
 
-    /// What was learnt about a pair. `apart`: its own volumes are known to be apart now.
+    /// What was learnt about a pair. `apart`: its own volumes are known to be apart now, or it is a pair of leaves
+    /// whose volumes are not to be tested: whether it may go is its parent's to say.
     enum class Found : std::uint8_t { apart, kept, stopped };
 
     [[nodiscard]] Found below(std::uint32_t index) noexcept {
@@ -98,7 +99,8 @@ class BottomSlice {
       if (!encounter.volumes_overlap(pair.a, pair.b)) return Found::apart;
       if (encounter.is_leaf_pair(pair.a, pair.b)) {
         const Progressed leaves = encounter.test_leaves(pair.a, pair.b, wanted, hits, spending);
-        return leaves == Progressed::finished ? Found::kept : stop(index, leaves);
+        if (leaves != Progressed::finished) return stop(index, leaves);
+        return encounter.tests_leaf_volumes() ? Found::kept : Found::apart;
       }
       const std::uint32_t first = slice.take_two();
       if (first == none) {

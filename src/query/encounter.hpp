@@ -47,8 +47,8 @@ class Encounter {
  public:
   /// `b_in_a`: of B's hierarchy frame in A's.
   Encounter(const tree::Hierarchy<V>& a, const tree::Hierarchy<V>& b, const math::Pose& b_in_a,
-            EstimatorKind estimator) noexcept
-      : a_(a), b_(b), b_in_a_(b_in_a), estimator_(estimator) {
+            const Request& request) noexcept
+      : a_(a), b_(b), b_in_a_(b_in_a), estimator_(request.estimator), leaf_test_(request.leaf_test) {
     reach_ = a.reach() + b.reach();
     relative_ = V::PreparedPose::make(b_in_a_, 2.0 * reach_);
   }
@@ -57,7 +57,9 @@ class Encounter {
   /// less).
   [[nodiscard]] bool far_apart() const noexcept { return !(b_in_a_.translation.norm() <= reach_ * (1.0 + 1e-9)); }
 
+  /// True too for two leaves whose volumes are not to be tested.
   [[nodiscard]] bool volumes_overlap(std::uint32_t i, std::uint32_t j) const noexcept {
+    if (!leaf_test_ && is_leaf_pair(i, j)) return true;
     return overlap(a_.nodes()[i].volume, b_.nodes()[j].volume, relative_);
   }
 
@@ -96,6 +98,8 @@ class Encounter {
   [[nodiscard]] float probability(std::uint32_t i, std::uint32_t j) const noexcept {
     return met_probability(met(i, j), estimator_, {a_.levels(), b_.levels()});
   }
+
+  [[nodiscard]] bool tests_leaf_volumes() const noexcept { return leaf_test_; }
 
   /// Levels that still lie below the pair: 0 for two leaves.
   [[nodiscard]] int levels_left(std::uint32_t i, std::uint32_t j) const noexcept {
@@ -159,6 +163,7 @@ class Encounter {
   typename V::PreparedPose relative_;
   double reach_ = 0.0;
   EstimatorKind estimator_;
+  bool leaf_test_;
 };
 
 }  // namespace odds::query

@@ -61,8 +61,9 @@ struct TreeLevels {
                                          double probability) noexcept {
   const Vec3 centroid_a = a.centroid.cast<double>();
   const Vec3 centroid_b = b_in_a * b.centroid.cast<double>();
-  // The smaller node says more about where: weight by the inverse of the size.
-  const double weight_a = static_cast<double>(radius_b) / std::max(static_cast<double>(radius_a + radius_b), 1e-300);
+  // The smaller node says more about where: weight by the inverse of the size (radii of 1e19 m are infinite).
+  const double size = static_cast<double>(radius_a) + static_cast<double>(radius_b);
+  const double weight_a = size > 0.0 && std::isfinite(size) ? static_cast<double>(radius_b) / size : 0.5;
   Contact contact;
   contact.position = weight_a * centroid_a + (1.0 - weight_a) * centroid_b + origin_a;
   Vec3 direction = b_in_a.rotation * b.mean_normal.cast<double>() - a.mean_normal.cast<double>();

@@ -211,13 +211,13 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, Pro
 
 template <volume::BoundingVolume V>
 Encounter<V> encounter_of(const tree::Hierarchy<V>& a, const tree::Hierarchy<V>& b, const PosedMeshes& meshes,
-                          EstimatorKind estimator) noexcept {
-  return Encounter<V>(a, b, meshes.pose(), estimator);
+                          const Request& request) noexcept {
+  return Encounter<V>(a, b, meshes.pose(), request);
 }
 
 wide::Encounter encounter_of(const tree::WideTree& a, const tree::WideTree& b, const PosedMeshes& meshes,
-                             EstimatorKind estimator) noexcept {
-  return wide::Encounter(a, b, meshes, estimator);
+                             const Request& request) noexcept {
+  return wide::Encounter(a, b, meshes, request.estimator);
 }
 
 template <class Tree>
@@ -228,7 +228,7 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
   answer = {};
   pair.hits.clear();
   const PosedMeshes meshes(pair.a->mesh(), pair.b->mesh(), a.origin(), b.origin(), pose_b_in_a);
-  const auto encounter = encounter_of(a, b, meshes, request.estimator);
+  const auto encounter = encounter_of(a, b, meshes, request);
   const SearchResult result = search(encounter, meshes, request, pair, spending);
   const double candidate_probability =
       result.has_candidate && pair.hits.empty()
@@ -301,10 +301,12 @@ const Answer& Pair::run(const math::Pose& pose_b_in_a, const Request& request) n
     pair.answer = refused();
     return pair.answer;
   }
+  Request possible = request;
+  possible.polygon_free = request.polygon_free || pair.polygon_free;
   std::visit(
       [&](const auto& a) {
         using Tree = std::remove_cvref_t<decltype(a)>;
-        run_on(a, *std::get_if<Tree>(&pair.b->data().tree), pose_b_in_a, request, pair);
+        run_on(a, *std::get_if<Tree>(&pair.b->data().tree), pose_b_in_a, possible, pair);
       },
       pair.a->data().tree);
   return pair.answer;

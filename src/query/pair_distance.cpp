@@ -38,7 +38,7 @@ DistanceAnswer Pair::distance(const math::Pose& pose_b_in_a, const DistanceReque
   DistanceAnswer answer;
   const auto* a = std::get_if<tree::WideTree>(&pair.a->data().tree);
   const auto* b = std::get_if<tree::WideTree>(&pair.b->data().tree);
-  if (a == nullptr || b == nullptr || !usable(pose_b_in_a, request)) return answer;
+  if (a == nullptr || b == nullptr || pair.polygon_free || !usable(pose_b_in_a, request)) return answer;
   Spending spending(request.budget);
   const PosedMeshes meshes(pair.a->mesh(), pair.b->mesh(), a->origin(), b->origin(), pose_b_in_a);
   const double apart = meshes.pose().translation.norm();

@@ -21,7 +21,8 @@ struct Pair::Implementation {
         slice(a->volume() == volume::Kind::wide ? 1 : options.slice_capacity),
         front(a->volume() == volume::Kind::wide ? options.slice_capacity : 1),
         patches(options.hit_capacity),
-        wide(wide::searches_for(options.instruction_set)) {}
+        wide(wide::searches_for(options.instruction_set)),
+        polygon_free(!a->has_polygons() || !b->has_polygons()) {}
 
   std::shared_ptr<const Shape> a;
   std::shared_ptr<const Shape> b;
@@ -33,6 +34,7 @@ struct Pair::Implementation {
   TrianglePair witness;  ///< the pair of triangles that proved the last incremental hit
   PatchBuilder patches;
   const wide::Searches* wide;
+  bool polygon_free;                      ///< every query has to be
   Vec3 previous_normal = Vec3::Zero();    ///< of the last run's first contact, in A's frame; zero: none
   Vec3 previous_position = Vec3::Zero();  ///< of that contact
   KnownDepth known_depth;

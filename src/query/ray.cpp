@@ -58,6 +58,7 @@ std::optional<RayHit> cast(const mesh::TriangleMesh&, const tree::Hierarchy<V>& 
 
 std::optional<RayHit> cast_ray(const Shape& shape, const Vec3& origin, const Vec3& direction, double max_distance,
                                std::uint64_t budget_nodes) noexcept {
+  if (!shape.has_polygons()) return {};
   if (!origin.allFinite() || !(std::abs(direction.squaredNorm() - 1.0) < 1e-6) || !(max_distance >= 0.0)) return {};
   return std::visit(
       [&](const auto& tree) -> std::optional<RayHit> {

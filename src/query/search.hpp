@@ -66,9 +66,9 @@ void search_depth_first(const Encounter<V>& encounter, NodePair start, std::uint
 /// of all coarse ones; log2.
 inline constexpr float highest_rank = 0.5F;
 
-/// The bucket of log2 of a pair's expected crossings per remaining cost, in quarters.
+/// The bucket of log2 of a pair's expected crossings per remaining cost, in quarters; the lowest for a NaN.
 [[nodiscard]] inline std::uint32_t bucket_of_value(float value) noexcept {
-  return static_cast<std::uint32_t>(std::clamp(60.0F + 4.0F * value, 0.0F, 63.0F));
+  return static_cast<std::uint32_t>(std::min(63.0F, std::max(0.0F, 60.0F + 4.0F * value)));
 }
 
 [[nodiscard]] inline std::uint32_t bucket_of(float rank, int levels_left) noexcept {

@@ -7,6 +7,8 @@
 #include <string>
 
 #include "odds/mesh/enclosed_volume.hpp"
+#include "query/box_mesh.hpp"
+#include "query/count_bytes.hpp"
 #include "query/search.hpp"
 #include "query/shape_data.hpp"
 #include "query/wide/lookup.hpp"
@@ -26,48 +28,66 @@ AnyTree build_tree(volume::Kind kind, const mesh::TriangleMesh& mesh, const tree
   return tree;
 }
 
-template <volume::BoundingVolume V>
-ShapeSummary summarise(const tree::Hierarchy<V>& hierarchy) {
-  ShapeSummary summary;
-  summary.triangles = hierarchy.order().size();
-  summary.nodes = hierarchy.nodes().size();
-  summary.depth = hierarchy.levels();
-  summary.bytes = hierarchy.bytes();
-  double cells = 0.0;
+/// Leaves, and well-filled cells of the other nodes.
+struct NodeCounts {
+  std::size_t leaves = 0;
   std::size_t inner = 0;
-  for (std::size_t i = 0; i < hierarchy.nodes().size(); ++i) {
-    if (hierarchy.nodes()[i].is_leaf()) {
-      ++summary.leaves;
+  double cells = 0.0;
+
+  void add(bool is_leaf, const tree::NodeStatistics& statistics) {
+    if (is_leaf) {
+      ++leaves;
     } else {
       ++inner;
-      cells += hierarchy.statistics()[i].well_filled_cells;
+      cells += statistics.well_filled_cells;
     }
   }
-  summary.mean_leaf_triangles = static_cast<double>(summary.triangles) / static_cast<double>(summary.leaves);
-  summary.mean_well_filled_cells = inner == 0 ? 0.0 : cells / static_cast<double>(inner);
-  return summary;
+};
+
+template <volume::BoundingVolume V>
+NodeCounts count_nodes(const tree::Hierarchy<V>& hierarchy) {
+  NodeCounts counts;
+  for (std::size_t i = 0; i < hierarchy.nodes().size(); ++i) {
+    counts.add(hierarchy.nodes()[i].is_leaf(), hierarchy.statistics()[i]);
+  }
+  return counts;
 }
 
-ShapeSummary summarise(const tree::WideTree& tree) {
-  ShapeSummary summary;
-  summary.triangles = tree.triangle_count();
-  summary.nodes = tree.node_count();
-  summary.leaves = tree.leaf_count();
-  summary.depth = tree.levels();
-  summary.bytes = tree.bytes();
-  double cells = 0.0;
-  std::size_t inner = 0;
+NodeCounts count_nodes(const tree::WideTree& tree) {
+  NodeCounts counts;
   for (std::size_t node = 0; node < tree.node_count(); ++node) {
     for (std::uint32_t lane = 0; lane < tree::wide_lanes; ++lane) {
       const tree::ChildRef child = tree.nodes()[node].child[lane];
-      if (child.is_nothing() || child.is_leaf()) continue;
-      ++inner;
-      cells += tree.statistics(static_cast<tree::Slot>(node * tree::wide_lanes + lane)).well_filled_cells;
+      if (child.is_nothing()) continue;
+      counts.add(child.is_leaf(), tree.statistics(static_cast<tree::Slot>(node * tree::wide_lanes + lane)));
     }
   }
+  return counts;
+}
+
+ShapeSummary summarise(const AnyTree& any_tree, const mesh::TriangleMesh& mesh) {
+  ShapeSummary summary;
+  const NodeCounts counts = std::visit([](const auto& tree) { return count_nodes(tree); }, any_tree);
+  count_bytes(any_tree, mesh, summary);
+  summary.triangles = mesh.triangles().size();
+  summary.leaves = counts.leaves;
   summary.mean_leaf_triangles = static_cast<double>(summary.triangles) / static_cast<double>(summary.leaves);
-  summary.mean_well_filled_cells = inner == 0 ? 0.0 : cells / static_cast<double>(inner);
+  summary.mean_well_filled_cells = counts.inner == 0 ? 0.0 : counts.cells / static_cast<double>(counts.inner);
   return summary;
+}
+
+template <volume::BoundingVolume V>
+tree::Hierarchy<V> polygon_free(const tree::Hierarchy<V>& hierarchy) {
+  auto parts = hierarchy.parts();
+  parts.corners = {};
+  parts.order = {};
+  return tree::Hierarchy<V>(std::move(parts));
+}
+
+tree::WideTree polygon_free(const tree::WideTree& tree) {
+  tree::WideTree::Parts parts = tree.parts();
+  parts.leaves = {};
+  return tree::WideTree(std::move(parts));
 }
 
 bool closed_and_outward(const mesh::TriangleMesh& mesh) { return mesh::enclosed_volume(mesh).value_or(0.0) > 0.0; }
@@ -194,15 +214,33 @@ Result<std::shared_ptr<const Shape>> Shape::build(std::shared_ptr<const mesh::Tr
   data->tree = build_tree(options.volume, *mesh, build_options, progress,
                           std::make_index_sequence<std::variant_size_v<AnyTree>>());
   data->solid = solid.get();
-  data->summary = std::visit([](const auto& tree) { return summarise(tree); }, data->tree);
+  data->summary = summarise(data->tree, *mesh);
   data->summary.build_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   data->mesh = std::move(mesh);
+  return of(std::move(data));
+}
+
+std::shared_ptr<const Shape> Shape::of(std::unique_ptr<Data> data) {
   return std::shared_ptr<const Shape>(new Shape(std::move(data)));
+}
+
+std::shared_ptr<const Shape> Shape::without_polygons() const {
+  auto data = std::make_unique<Data>();
+  data->options = data_->options;
+  data->solid = data_->solid;
+  data->polygons = false;
+  data->tree = std::visit([](const auto& tree) { return AnyTree(polygon_free(tree)); }, data_->tree);
+  Result<mesh::TriangleMesh> box = box_mesh(mesh().lower(), mesh().upper(), mesh().name());
+  data->mesh = std::make_shared<const mesh::TriangleMesh>(std::move(box).value());  // a valid mesh has a valid box
+  data->summary = data_->summary;
+  count_bytes(data->tree, *data->mesh, data->summary);
+  return of(std::move(data));
 }
 
 Shape::Shape(std::unique_ptr<Data> data) : data_(std::move(data)) {}
 Shape::~Shape() = default;
 
+bool Shape::has_polygons() const noexcept { return data_->polygons; }
 const mesh::TriangleMesh& Shape::mesh() const noexcept { return *data_->mesh; }
 volume::Kind Shape::volume() const noexcept { return data_->options.volume; }
 const ShapeOptions& Shape::options() const noexcept { return data_->options; }
@@ -213,7 +251,8 @@ std::size_t triangles_in_box(const Shape& shape, const Vec3& center, const Mat3&
                              std::span<std::uint32_t> found, std::uint64_t budget_nodes, bool* complete) noexcept {
   bool all = false;
   std::size_t count = 0;
-  if (center.allFinite() && axes.allFinite() && half_extents.allFinite() && !found.empty()) {
+  const bool usable = center.allFinite() && axes.allFinite() && half_extents.allFinite() && !found.empty();
+  if (usable && shape.has_polygons()) {
     count = std::visit(
         [&](const auto& tree) {
           return collect(shape.mesh(), tree, Box{center - tree.origin(), axes, half_extents.cwiseMax(0.0)}, found,

@@ -30,7 +30,8 @@ struct Shape::Data {
   std::shared_ptr<const mesh::TriangleMesh> mesh;
   ShapeOptions options;
   ShapeSummary summary;
-  bool solid = false;  ///< closed, oriented outwards
+  bool solid = false;    ///< closed, oriented outwards
+  bool polygons = true;  ///< false: the mesh is a box, and leaves hold no triangles
   AnyTree tree;
 };
 

@@ -7,6 +7,7 @@
 
 #include "odds/mesh/made/by_name.hpp"
 #include "odds/mesh/read.hpp"
+#include "odds/query/saved_shape.hpp"
 
 namespace odds::scene {
 namespace {
@@ -57,6 +58,32 @@ Result<std::filesystem::path> locate_mesh(const Scene& scene, const Mesh& mesh) 
                remedy};
 }
 
+namespace {
+
+/// A hierarchy that `odds build` saved, if it is what the scene needs.
+Result<std::shared_ptr<const query::Shape>> load_saved(const Scene& scene, const Mesh& mesh,
+                                                       const std::filesystem::path& path) {
+  auto shape = query::load_shape(path);
+  if (!shape) return shape;
+  const auto refused = [&](const std::string& what, const std::string& remedy) {
+    return at_scene(scene, mesh, {path.string(), "", what, remedy});
+  };
+  if (mesh.scale != 1.0) {
+    return refused("a saved hierarchy is in metres, so a scale does not apply", "give the scale to `odds build`");
+  }
+  if (!shape.value()->has_polygons()) {
+    return refused("its polygons were dropped, and a scene needs them", "build the file without --polygon-free");
+  }
+  if (shape.value()->volume() != scene.volume) {
+    return refused(fmt::format("its bounding volume is {}, that of the scene {}", volume::name(shape.value()->volume()),
+                               volume::name(scene.volume)),
+                   "build the file with the scene's volume");
+  }
+  return shape;
+}
+
+}  // namespace
+
 Result<std::shared_ptr<const query::Shape>> load_shape(const Scene& scene, const Mesh& mesh,
                                                        const std::function<void(double share)>& progress) {
   std::shared_ptr<const mesh::TriangleMesh> triangles;
@@ -67,6 +94,7 @@ Result<std::shared_ptr<const query::Shape>> load_shape(const Scene& scene, const
   } else {
     const Result<std::filesystem::path> path = locate_mesh(scene, mesh);
     if (!path) return path.error();
+    if (query::is_saved_shape(path.value())) return load_saved(scene, mesh, path.value());
     mesh::ReadOptions options;
     options.scale = mesh.scale;
     Result<mesh::TriangleMesh> read = mesh::read(path.value(), options);

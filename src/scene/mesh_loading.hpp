@@ -17,7 +17,7 @@ namespace odds::scene {
 /// was tried, and the package that holds it.
 Result<std::filesystem::path> locate_mesh(const Scene& scene, const Mesh& mesh);
 
-/// Reads or makes the mesh and builds its hierarchy.
+/// Reads or makes the mesh and builds its hierarchy, or loads one that was saved.
 Result<std::shared_ptr<const query::Shape>> load_shape(const Scene& scene, const Mesh& mesh,
                                                        const std::function<void(double share)>& progress);
 

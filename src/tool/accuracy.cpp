@@ -18,9 +18,9 @@
 #include "tool/accuracy_study.hpp"
 #include "tool/accuracy_table.hpp"
 #include "tool/command.hpp"
-#include "tool/mesh_argument.hpp"
 #include "tool/output_folder.hpp"
 #include "tool/progress_line.hpp"
+#include "tool/shape_argument.hpp"
 #include "tool/shared_options.hpp"
 
 namespace odds::tool {
@@ -34,7 +34,7 @@ struct AccuracyOptions {
   double scale_a = 1.0;
   double scale_b = 1.0;
   std::string out;
-  query::ShapeOptions shape;
+  ShapeWish shape;
   query::EstimatorKind estimator = query::EstimatorKind::kinematic;
   report::Procedure procedure = report::Procedure::distance;
   std::string budgets_us = "1,2,5,10,20,50,100";
@@ -108,38 +108,32 @@ std::vector<Trial> trials_of(const AccuracyOptions& options) {
   return trials;
 }
 
-Result<std::shared_ptr<const query::Shape>> build(const std::shared_ptr<const mesh::TriangleMesh>& mesh,
-                                                  const query::ShapeOptions& options) {
-  ProgressLine progress("building " + mesh->name());
-  return query::Shape::build(mesh, options, [&](double share) { progress.show(share); });
-}
-
 /// The shape as asked for, and that of the wide engine; one and the same if that was asked for.
-std::optional<Error> build_both(const std::string& argument, double scale, const query::ShapeOptions& options,
-                                std::shared_ptr<const query::Shape>& asked, std::shared_ptr<const query::Shape>& wide) {
-  Result<mesh::TriangleMesh> loaded = load_mesh(argument, scale);
+std::optional<Error> load_both(const std::string& argument, double scale, const ShapeWish& wish,
+                               std::shared_ptr<const query::Shape>& asked, std::shared_ptr<const query::Shape>& wide) {
+  const auto loaded = load_shape(argument, scale, wish);
   if (!loaded.ok()) return loaded.error();
-  const auto mesh = std::make_shared<const mesh::TriangleMesh>(std::move(loaded).value());
-  const auto first = build(mesh, options);
-  if (!first.ok()) return first.error();
-  asked = wide = first.value();
-  if (options.volume == volume::Kind::wide) return std::nullopt;
-  query::ShapeOptions wide_options;
-  const auto second = build(mesh, wide_options);
-  if (!second.ok()) return second.error();
-  wide = second.value();
+  asked = wide = loaded.value();
+  if (auto error = refuse_polygon_free(*asked, argument)) return error;
+  if (asked->volume() == volume::Kind::wide) return std::nullopt;
+  // The mesh lives as long as the shape that holds it.
+  const std::shared_ptr<const mesh::TriangleMesh> mesh(asked, &asked->mesh());
+  ProgressLine progress("building " + mesh->name());
+  const auto built = query::Shape::build(mesh, {}, [&](double share) { progress.show(share); });
+  if (!built.ok()) return built.error();
+  wide = built.value();
   return std::nullopt;
 }
 
 Result<StudyShapes> prepare(const AccuracyOptions& options) {
   StudyShapes shapes;
-  if (auto error = build_both(options.mesh_a, options.scale_a, options.shape, shapes.a, shapes.wide_a)) return *error;
+  if (auto error = load_both(options.mesh_a, options.scale_a, options.shape, shapes.a, shapes.wide_a)) return *error;
   if (options.mesh_a == options.mesh_b && options.scale_a == options.scale_b) {
     shapes.b = shapes.a;
     shapes.wide_b = shapes.wide_a;
     return shapes;
   }
-  if (auto error = build_both(options.mesh_b, options.scale_b, options.shape, shapes.b, shapes.wide_b)) return *error;
+  if (auto error = load_both(options.mesh_b, options.scale_b, options.shape, shapes.b, shapes.wide_b)) return *error;
   return shapes;
 }
 
@@ -158,8 +152,8 @@ Result<report::Study> measure(const AccuracyOptions& options) {
   s.scale_b = options.scale_b;
   s.triangles_a = shapes.value().a->mesh().triangles().size();
   s.triangles_b = shapes.value().b->mesh().triangles().size();
-  s.bounding_volume = volume::name(options.shape.volume);
-  s.tau = options.shape.tau;
+  s.bounding_volume = volume::name(shapes.value().a->volume());
+  s.tau = shapes.value().a->options().tau;
   s.estimator = options.estimator == query::EstimatorKind::cells ? "cells" : "kinematic";
   s.k_min = options.k_min;
   s.contacts = options.contacts;
@@ -264,8 +258,8 @@ void add_accuracy(CLI::App& app, Action& action) {
   const auto options = std::make_shared<AccuracyOptions>();
   CLI::App* command = app.add_subcommand(
       "accuracy", "Measure what accuracy costs in time: wrong answers, proofs, contact errors, by limit and distance");
-  command->add_option("A", options->mesh_a, "mesh: " + mesh_argument_help());
-  command->add_option("B", options->mesh_b, "mesh, as A");
+  command->add_option("A", options->mesh_a, shape_argument_help());
+  command->add_option("B", options->mesh_b, "as A");
   command->add_option("--out", options->out, "directory for the page, the tables and the worst poses")->required();
   add_limits(*command, *options);
   add_poses(*command, *options);

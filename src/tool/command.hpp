@@ -21,6 +21,7 @@ int fail(const Error& error);
 
 // Each adds its sub-command to `app` and sets `action` when it was chosen.
 void add_inspect(CLI::App& app, Action& action);
+void add_build(CLI::App& app, Action& action);
 void add_query(CLI::App& app, Action& action);
 void add_distance(CLI::App& app, Action& action);
 void add_run(CLI::App& app, Action& action);

@@ -47,6 +47,8 @@ int run(const DistanceOptions& options) {
   Result<PoseRun> opened = PoseRun::open(options.run);
   if (!opened.ok()) return fail(opened.error());
   auto& [poses, out, pair] = opened.value();
+  if (const auto error = refuse_polygon_free(pair.a(), options.run.pair.mesh_a)) return fail(*error);
+  if (const auto error = refuse_polygon_free(pair.b(), options.run.pair.mesh_b)) return fail(*error);
 
   query::DistanceRequest request = options.request;
   request.budget = options.run.limited(request.budget);

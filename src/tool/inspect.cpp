@@ -1,4 +1,4 @@
-// `odds inspect MESH`: faults, sizes, hierarchy and node statistics.
+// `odds inspect MESH`: faults, sizes, hierarchy and node statistics; of a saved hierarchy, what it holds.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,9 +15,9 @@
 #include "odds/mesh/write.hpp"
 #include "odds/query/shape.hpp"
 #include "tool/command.hpp"
-#include "tool/mesh_argument.hpp"
 #include "tool/output_file.hpp"
 #include "tool/progress_line.hpp"
+#include "tool/shape_argument.hpp"
 #include "tool/shared_options.hpp"
 
 namespace odds::tool {
@@ -26,37 +26,39 @@ namespace {
 struct InspectOptions {
   std::string mesh;
   double scale = 1.0;
-  query::ShapeOptions shape;
+  ShapeWish shape;
   std::string repair_to;
   bool json = false;
 };
 
 /// Everything that is known about one mesh.
 struct Inspection {
-  std::shared_ptr<const mesh::TriangleMesh> mesh;
-  mesh::Faults faults;
-  std::string hint;
   std::shared_ptr<const query::Shape> shape;
+  std::optional<mesh::Faults> faults;  ///< of a mesh that has its polygons
+  std::string hint;
+  bool saved = false;  ///< the shape came from a file of `odds build`
+
+  [[nodiscard]] const mesh::TriangleMesh& mesh() const { return shape->mesh(); }
 };
 
-Result<Inspection> inspect(mesh::TriangleMesh&& given, const query::ShapeOptions& options) {
-  Inspection found;
-  found.mesh = std::make_shared<const mesh::TriangleMesh>(std::move(given));
-  {
-    const ProgressLine progress("looking for faults");
-    found.faults = mesh::find_faults(*found.mesh);
-  }
-  found.hint = mesh::units_hint(*found.mesh);
-  ProgressLine progress("building the hierarchy");
-  auto shape = query::Shape::build(found.mesh, options, [&](double share) { progress.show(share); });
+Result<Inspection> inspect(const InspectOptions& options) {
+  auto shape = load_shape(options.mesh, options.scale, options.shape);
   if (!shape.ok()) return shape.error();
-  found.shape = shape.value();
+  Inspection found;
+  found.shape = std::move(shape).value();
+  found.saved = found.shape->summary().load_ms > 0.0;
+  if (!found.shape->has_polygons()) return found;
+  const ProgressLine progress("looking for faults");
+  found.faults = mesh::find_faults(found.mesh());
+  if (!found.saved) found.hint = mesh::units_hint(found.mesh());
   return found;
 }
 
-double bytes_per_triangle(const query::ShapeSummary& summary) {
-  return static_cast<double>(summary.bytes) / static_cast<double>(summary.triangles);
+double a_triangle(std::size_t bytes, const query::ShapeSummary& summary) {
+  return static_cast<double>(bytes) / static_cast<double>(summary.triangles);
 }
+
+double mebibytes(std::size_t bytes) { return static_cast<double>(bytes) / 1048576.0; }
 
 std::string point(const Vec3& p) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x(), p.y(), p.z()); }
 
@@ -83,8 +85,7 @@ void print_finding(const char* title, const mesh::Finding<Item>& finding) {
   }
 }
 
-void print_faults(const Inspection& found) {
-  const mesh::Faults& faults = found.faults;
+void print_faults(const mesh::Faults& faults) {
   const auto yes = [](bool is) { return is ? "yes" : "no"; };
   fmt::print("closed          {}\n", yes(faults.closed));
   fmt::print("manifold        {}\n", yes(faults.manifold));
@@ -106,24 +107,41 @@ void print_faults(const Inspection& found) {
   print_finding("unused vertices", faults.unused_vertex);
 }
 
-void print_text(const Inspection& found) {
-  const mesh::TriangleMesh& mesh = *found.mesh;
+void print_memory(const query::Shape& shape) {
+  const query::ShapeSummary& summary = shape.summary();
+  fmt::print("  memory        {:.2f} MiB, {:.0f} bytes a triangle", mebibytes(summary.bytes),
+             a_triangle(summary.bytes, summary));
+  if (!shape.has_polygons()) {
+    fmt::print(", polygons dropped\n");
+    return;
+  }
+  fmt::print("; {:.0f} with the mesh, {:.0f} without polygons\n",
+             a_triangle(summary.bytes + summary.mesh_bytes, summary), a_triangle(summary.polygon_free_bytes, summary));
+}
+
+void print_hierarchy(const Inspection& found) {
   const query::ShapeSummary& summary = found.shape->summary();
-  fmt::print("mesh            {}\n", mesh.name());
-  fmt::print("triangles       {}\n", mesh.triangles().size());
-  fmt::print("vertices        {}\n", mesh.vertices().size());
-  fmt::print("bounds          {} .. {} m\n", point(mesh.lower()), point(mesh.upper()));
-  fmt::print("size            {:.6g} m (diagonal)\n", mesh.size());
-  if (!found.hint.empty()) fmt::print("hint            {}\n", found.hint);
-  print_faults(found);
   fmt::print("hierarchy       {}, leaves of at most {} triangles, tau {:g}\n", volume::name(found.shape->volume()),
              found.shape->options().leaf_triangles, found.shape->options().tau);
   fmt::print("  nodes         {} ({} leaves, {:.2f} triangles each), {} levels\n", summary.nodes, summary.leaves,
              summary.mean_leaf_triangles, summary.depth);
   fmt::print("  well filled   {:.1f} of 512 cells, mean of inner nodes\n", summary.mean_well_filled_cells);
-  fmt::print("  memory        {:.2f} MiB, {:.0f} bytes a triangle\n", static_cast<double>(summary.bytes) / 1048576.0,
-             bytes_per_triangle(summary));
-  fmt::print("  build         {:.1f} ms\n", summary.build_ms);
+  print_memory(*found.shape);
+  fmt::print("  build         {:.1f} ms", summary.build_ms);
+  if (found.saved) fmt::print(" when it was made; checked and loaded in {:.1f} ms", summary.load_ms);
+  fmt::print("\n");
+}
+
+void print_text(const Inspection& found) {
+  const mesh::TriangleMesh& mesh = found.mesh();
+  fmt::print("mesh            {}\n", mesh.name());
+  fmt::print("triangles       {}\n", found.shape->summary().triangles);
+  if (found.faults) fmt::print("vertices        {}\n", mesh.vertices().size());
+  fmt::print("bounds          {} .. {} m\n", point(mesh.lower()), point(mesh.upper()));
+  fmt::print("size            {:.6g} m (diagonal)\n", mesh.size());
+  if (!found.hint.empty()) fmt::print("hint            {}\n", found.hint);
+  if (found.faults) print_faults(*found.faults);
+  print_hierarchy(found);
 }
 
 template <class Item>
@@ -131,24 +149,31 @@ nlohmann::ordered_json finding_json(const mesh::Finding<Item>& finding) {
   return {{"count", finding.count}, {"examples", finding.examples}};
 }
 
-nlohmann::ordered_json to_json(const Inspection& found) {
-  const mesh::TriangleMesh& mesh = *found.mesh;
-  const mesh::Faults& faults = found.faults;
+nlohmann::ordered_json hierarchy_json(const Inspection& found) {
   const query::ShapeSummary& summary = found.shape->summary();
-  const auto array = [](const Vec3& p) { return std::array<double, 3>{p.x(), p.y(), p.z()}; };
-  nlohmann::ordered_json json = {{"mesh", mesh.name()},
-                                 {"triangles", mesh.triangles().size()},
-                                 {"vertices", mesh.vertices().size()},
-                                 {"lower_m", array(mesh.lower())},
-                                 {"upper_m", array(mesh.upper())},
-                                 {"size_m", mesh.size()},
-                                 {"hint", found.hint},
-                                 {"closed", faults.closed},
-                                 {"manifold", faults.manifold},
-                                 {"orientable", faults.orientable},
-                                 {"consistent_winding", faults.consistent()},
-                                 {"components", faults.components},
-                                 {"area_m2", faults.area}};
+  return {{"bounding_volume", std::string(volume::name(found.shape->volume()))},
+          {"tau", found.shape->options().tau},
+          {"polygons", found.shape->has_polygons()},
+          {"nodes", summary.nodes},
+          {"leaves", summary.leaves},
+          {"levels", summary.depth},
+          {"mean_leaf_triangles", summary.mean_leaf_triangles},
+          {"mean_well_filled_cells", summary.mean_well_filled_cells},
+          {"bytes", summary.bytes},
+          {"bytes_per_triangle", a_triangle(summary.bytes, summary)},
+          {"bytes_per_triangle_with_mesh", a_triangle(summary.bytes + summary.mesh_bytes, summary)},
+          {"bytes_per_triangle_polygon_free", a_triangle(summary.polygon_free_bytes, summary)},
+          {"build_ms", summary.build_ms},
+          {"load_ms", summary.load_ms}};
+}
+
+void add_faults(nlohmann::ordered_json& json, const mesh::Faults& faults) {
+  json["closed"] = faults.closed;
+  json["manifold"] = faults.manifold;
+  json["orientable"] = faults.orientable;
+  json["consistent_winding"] = faults.consistent();
+  json["components"] = faults.components;
+  json["area_m2"] = faults.area;
   json["volume_m3"] = faults.volume ? nlohmann::ordered_json(*faults.volume) : nlohmann::ordered_json(nullptr);
   json["faults"] = {{"degenerate_triangles", finding_json(faults.degenerate)},
                     {"duplicate_triangles", finding_json(faults.duplicate)},
@@ -159,32 +184,45 @@ nlohmann::ordered_json to_json(const Inspection& found) {
                     {"non_manifold_vertices", finding_json(faults.non_manifold_vertex)},
                     {"duplicate_vertices", finding_json(faults.duplicate_vertex)},
                     {"unused_vertices", finding_json(faults.unused_vertex)}};
-  json["hierarchy"] = {{"bounding_volume", std::string(volume::name(found.shape->volume()))},
-                       {"tau", found.shape->options().tau},
-                       {"nodes", summary.nodes},
-                       {"leaves", summary.leaves},
-                       {"levels", summary.depth},
-                       {"mean_leaf_triangles", summary.mean_leaf_triangles},
-                       {"mean_well_filled_cells", summary.mean_well_filled_cells},
-                       {"bytes", summary.bytes},
-                       {"bytes_per_triangle", bytes_per_triangle(summary)},
-                       {"build_ms", summary.build_ms}};
+}
+
+nlohmann::ordered_json to_json(const Inspection& found) {
+  const mesh::TriangleMesh& mesh = found.mesh();
+  const auto array = [](const Vec3& p) { return std::array<double, 3>{p.x(), p.y(), p.z()}; };
+  nlohmann::ordered_json json = {{"mesh", mesh.name()},
+                                 {"triangles", found.shape->summary().triangles},
+                                 {"vertices", nullptr},
+                                 {"lower_m", array(mesh.lower())},
+                                 {"upper_m", array(mesh.upper())},
+                                 {"size_m", mesh.size()},
+                                 {"hint", found.hint}};
+  if (found.faults) {
+    json["vertices"] = mesh.vertices().size();
+    add_faults(json, *found.faults);
+  }
+  json["hierarchy"] = hierarchy_json(found);
   return json;
+}
+
+/// Writes the repaired copy.
+Result<mesh::RepairLog> repair(const Inspection& found, const InspectOptions& options) {
+  if (auto error = refuse_polygon_free(*found.shape, options.mesh)) return *std::move(error);
+  Result<mesh::Repaired> repaired = mesh::repair(found.mesh());
+  if (!repaired.ok()) return repaired.error();
+  if (auto error = mesh::write(repaired.value().mesh, options.repair_to)) return *std::move(error);
+  return repaired.value().log;
 }
 
 int run(const InspectOptions& options) {
   if (const auto error = refuse_overwriting(options.repair_to, {options.mesh})) return fail(*error);
-  Result<mesh::TriangleMesh> mesh = load_mesh(options.mesh, options.scale);
-  if (!mesh.ok()) return fail(mesh.error());
+  const Result<Inspection> found = inspect(options);
+  if (!found.ok()) return fail(found.error());
   std::optional<mesh::RepairLog> log;
   if (!options.repair_to.empty()) {
-    Result<mesh::Repaired> repaired = mesh::repair(mesh.value());
+    Result<mesh::RepairLog> repaired = repair(found.value(), options);
     if (!repaired.ok()) return fail(repaired.error());
-    if (const auto error = mesh::write(repaired.value().mesh, options.repair_to)) return fail(*error);
-    log = repaired.value().log;
+    log = std::move(repaired).value();
   }
-  const Result<Inspection> found = inspect(std::move(mesh).value(), options.shape);
-  if (!found.ok()) return fail(found.error());
   if (options.json) {
     nlohmann::ordered_json json = to_json(found.value());
     if (log) json["repair"] = {{"written_to", options.repair_to}, {"done", log->lines()}};
@@ -206,7 +244,7 @@ void add_inspect(CLI::App& app, Action& action) {
   const auto options = std::make_shared<InspectOptions>();
   CLI::App* command =
       app.add_subcommand("inspect", "Show a mesh's faults and sizes, its hierarchy and node statistics");
-  command->add_option("MESH", options->mesh, mesh_argument_help())->required();
+  command->add_option("MESH", options->mesh, shape_argument_help())->required();
   command->add_option("--scale", options->scale, "metres per unit of the file, as 0.001 for millimetres")
       ->check(positive_and_finite());
   add_shape_options(*command, options->shape);

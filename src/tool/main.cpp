@@ -32,6 +32,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   odds::tool::Action action;
   odds::tool::add_inspect(app, action);
+  odds::tool::add_build(app, action);
   odds::tool::add_query(app, action);
   odds::tool::add_distance(app, action);
   odds::tool::add_accuracy(app, action);

@@ -5,6 +5,7 @@
 
 #include "odds/math/error.hpp"
 #include "odds/query/pair.hpp"
+#include "tool/shape_argument.hpp"
 
 namespace odds::tool {
 
@@ -13,10 +14,10 @@ struct PairArgument {
   std::string mesh_b;
   double scale_a = 1.0;  ///< metres per unit of the file
   double scale_b = 1.0;
-  query::ShapeOptions shape;
+  ShapeWish shape;
 };
 
-/// Reads and builds both, with progress; one shape for a mesh that is given twice.
+/// Reads and builds both, with progress, or loads what was saved; one shape for a mesh that is given twice.
 Result<query::Pair> make_pair(const PairArgument& argument);
 
 }  // namespace odds::tool

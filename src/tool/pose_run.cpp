@@ -2,7 +2,6 @@
 
 #include <limits>
 
-#include "tool/mesh_argument.hpp"
 #include "tool/poses_csv.hpp"
 #include "tool/shared_options.hpp"
 
@@ -15,8 +14,8 @@ query::Budget PoseRunArguments::limited(query::Budget budget) const {
 }
 
 void add_pose_run_options(CLI::App& command, PoseRunArguments& arguments, const std::string& out_help) {
-  command.add_option("A", arguments.pair.mesh_a, "mesh: " + mesh_argument_help())->required();
-  command.add_option("B", arguments.pair.mesh_b, "mesh, as A")->required();
+  command.add_option("A", arguments.pair.mesh_a, shape_argument_help())->required();
+  command.add_option("B", arguments.pair.mesh_b, "as A")->required();
   command
       .add_option("--poses", arguments.poses, "CSV with columns x,y,z (metres), qw,qx,qy,qz: pose of B in A's frame")
       ->required();

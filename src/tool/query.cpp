@@ -73,6 +73,10 @@ int run(const QueryOptions& options) {
   if (!opened.ok()) return fail(opened.error());
   auto& [poses, out, pair] = opened.value();
 
+  if (!options.request.leaf_test && pair.a().volume() == volume::Kind::wide) {
+    return fail({options.run.pair.mesh_a, "", "the wide engine has no test of leaves to leave out",
+                 "choose another volume by --bv, or leave out --no-leaf-test"});
+  }
   query::Request request = options.request;
   request.budget = options.run.limited(request.budget);
   std::vector<AnswerRecord> records;
@@ -117,6 +121,8 @@ void add_query(CLI::App& app, Action& action) {
   command->add_option("--contacts", options->request.max_contacts, "most contacts, 0 .. 8")->check(whole_number(0, 8));
   command->add_flag("--polygon-free", options->request.polygon_free,
                     "judge leaves by probability, not by their triangles");
+  command->add_flag("!--no-leaf-test", options->request.leaf_test,
+                    "test triangles of leaves without testing their volumes first; not with --bv wide");
   command->add_option("--repeat", options->repeat, "run each query so often and take the median time, 1 .. 10000")
       ->check(whole_number(1, 10000));
   command->callback([options, &action] { action = [options] { return run(*options); }; });

@@ -19,20 +19,6 @@ std::optional<Number> number_in(const std::string& text) {
 
 }  // namespace
 
-void add_shape_options(CLI::App& command, query::ShapeOptions& options) {
-  std::map<std::string, volume::Kind> kinds;
-  std::string names;
-  for (const std::string_view word : volume::kind_words) {
-    const volume::Kind kind = *volume::kind_from_name(word);
-    kinds.emplace(word, kind);
-    names += (names.empty() ? "" : ", ") + std::string(word);
-    if (volume::name(kind) != word) names += " for " + std::string(volume::name(kind));
-  }
-  add_choice(command, "--bv", options.volume, kinds, "bounding volume: " + names + " (default wide)");
-  command.add_option("--tau", options.tau, "share of the greatest area from which on a cell is well filled, (0, 1]")
-      ->check(share_of_one());
-}
-
 CLI::Validator positive_and_finite() {
   return CLI::Validator(
       [](const std::string& text) {

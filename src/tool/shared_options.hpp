@@ -1,4 +1,4 @@
-// Options that several sub-commands share: choices by name, checks of numbers, how a mesh is made ready.
+// What options of several sub-commands share: choices by name, checks of numbers.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -8,12 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "odds/query/shape.hpp"
-
 namespace odds::tool {
-
-/// Adds --bv and --tau.
-void add_shape_options(CLI::App& command, query::ShapeOptions& options);
 
 /// Accepts finite numbers > 0.
 CLI::Validator positive_and_finite();
@@ -23,8 +18,8 @@ CLI::Validator share_of_one();
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t greatest);
 
 /// An option whose value is one of the names; an unknown one is wrong usage and all names are listed.
-template <class Value>
-CLI::Option* add_choice(CLI::App& command, const std::string& option, Value& target,
+template <class Target, class Value>
+CLI::Option* add_choice(CLI::App& command, const std::string& option, Target& target,
                         const std::map<std::string, Value>& values, const std::string& meaning) {
   std::vector<std::string> names;
   for (const auto& [name, value] : values) names.push_back(name);

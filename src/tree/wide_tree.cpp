@@ -11,8 +11,6 @@
 namespace odds::tree {
 namespace {
 
-constexpr float empty_extent = -1e30F;
-
 struct Bounds {
   Vec3 lower = Vec3::Constant(INFINITY);
   Vec3 upper = Vec3::Constant(-INFINITY);
@@ -190,43 +188,41 @@ void relate_to_box(NodeStatistics& statistics, const WideNode& node, std::uint32
 }  // namespace
 
 WideTree WideTree::build(const mesh::TriangleMesh& mesh, const BuildOptions& options, const Progress& progress) {
-  WideTree tree;
-  tree.origin_ = 0.5 * mesh.lower() + 0.5 * mesh.upper();
-  tree.triangle_count_ = mesh.triangles().size();
-  std::vector<TriangleCorners> unordered = corners_about(mesh, tree.origin_);
+  Parts parts;
+  parts.origin = 0.5 * mesh.lower() + 0.5 * mesh.upper();
+  parts.triangles = mesh.triangles().size();
+  std::vector<TriangleCorners> unordered = corners_about(mesh, parts.origin);
   const Progress first_half = progress ? [&](double share) { progress(0.5 * share); } : Progress{};
   const Topology topology = build_topology(unordered, std::min(options.leaf_triangles, wide_lanes), first_half);
   std::vector<TriangleCorners> corners(unordered.size());
   for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = unordered[topology.order[i]];
   unordered = {};
   for (const TriangleCorners& triangle : corners) {
-    for (const Vec3& corner : triangle) tree.reach_ = std::max(tree.reach_, corner.norm());
+    for (const Vec3& corner : triangle) parts.reach = std::max(parts.reach, corner.norm());
   }
   const std::vector<Bounds> bounds = bounds_of_nodes(topology, corners);
   const Plan plan = plan_nodes(topology, bounds);
-  tree.levels_ = plan.levels;
+  parts.levels = plan.levels;
   NodeSurface surface = measure_surface(topology, corners, plan.wanted);
   if (progress) progress(0.7);
 
   Layout layout = lay_out(topology, plan);
-  tree.nodes_.resize(plan.nodes.size());
-  tree.leaves_.resize(layout.leaves);
-  tree.statistics_.resize(layout.lanes);
-  tree.statistics_at_ = std::move(layout.statistics_at);
+  std::vector<WideNode> nodes(plan.nodes.size());
+  std::vector<WideLeaf> leaves(layout.leaves);
+  std::vector<NodeStatistics> all_statistics(layout.lanes);
   const auto fill_lane = [&](std::size_t w, std::uint32_t lane, CellCounter& counter) {
-    WideNode& node = tree.nodes_[w];
+    WideNode& node = nodes[w];
     const std::uint32_t index = plan.nodes[w].lanes[lane];
     const TopologyNode& source = topology.nodes[index];
     const auto triangles = std::span(corners).subspan(source.begin, source.end - source.begin);
-    NodeStatistics& statistics = tree.statistics_[tree.statistics_at_[w] + lane];
+    NodeStatistics& statistics = all_statistics[layout.statistics_at[w] + lane];
     statistics = surface.statistics[index];
     set_volume(node, lane, bounds[index], statistics);
     relate_to_box(statistics, node, lane, triangles, options.tau, counter);
     if (source.is_leaf()) {
       const std::uint32_t leaf = layout.leaf_of[index];
       node.child[lane] = ChildRef::leaf(leaf, source.count);
-      fill_leaf(tree.leaves_[leaf], node, lane, triangles,
-                std::span(topology.order).subspan(source.begin, source.count));
+      fill_leaf(leaves[leaf], node, lane, triangles, std::span(topology.order).subspan(source.begin, source.count));
     } else {
       node.child[lane] = ChildRef::node(plan.node_of[index], layout.heights[plan.node_of[index]]);
     }
@@ -236,12 +232,16 @@ WideTree WideTree::build(const mesh::TriangleMesh& mesh, const BuildOptions& opt
   for_parts(plan.nodes.size(), 256, [&](std::size_t begin, std::size_t end) {
     CellCounter counter;
     for (std::size_t w = begin; w < end; ++w) {
-      clear(tree.nodes_[w]);
+      clear(nodes[w]);
       for (std::uint32_t lane = 0; lane < plan.nodes[w].count; ++lane) fill_lane(w, lane, counter);
     }
   });
+  parts.nodes = std::move(nodes);
+  parts.leaves = std::move(leaves);
+  parts.statistics = std::move(all_statistics);
+  parts.statistics_at = std::move(layout.statistics_at);
   if (progress) progress(1.0);
-  return tree;
+  return WideTree(std::move(parts));
 }
 
 }  // namespace odds::tree

@@ -69,8 +69,8 @@ inline std::string_view target_of(const Include& include, std::string_view own_f
 
 /// Libraries that must not show in a public header: whoever includes it would need them.
 inline bool is_private_dependency(std::string_view include) {
-  constexpr std::string_view prefixes[] = {"toml++", "toml.hpp", "nlohmann/",          "CLI/",   "fmt/",
-                                           "ccd/",   "zlib.h",   "readerwriterqueue/", "pugixml"};
+  constexpr std::string_view prefixes[] = {"toml++", "toml.hpp", "nlohmann/",          "CLI/",   "fmt/", "ccd/",
+                                           "zlib.h", "xxhash.h", "readerwriterqueue/", "pugixml"};
   return std::any_of(std::begin(prefixes), std::end(prefixes),
                      [&](auto prefix) { return include.starts_with(prefix); });
 }

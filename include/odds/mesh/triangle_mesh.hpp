@@ -9,6 +9,7 @@
 
 #include "odds/math/error.hpp"
 #include "odds/math/types.hpp"
+#include "odds/mesh/shared_array.hpp"
 
 namespace odds::mesh {
 
@@ -28,8 +29,16 @@ class TriangleMesh {
   static Result<TriangleMesh> make(std::vector<Vec3> vertices, std::vector<Triangle> triangles,
                                    std::string name = "mesh");
 
-  [[nodiscard]] std::span<const Vec3> vertices() const noexcept { return vertices_; }
-  [[nodiscard]] std::span<const Triangle> triangles() const noexcept { return triangles_; }
+  /// The same of arrays that may stand in a mapped file, with the bounding box of their used vertices, which is
+  /// believed if it is finite and not inside out: that spares reading each vertex once a triangle.
+  static Result<TriangleMesh> adopt(SharedArray<Vec3> vertices, SharedArray<Triangle> triangles, std::string name,
+                                    const Vec3& lower, const Vec3& upper);
+
+  [[nodiscard]] std::span<const Vec3> vertices() const noexcept { return vertices_.span(); }
+  [[nodiscard]] std::span<const Triangle> triangles() const noexcept { return triangles_.span(); }
+  /// The same, to be kept.
+  [[nodiscard]] const SharedArray<Vec3>& vertex_array() const noexcept { return vertices_; }
+  [[nodiscard]] const SharedArray<Triangle>& triangle_array() const noexcept { return triangles_; }
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
   [[nodiscard]] const Vec3& lower() const noexcept {
     return lower_;
@@ -40,8 +49,8 @@ class TriangleMesh {
 
  private:
   TriangleMesh() = default;
-  std::vector<Vec3> vertices_;
-  std::vector<Triangle> triangles_;
+  SharedArray<Vec3> vertices_;
+  SharedArray<Triangle> triangles_;
   std::string name_;
   Vec3 lower_ = Vec3::Zero();
   Vec3 upper_ = Vec3::Zero();

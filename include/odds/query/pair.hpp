@@ -43,12 +43,13 @@ class Pair {
 
   /// Answers for one pose of B's mesh frame in A's mesh frame. A pose that is not rigid or not finite is answered at
   /// once: verdict clear, basis budget, probability 0.5, no contacts (it is the caller's error, and never a NaN).
+  /// If one of the shapes has no polygons, every request is polygon-free.
   [[nodiscard]] const Answer& run(const math::Pose& pose_b_in_a, const Request& request) noexcept;
 
   /// How far both shapes are apart in one pose, and where they are nearest; 0 where they meet. Branch and bound on the
-  /// wide engine: with another bounding volume, or a pose or request that is not usable, the answer is that nothing is
-  /// known (lower 0, upper infinite, not proved). Beyond 1000 times the size of both bodies together only the bounds
-  /// are given. Touches no coherence of `run`.
+  /// wide engine: with another bounding volume, without polygons, or with a pose or request that is not usable, the
+  /// answer is that nothing is known (lower 0, upper infinite, not proved). Beyond 1000 times the size of both bodies
+  /// together only the bounds are given. Touches no coherence of `run`.
   [[nodiscard]] DistanceAnswer distance(const math::Pose& pose_b_in_a,
                                         const DistanceRequest& request = {}) const noexcept;
 

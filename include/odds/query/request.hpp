@@ -23,9 +23,13 @@ struct Request {
   Method method = Method::time_critical;
   EstimatorKind estimator = EstimatorKind::kinematic;
   Budget budget = {};
-  double p_min = 1.0;         ///< in (0, 1]; 1: never stop on probability. A pair of nodes with p >= p_min counts ...
-  std::uint32_t k_min = 10;   ///< ... and k_min such pairs end the query with an estimated hit (>= 1)
-  int max_contacts = 1;       ///< 0 .. 8; 0: verdict only
+  double p_min = 1.0;        ///< in (0, 1]; 1: never stop on probability. A pair of nodes with p >= p_min counts ...
+  std::uint32_t k_min = 10;  ///< ... and k_min such pairs end the query with an estimated hit (>= 1)
+  int max_contacts = 1;      ///< 0 .. 8; 0: verdict only
+  /// Whether a pair of leaves has its volumes tested before its triangles (Algorithm 4.2 leaves it open). Of the
+  /// generic framework only: the wide engine tests the eight leaves of a node at once with their siblings and has
+  /// nothing to leave out.
+  bool leaf_test = true;
   bool polygon_free = false;  ///< leaves are judged by probability >= 0.5 instead of by their triangles (footnote 6)
 };
 

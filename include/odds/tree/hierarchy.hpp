@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "odds/mesh/shared_array.hpp"
 #include "odds/mesh/triangle_mesh.hpp"
 #include "odds/tree/for_parts.hpp"
 #include "odds/tree/node_statistics.hpp"
@@ -53,73 +54,89 @@ class Hierarchy {
     [[nodiscard]] bool is_leaf() const noexcept { return count != 0; }
   };
 
+  /// What a hierarchy consists of, as it stands in a saved file.
+  struct Parts {
+    mesh::SharedArray<Node> nodes;                 ///< children after their parents; node 0 is the root
+    mesh::SharedArray<NodeStatistics> statistics;  ///< of each node
+    mesh::SharedArray<TriangleCorners> corners;    ///< leaf order, this frame; none without polygons
+    mesh::SharedArray<std::uint32_t> order;        ///< leaf order -> mesh triangle; none without polygons
+    Vec3 origin = Vec3::Zero();                    ///< of this frame, in the mesh's
+    double reach = 0.0;                            ///< greatest distance of a corner from the origin, metres
+    std::size_t triangles = 0;
+    std::uint32_t levels = 0;  ///< root = 1
+  };
+
   [[nodiscard]] static Hierarchy build(const mesh::TriangleMesh& mesh, const BuildOptions& options,
                                        const Progress& progress = {});
 
-  [[nodiscard]] std::span<const Node> nodes() const noexcept { return nodes_; }
-  [[nodiscard]] std::span<const NodeStatistics> statistics() const noexcept { return statistics_; }
+  Hierarchy() = default;
+  /// Precondition: as `build` makes them (`find_defect` in saved_tree.hpp tells).
+  explicit Hierarchy(Parts parts) : parts_(std::move(parts)) {}
+
+  [[nodiscard]] const Parts& parts() const noexcept { return parts_; }
+  [[nodiscard]] std::span<const Node> nodes() const noexcept { return parts_.nodes.span(); }
+  [[nodiscard]] std::span<const NodeStatistics> statistics() const noexcept { return parts_.statistics.span(); }
   [[nodiscard]] std::span<const TriangleCorners> corners() const noexcept {
-    return corners_;
+    return parts_.corners.span();
   }  ///< leaf order, this frame
   [[nodiscard]] std::span<const std::uint32_t> order() const noexcept {
-    return order_;
-  }                                                                      ///< leaf order -> mesh triangle
-  [[nodiscard]] const Vec3& origin() const noexcept { return origin_; }  ///< of this frame, in the mesh's
-  [[nodiscard]] double reach() const noexcept { return reach_; }  ///< greatest distance of a corner from the origin
-  [[nodiscard]] std::uint32_t levels() const noexcept { return levels_; }
+    return parts_.order.span();
+  }                                                                            ///< leaf order -> mesh triangle
+  [[nodiscard]] const Vec3& origin() const noexcept { return parts_.origin; }  ///< of this frame, in the mesh's
+  [[nodiscard]] double reach() const noexcept {
+    return parts_.reach;
+  }  ///< greatest distance of a corner from the origin
+  [[nodiscard]] std::size_t triangle_count() const noexcept { return parts_.triangles; }
+  [[nodiscard]] std::uint32_t levels() const noexcept { return parts_.levels; }
   [[nodiscard]] std::size_t bytes() const noexcept {
-    return nodes_.size() * (sizeof(Node) + sizeof(NodeStatistics)) + corners_.size() * sizeof(TriangleCorners) +
-           order_.size() * sizeof(std::uint32_t);
+    return parts_.nodes.bytes() + parts_.statistics.bytes() + parts_.corners.bytes() + parts_.order.bytes();
   }
 
  private:
-  std::vector<Node> nodes_;
-  std::vector<NodeStatistics> statistics_;
-  std::vector<TriangleCorners> corners_;
-  std::vector<std::uint32_t> order_;
-  Vec3 origin_ = Vec3::Zero();
-  double reach_ = 0.0;
-  std::uint32_t levels_ = 0;
+  Parts parts_;
 };
 
 template <volume::BoundingVolume V>
 Hierarchy<V> Hierarchy<V>::build(const mesh::TriangleMesh& mesh, const BuildOptions& options,
                                  const Progress& progress) {
-  Hierarchy hierarchy;
-  hierarchy.origin_ = 0.5 * mesh.lower() + 0.5 * mesh.upper();
-  std::vector<TriangleCorners> unordered = corners_about(mesh, hierarchy.origin_);
+  Parts parts;
+  parts.origin = 0.5 * mesh.lower() + 0.5 * mesh.upper();
+  parts.triangles = mesh.triangles().size();
+  std::vector<TriangleCorners> unordered = corners_about(mesh, parts.origin);
   const Progress first_half = progress ? [&](double share) { progress(0.4 * share); } : Progress{};
   Topology topology = build_topology(unordered, options.leaf_triangles, first_half);
-  hierarchy.corners_.resize(unordered.size());
-  for (std::size_t i = 0; i < unordered.size(); ++i) hierarchy.corners_[i] = unordered[topology.order[i]];
+  std::vector<TriangleCorners> corners(unordered.size());
+  for (std::size_t i = 0; i < unordered.size(); ++i) corners[i] = unordered[topology.order[i]];
   unordered = {};
-  for (const TriangleCorners& triangle : hierarchy.corners_) {
-    for (const Vec3& corner : triangle) hierarchy.reach_ = std::max(hierarchy.reach_, corner.norm());
+  for (const TriangleCorners& triangle : corners) {
+    for (const Vec3& corner : triangle) parts.reach = std::max(parts.reach, corner.norm());
   }
-  NodeSurface surface = measure_surface(topology, hierarchy.corners_);
+  NodeSurface surface = measure_surface(topology, corners);
   if (progress) progress(0.6);
 
-  hierarchy.nodes_.resize(topology.nodes.size());
+  std::vector<Node> nodes(topology.nodes.size());
   for_parts(topology.nodes.size(), 1024, [&](std::size_t begin, std::size_t end) {
     CellCounter counter;
     for (std::size_t i = begin; i < end; ++i) {
       const TopologyNode& node = topology.nodes[i];
-      const auto triangles = std::span(hierarchy.corners_).subspan(node.begin, node.end - node.begin);
+      const auto triangles = std::span(corners).subspan(node.begin, node.end - node.begin);
       const std::span<const Vec3> points(triangles.front().data(), triangles.size() * 3);
       const V volume = V::fit(points, surface.axes[i]);
-      hierarchy.nodes_[i] = {volume, node.first, node.count, volume.radius()};
+      nodes[i] = {volume, node.first, node.count, volume.radius()};
       relate_area(surface.statistics[i], volume.volume());
-      const volume::OrientedBox box = hierarchy.nodes_[i].volume.cell_box();
+      const volume::OrientedBox box = volume.cell_box();
       counter.begin(box.center, box.axes, box.half_extents);
       for (const TriangleCorners& triangle : triangles) counter.add(triangle[0], triangle[1], triangle[2]);
       surface.statistics[i].well_filled_cells = counter.count(options.tau);
     }
   });
-  hierarchy.statistics_ = std::move(surface.statistics);
-  hierarchy.order_ = std::move(topology.order);
-  hierarchy.levels_ = topology.levels;
+  parts.nodes = std::move(nodes);
+  parts.statistics = std::move(surface.statistics);
+  parts.corners = std::move(corners);
+  parts.order = std::move(topology.order);
+  parts.levels = topology.levels;
   if (progress) progress(1.0);
-  return hierarchy;
+  return Hierarchy(std::move(parts));
 }
 
 }  // namespace odds::tree

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
-#include <vector>
+#include <utility>
 
+#include "odds/mesh/shared_array.hpp"
 #include "odds/mesh/triangle_mesh.hpp"
 #include "odds/tree/hierarchy.hpp"
 #include "odds/tree/node_statistics.hpp"
@@ -45,10 +45,13 @@ class ChildRef {
   std::uint32_t bits_ = 0;
 };
 
+/// Half extents and thickness of a lane without a child.
+inline constexpr float empty_extent = -1e30F;
+
 /// Bounding volumes of up to eight children: boxes along the tree's axes, each cut by the slab in which its surface is
 /// thinnest: {x : |x - center| <= half (by axis) and |normal . x - offset| <= thickness}. Metres, tree's frame. Every
-/// corner below a lane satisfies both exactly. `normal` is at most 1 long. A lane without a child has extents of -1e30,
-/// which nothing overlaps.
+/// corner below a lane satisfies both exactly. `normal` is at most 1 long. A lane without a child has the extents
+/// `empty_extent`, which nothing overlaps, and zeros.
 struct alignas(64) WideNode {
   float center[3][wide_lanes];
   float half[3][wide_lanes];
@@ -76,36 +79,47 @@ class WideTree {
  public:
   static constexpr Slot root = 0;
 
+  /// What a tree consists of, as it stands in a saved file.
+  struct Parts {
+    mesh::SharedArray<WideNode> nodes;               ///< children after their parents; lanes in use come first
+    mesh::SharedArray<WideLeaf> leaves;              ///< in the order of the lanes; none without polygons
+    mesh::SharedArray<NodeStatistics> statistics;    ///< of the lanes in use, node after node
+    mesh::SharedArray<std::uint32_t> statistics_at;  ///< of each node's first lane
+    Vec3 origin = Vec3::Zero();                      ///< of this frame, in the mesh's
+    double reach = 0.0;                              ///< greatest distance of a corner from the origin, metres
+    std::size_t triangles = 0;
+    std::uint32_t levels = 0;  ///< root = 1, leaves included
+  };
+
   /// `options.leaf_triangles` above 8 counts as 8.
   [[nodiscard]] static WideTree build(const mesh::TriangleMesh& mesh, const BuildOptions& options,
                                       const Progress& progress = {});
 
-  [[nodiscard]] const WideNode* nodes() const noexcept { return nodes_.data(); }
-  [[nodiscard]] std::size_t node_count() const noexcept { return nodes_.size(); }
-  [[nodiscard]] const WideLeaf* leaves() const noexcept { return leaves_.data(); }
-  [[nodiscard]] std::size_t leaf_count() const noexcept { return leaves_.size(); }
-  [[nodiscard]] std::size_t triangle_count() const noexcept { return triangle_count_; }
+  WideTree() = default;
+  /// Precondition: as `build` makes them (`find_defect` in saved_tree.hpp tells).
+  explicit WideTree(Parts parts) : parts_(std::move(parts)) {}
+
+  [[nodiscard]] const Parts& parts() const noexcept { return parts_; }
+  [[nodiscard]] const WideNode* nodes() const noexcept { return parts_.nodes.data(); }
+  [[nodiscard]] std::size_t node_count() const noexcept { return parts_.nodes.size(); }
+  [[nodiscard]] const WideLeaf* leaves() const noexcept { return parts_.leaves.data(); }
+  [[nodiscard]] std::size_t leaf_count() const noexcept { return parts_.leaves.size(); }
+  [[nodiscard]] std::size_t triangle_count() const noexcept { return parts_.triangles; }
   /// By slot; empty slots have none.
   [[nodiscard]] const NodeStatistics& statistics(Slot slot) const noexcept {
-    return statistics_[statistics_at_[slot / wide_lanes] + slot % wide_lanes];
+    return parts_.statistics[parts_.statistics_at[slot / wide_lanes] + slot % wide_lanes];
   }
-  [[nodiscard]] const Vec3& origin() const noexcept { return origin_; }  ///< of this frame, in the mesh's
-  [[nodiscard]] double reach() const noexcept { return reach_; }  ///< greatest distance of a corner from the origin
-  [[nodiscard]] std::uint32_t levels() const noexcept { return levels_; }  ///< root = 1, leaves included
+  [[nodiscard]] const Vec3& origin() const noexcept { return parts_.origin; }  ///< of this frame, in the mesh's
+  [[nodiscard]] double reach() const noexcept {
+    return parts_.reach;
+  }  ///< greatest distance of a corner from the origin
+  [[nodiscard]] std::uint32_t levels() const noexcept { return parts_.levels; }  ///< root = 1, leaves included
   [[nodiscard]] std::size_t bytes() const noexcept {
-    return nodes_.size() * (sizeof(WideNode) + sizeof(std::uint32_t)) + leaves_.size() * sizeof(WideLeaf) +
-           statistics_.size() * sizeof(NodeStatistics);
+    return parts_.nodes.bytes() + parts_.leaves.bytes() + parts_.statistics.bytes() + parts_.statistics_at.bytes();
   }
 
  private:
-  std::vector<WideNode> nodes_;
-  std::vector<WideLeaf> leaves_;
-  std::vector<NodeStatistics> statistics_;    // of the lanes in use, node after node
-  std::vector<std::uint32_t> statistics_at_;  // of each node's first lane; lanes in use come first
-  Vec3 origin_ = Vec3::Zero();
-  double reach_ = 0.0;
-  std::size_t triangle_count_ = 0;
-  std::uint32_t levels_ = 0;
+  Parts parts_;
 };
 
 }  // namespace odds::tree
