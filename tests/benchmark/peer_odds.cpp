@@ -26,8 +26,11 @@ T value_or_throw(Result<T> result) {
 
 class OddsPeer final : public Peer {
  public:
-  OddsPeer(const MeshPair& meshes, volume::Kind volume, query::Method method, int builds)
-      : Peer("odds " + std::string(volume::name(volume)) + " " + method_name(method)), method_(method) {
+  OddsPeer(const MeshPair& meshes, volume::Kind volume, query::Method method, bool leaf_test, int builds)
+      : Peer("odds " + std::string(volume::name(volume)) + " " + method_name(method) +
+             (leaf_test ? "" : ", leaves untested")),
+        method_(method),
+        leaf_test_(leaf_test) {
     const query::ShapeOptions options{.volume = volume};
     const auto build = [&](const auto& mesh) { return value_or_throw(query::Shape::build(mesh, options)); };
     const auto a = build_measured(meshes.a->triangles().size(), builds, [&] { return build(meshes.a); });
@@ -49,17 +52,20 @@ class OddsPeer final : public Peer {
     query::Request request;
     request.method = method_;
     request.max_contacts = max_contacts;
+    request.leaf_test = leaf_test_;
     return pair_->run(pose_b_in_a, request);
   }
 
   query::Method method_;
+  bool leaf_test_;
   std::unique_ptr<query::Pair> pair_;
 };
 
 }  // namespace
 
-std::unique_ptr<Peer> make_odds_peer(const MeshPair& meshes, volume::Kind volume, query::Method method, int builds) {
-  return std::make_unique<OddsPeer>(meshes, volume, method, builds);
+std::unique_ptr<Peer> make_odds_peer(const MeshPair& meshes, volume::Kind volume, query::Method method, bool leaf_test,
+                                     int builds) {
+  return std::make_unique<OddsPeer>(meshes, volume, method, leaf_test, builds);
 }
 
 }  // namespace odds::benchmark

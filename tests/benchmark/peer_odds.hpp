@@ -7,8 +7,9 @@
 
 namespace odds::benchmark {
 
-/// One bounding volume, one method, no budget. Throws std::runtime_error if the mesh cannot be built.
+/// One bounding volume, one method, with or without a test of volumes between leaves, no budget. Throws
+/// std::runtime_error if the mesh cannot be built.
 [[nodiscard]] std::unique_ptr<Peer> make_odds_peer(const MeshPair& meshes, volume::Kind volume, query::Method method,
-                                                   int builds);
+                                                   bool leaf_test, int builds);
 
 }  // namespace odds::benchmark

@@ -39,6 +39,7 @@ struct Settings {
   bool all = false;
   bool trajectory = false;
   bool cpu_time = false;
+  bool untested_leaves = false;
   std::string csv;
 };
 
@@ -53,7 +54,10 @@ Peers make_peers(const Settings& settings, const MeshPair& meshes) {
   Peers peers;
   for (const std::string& word : settings.volumes) {
     for (const std::string& method : settings.methods) {
-      peers.push_back(make_odds_peer(meshes, volume::kind_from_name(word).value(), method_of(method), settings.builds));
+      const volume::Kind kind = volume::kind_from_name(word).value();
+      peers.push_back(make_odds_peer(meshes, kind, method_of(method), true, settings.builds));
+      if (!settings.untested_leaves || kind == volume::Kind::wide) continue;
+      peers.push_back(make_odds_peer(meshes, kind, method_of(method), false, settings.builds));
     }
   }
   for (const std::string& peer : settings.peers) {
@@ -235,6 +239,8 @@ void add_options(CLI::App& app, Settings& settings) {
   app.add_flag("--all", settings.all, "all contacts: 8 of ours made from all pairs, all of FCL and Bullet, 32 of ODE");
   app.add_flag("--cpu-time", settings.cpu_time,
                "time of the thread instead of wall time: for a machine that does other work");
+  app.add_flag("--untested-leaves", settings.untested_leaves,
+               "each volume of ours but wide also without a test of volumes between leaves");
   app.add_flag("--trajectory", settings.trajectory, "sliding motion, each step 3e-5 of A's size");
 }
 
