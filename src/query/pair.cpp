@@ -142,6 +142,11 @@ double deepest_of(std::span<const Contact> contacts) noexcept {
   return deepest;
 }
 
+/// What nobody has measured is not pushed apart, only stopped: from a part of the rim a depth may be anything.
+double believed_depth(double most_depth, const Pair::Implementation& pair) noexcept {
+  return pair.known_depth.known() ? most_depth : 0.0;
+}
+
 /// A direction from a part of the rim may be far off: nothing is believed that is deeper than can be.
 void limit_depth(double most_depth, Pair::Implementation& pair) noexcept {
   const std::size_t count = std::min(pair.answer.contacts.size(), pair.rough.size());
@@ -157,7 +162,7 @@ void make_rough_contacts(const PosedMeshes& meshes, double most_depth, const Req
   const Vec3 towards_a = pair.previous_normal.isZero() ? Vec3(meshes.origin_a() - centre_b) : pair.previous_normal;
   spending.reserve_for_contacts(rough_finish_ns);
   const auto room = std::span(pair.rough).first(std::min<std::size_t>(request.max_contacts, pair.rough.size()));
-  const double believed = pair.known_depth.known() ? most_depth : 0.0;
+  const double believed = believed_depth(most_depth, pair);
   const std::size_t count = rough_contacts(meshes, pair.hits.pairs(), pair.a->is_solid() && pair.b->is_solid(),
                                            towards_a, believed, room, [&] { return spending.may_make_contacts(); });
   pair.answer.contacts = room.first(count);
@@ -202,7 +207,8 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, Pro
     return;
   }
   pair.answer.contacts_complete = ended != Progressed::spent;
-  if (ended != Progressed::finished || !pair.answer.contacts_complete) limit_depth(most_depth, pair);
+  if (ended != Progressed::finished || !pair.answer.contacts_complete)
+    limit_depth(believed_depth(most_depth, pair), pair);
   if (!pair.answer.contacts_complete) return;
   if (ended == Progressed::finished) pair.known_depth.note(meshes.pose(), deepest_of(pair.answer.contacts));
   pair.previous_normal = pair.answer.contacts.front().normal;

@@ -24,7 +24,7 @@ Run run_bolt(const Physics& physics, const Collider& collider) {
   const Vec3 start(0.0, 0.0, 0.0025 - bolt->lower().z());  // two threads are in
   const dGeomID geom = arena.add(bolt, {Mat3::Identity(), start}, 7800.0);
   arena.prepare();
-  Hand hand{dGeomGetBody(geom), {2000.0, 2000.0, 0.0}, 0.5};
+  Hand hand{dGeomGetBody(geom), {1000.0, 1000.0, 0.0}, 0.5};
   hand.damp(0.7);
   dMass mass;
   dBodyGetMass(hand.body, &mass);

@@ -76,8 +76,8 @@ Run run_gears(const Physics& physics, const Collider& collider) {
   }
   const double wanted = speed * (seconds - 0.25);
   run.note = fmt::format("{:.0f} of {:.0f} degrees", 57.29577951 * std::abs(turned.angle[2]), 57.29577951 * wanted);
-  run.figures.push_back({"first to last gear", 57.29577951 * lost, "deg", 1.0});
-  run.figures.push_back({"not turned", 100.0 * std::max(0.0, 1.0 - std::abs(turned.angle[2]) / wanted), "%", 2.0});
+  run.figures.push_back({"first to last gear", 57.29577951 * lost, "deg", 2.0});
+  run.figures.push_back({"not turned", 100.0 * std::max(0.0, 1.0 - std::abs(turned.angle[2]) / wanted), "%"});
   run.figures.push_back({"most energy over nominal", most_j / nominal_j, "", 1.5});
   add_common(run, arena);
   run.picture = picture_of(

@@ -21,11 +21,14 @@ struct Hand {
   std::vector<double> change_n;  ///< of the force from one millisecond to the next
   double most_n = 0.0;
 
-  /// Damps by `ratio` of critical.
+  /// Damps by `ratio` of critical. A body that is too light to be turned so stiffly by a loop of 1 kHz is turned
+  /// softer.
   void damp(double ratio) {
+    constexpr double step_s = 0.001;
     dMass mass;
     dBodyGetMass(body, &mass);
     const double inertia = std::min({mass.I[0], mass.I[5], mass.I[10]});
+    turning = std::min(turning, 0.05 * inertia / (step_s * step_s));
     damping = 2.0 * ratio * std::sqrt(stiffness.maxCoeff() * mass.mass);
     turning_damping = 2.0 * ratio * std::sqrt(turning * inertia);
   }

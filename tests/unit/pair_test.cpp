@@ -6,11 +6,18 @@
 #include <cmath>
 #include <limits>
 
+#include "odds/mesh/made/by_name.hpp"
 #include "support/all_kinds.hpp"
 #include "support/shapes.hpp"
 
 namespace odds::query {
 namespace {
+
+std::shared_ptr<const mesh::TriangleMesh> made_mesh(const std::string& name) {
+  auto mesh = mesh::made::make_shape(name);
+  if (!mesh.ok()) throw std::runtime_error(mesh.error().message());
+  return std::make_shared<const mesh::TriangleMesh>(std::move(mesh).value());
+}
 
 class PairOfSpheres : public ::testing::TestWithParam<std::tuple<volume::Kind, Method>> {
  protected:
@@ -167,6 +174,27 @@ TEST(Pair, AGlanceAtTheRootsNeverPushesDeep) {
     ASSERT_TRUE(answer.has_cell_pair);
     EXPECT_LT(answer.cell_pair.depth, 0.05) << units << " units";
   }
+}
+
+TEST(Pair, ASearchCutShortDoesNotPushWhereNoDepthIsKnown) {
+  // A bolt in its nut touches with hundreds of triangles; part of them may span anything, also across the bolt.
+  const auto bolt = Shape::build(made_mesh("bolt"));
+  const auto nut = Shape::build(made_mesh("nut"));
+  ASSERT_TRUE(bolt.ok() && nut.ok());
+  Request request;
+  request.max_contacts = 8;
+  const math::Pose beside{Mat3::Identity(), {1e-4, 0.0, -0.0025}};  // of the nut, whose clearance is 0.03 mm
+  int cut_short = 0;
+  for (const std::uint64_t units : {100, 300, 1000, 3000, 10000}) {
+    request.budget = Budget::work(units);
+    auto pair = Pair::make(bolt.value(), nut.value());
+    ASSERT_TRUE(pair.ok());
+    const Answer& answer = pair.value().run(beside, request);
+    if (answer.contacts.empty() || answer.contacts_complete) continue;
+    ++cut_short;
+    for (const Contact& contact : answer.contacts) EXPECT_EQ(contact.depth, 0.0) << units << " units";
+  }
+  EXPECT_GE(cut_short, 2);
 }
 
 TEST(Pair, SaysAQuickEstimatedHitOnlyIfAsked) {
