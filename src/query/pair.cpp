@@ -161,7 +161,8 @@ void make_rough_contacts(const PosedMeshes& meshes, double most_depth, const Req
   const Vec3 centre_b = meshes.pose().translation + meshes.origin_a();
   const Vec3 towards_a = pair.previous_normal.isZero() ? Vec3(meshes.origin_a() - centre_b) : pair.previous_normal;
   spending.reserve_for_contacts(rough_finish_ns);
-  const auto room = std::span(pair.rough).first(std::min<std::size_t>(request.max_contacts, pair.rough.size()));
+  const auto room =
+      std::span(pair.rough).first(std::min(static_cast<std::size_t>(request.max_contacts), pair.rough.size()));
   const double believed = believed_depth(most_depth, pair);
   const std::size_t count = rough_contacts(meshes, pair.hits.pairs(), pair.a->is_solid() && pair.b->is_solid(),
                                            towards_a, believed, room, [&] { return spending.may_make_contacts(); });
