@@ -21,7 +21,7 @@ constexpr double hits_per_microsecond = 0.6;
 constexpr double least_hits = 64.0;
 // What a patch takes from hearing of the deadline to its end: a ray or two and the choice of contacts; a single
 // contact.
-constexpr std::int64_t patch_finish_ns = 7000;
+constexpr std::int64_t patch_finish_ns = 10000;
 constexpr std::int64_t single_finish_ns = 3000;
 constexpr std::int64_t rough_finish_ns = 800;  ///< of one more rough contact, and the writing of the answer
 
