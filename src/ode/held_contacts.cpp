@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "odds/math/motion.hpp"
+
 namespace odds::ode {
 
 HeldContacts::Held HeldContacts::held(const query::Contact& contact, const math::Pose& b_in_a) noexcept {
@@ -13,8 +15,15 @@ HeldContacts::Held HeldContacts::held(const query::Contact& contact, const math:
 void HeldContacts::keep(std::span<const query::Contact> found, const math::Pose& b_in_a, bool careful) noexcept {
   count_ = std::min(found.size(), most);
   for (std::size_t i = 0; i < count_; ++i) held_[i] = held(found[i], b_in_a);
+  made_at_ = b_in_a;
   careful_ = careful;
   runs_ = 0;
+}
+
+/// How far any point of B that is not farther than `reach` from `on_b` has gone at most since what is held was made.
+double HeldContacts::motion_about(const Vec3& on_b, const math::Pose& b_in_a, double reach) const noexcept {
+  const math::Pose then{made_at_.rotation, made_at_ * on_b};
+  return math::motion_bound(then, {b_in_a.rotation, b_in_a * on_b}, reach);
 }
 
 std::span<const query::Contact> HeldContacts::at(const math::Pose& b_in_a, double size) noexcept {
@@ -32,7 +41,8 @@ std::span<const query::Contact> HeldContacts::at(const math::Pose& b_in_a, doubl
     held_[kept++] = held;
   }
   count_ = kept;
-  runs_ = std::min(runs_ + 1, most_runs);
+  rests_ = kept > 0 && motion_about(held_[0].on_b, b_in_a, size) <= rest * size;
+  runs_ = std::min(runs_ + 1, most_runs + 1);
   std::sort(touching_.begin(), touching_.begin() + static_cast<std::ptrdiff_t>(kept),
             [](const query::Contact& x, const query::Contact& y) { return x.depth > y.depth; });
   return {touching_.data(), kept};

@@ -21,13 +21,17 @@ class HeldContacts {
   static constexpr double most_gap = 0.002;
   /// A stalled processor is away for some milliseconds.
   static constexpr int most_runs = 10;
+  /// Of the smaller body's size: bodies that have moved less since what is held was made have not sunk in deeper than
+  /// that anywhere else, however long ago it was.
+  static constexpr double rest = 0.0001;
 
   /// Takes the place of all that was held. `careful`: not what a run gave that had no time to measure.
   void keep(std::span<const query::Contact> found, const math::Pose& b_in_a, bool careful) noexcept;
 
-  /// Whether what is held is better than what a run gives now that had no time to measure: made with care, and not long
-  /// ago, for bodies that turn come to touch in other places.
-  [[nodiscard]] bool better_than_rough() const noexcept { return careful_ && runs_ < most_runs; }
+  /// Whether what `at` gave last is better than what a run gives now that had no time to measure: made with care, and
+  /// either not long ago, for bodies that turn come to touch in other places, or of bodies that have hardly moved
+  /// since.
+  [[nodiscard]] bool better_than_rough() const noexcept { return careful_ && (runs_ <= most_runs || rests_); }
 
   /// Lets go what has slid or parted by the new pose; the others as contacts, deepest first, those that have parted by
   /// less with depth 0. Valid until the next call. `size`: diameter of the smaller body.
@@ -40,11 +44,14 @@ class HeldContacts {
     query::Contact contact;
   };
   [[nodiscard]] static Held held(const query::Contact& contact, const math::Pose& b_in_a) noexcept;
+  [[nodiscard]] double motion_about(const Vec3& on_b, const math::Pose& b_in_a, double reach) const noexcept;
 
   std::array<Held, most> held_;
   std::array<query::Contact, most> touching_;
   std::size_t count_ = 0;
+  math::Pose made_at_;
   bool careful_ = false;
+  bool rests_ = false;
   int runs_ = 0;  // since what is held was made
 };
 

@@ -15,6 +15,7 @@
 #include "query/patch_rim.hpp"
 #include "query/patch_select.hpp"
 #include "query/patch_watch.hpp"
+#include "query/patch_witnesses.hpp"
 
 namespace odds::query {
 namespace {
@@ -23,16 +24,18 @@ using patch::Watch;
 using patch::Witness;
 
 constexpr std::size_t witnesses_per_pair = 6;
-constexpr std::size_t least_pairs = 4;  ///< looked at however late it is
+// Only coplanar triangles give more than one, and of a face full of those a sample is as good.
+constexpr std::size_t pieces_per_pair = 3;
+constexpr std::size_t least_pairs = 16;  ///< looked at however late it is
 
-/// How thoroughly a patch is made: by the clock, or, when that has run out, from a handful of triangles without it.
+/// How thoroughly a patch is made: by the clock, or, when that has run out, from some pieces of rim without it.
 struct Effort {
-  std::size_t pairs;    ///< most pairs that the rim is made of
-  std::size_t patches;  ///< most patches
-  std::size_t sample;   ///< pairs that candidate normals are compared on
+  std::size_t sample;  ///< pairs that candidate normals are compared on
+  bool ends_only;      ///< of all pairs only those at the ends of the patch are asked for witnesses
 };
-constexpr Effort thorough{std::numeric_limits<std::size_t>::max(), patch::Components::most, 24};
-constexpr Effort hasty{least_pairs, 2, 2};
+constexpr Effort thorough{24, false};
+constexpr Effort hasty{4, true};
+constexpr std::size_t hasty_pieces = 48;
 
 /// A finished patch.
 struct Patch {
@@ -84,19 +87,21 @@ double spacing(double depth, double lever) noexcept {
 struct PatchBuilder::Scratch {
   explicit Scratch(std::size_t hit_capacity)
       : pairs(hit_capacity),
-        pieces(patch::most_pieces_of_a_pair * hit_capacity),
+        pieces(pieces_per_pair * hit_capacity + patch::most_pieces_of_a_pair),
         by_patch(pieces.size()),
-        witnesses(witnesses_per_pair * hit_capacity + 64),
-        components(pieces.size(), hit_capacity) {}
+        witnesses(witnesses_per_pair * std::min(hit_capacity, patch::Telling::most) + 64),
+        components(pieces.size(), hit_capacity),
+        telling(pieces.size()) {}
 
   using Measured = std::array<Witness, most_contacts + 3>;  ///< those that span the patch, its centre, its summits
   using Indices = std::span<const std::uint32_t>;
 
   void place_pairs(const PatchInput& input, Watch& watch) noexcept;
-  void make_rim(const PatchInput& input, const Effort& effort, Watch& watch) noexcept;
+  void make_rim(const PatchInput& input, std::size_t most_pairs, Watch& watch) noexcept;
   void cut_pairs(const PatchInput& input, std::size_t count, bool silent_too, Watch& watch) noexcept;
   void sort_by_patch(std::size_t count) noexcept;
-  bool make_patches(const PatchInput& input, const Effort& effort, Watch& watch) noexcept;
+  bool make_patches(const PatchInput& input, Watch& watch) noexcept;
+  void make_hasty_patch(const PatchInput& input) noexcept;
   Patch make_patch(const PatchInput& input, const patch::RimSums& sums, Indices indices, const Effort& effort,
                    Watch& watch) noexcept;
   void find_witnesses(Indices indices, const patch::Frame& frame, Watch& watch) noexcept;
@@ -111,6 +116,7 @@ struct PatchBuilder::Scratch {
   std::array<std::uint32_t, patch::Components::most + 1> first_of_patch{};
   std::vector<Witness> witnesses;
   patch::Components components;
+  patch::Telling telling;
   patch::Fan fan;
   std::array<Patch, patch::Components::most> patches;
   std::array<Contact, most_contacts> contacts;
@@ -120,6 +126,7 @@ struct PatchBuilder::Scratch {
   std::size_t witness_count = 0;
   std::size_t patch_count = 0;
   std::size_t contact_count = 0;
+  bool finished = true;
 };
 
 void PatchBuilder::Scratch::place_pairs(const PatchInput& input, Watch& watch) noexcept {
@@ -133,8 +140,8 @@ void PatchBuilder::Scratch::place_pairs(const PatchInput& input, Watch& watch) n
   }
 }
 
-void PatchBuilder::Scratch::make_rim(const PatchInput& input, const Effort& effort, Watch& watch) noexcept {
-  const std::size_t count = std::min(pair_count, effort.pairs);
+void PatchBuilder::Scratch::make_rim(const PatchInput& input, std::size_t most_pairs, Watch& watch) noexcept {
+  const std::size_t count = std::min(pair_count, most_pairs);
   cut_pairs(input, count, false, watch);
   if (piece_count == 0) cut_pairs(input, count, true, watch);
   Vec3 lower = Vec3::Constant(std::numeric_limits<double>::infinity());
@@ -155,6 +162,7 @@ void PatchBuilder::Scratch::cut_pairs(const PatchInput& input, std::size_t count
   const bool skip_silent = input.solid_a && input.solid_b && !silent_too;
   std::array<patch::RimPiece, patch::most_pieces_of_a_pair> found;
   for (std::size_t i = 0; i < count && !watch.late(i); ++i) {
+    if (piece_count + found.size() > pieces.size()) break;
     const std::size_t cut = patch::rim_pieces(pairs[i], skip_silent, static_cast<std::uint32_t>(i), found);
     for (std::size_t k = 0; k < cut; ++k) {
       if (found[k].from.allFinite() && found[k].to.allFinite()) pieces[piece_count++] = found[k];
@@ -174,26 +182,45 @@ void PatchBuilder::Scratch::sort_by_patch(std::size_t count) noexcept {
   }
 }
 
-/// False if the time was up before the first patch was begun.
-bool PatchBuilder::Scratch::make_patches(const PatchInput& input, const Effort& effort, Watch& watch) noexcept {
+/// False if the time was up before all was done.
+bool PatchBuilder::Scratch::make_patches(const PatchInput& input, Watch& watch) noexcept {
   patch_count = 0;
-  make_rim(input, effort, watch);
+  make_rim(input, pair_count, watch);
   if (watch.late()) return false;
   const std::span<const patch::RimSums> sums = components.group(rim, input.solid_a, input.solid_b, watch);
   if (watch.late()) return false;
   sort_by_patch(sums.size());
-  for (std::size_t i = 0; i < sums.size() && patch_count < effort.patches; ++i) {
+  for (std::size_t i = 0; i < sums.size(); ++i) {
     const Indices indices{by_patch.data() + first_of_patch[i], first_of_patch[i + 1] - first_of_patch[i]};
     if (indices.empty()) continue;
-    if (patch_count > 0 && watch.late()) break;
-    patches[patch_count] = make_patch(input, sums[i], indices, effort, watch);
-    if (patch_count > 0 && watch.late()) break;  // half made, its direction or depth may be anything
-    ++patch_count;
+    patches[patch_count++] = make_patch(input, sums[i], indices, thorough, watch);
+    if (watch.late()) return false;
   }
   return true;
 }
 
-/// Fills `witnesses` with the overlap's corners of all pairs of the patch; at least one.
+/// One patch of what there is of the rim. The pieces were made in an order that is spread over all hits, so that some
+/// of them span, within the scatter of a sample, a share of the vector area that all of them do.
+void PatchBuilder::Scratch::make_hasty_patch(const PatchInput& input) noexcept {
+  const Deadline never;
+  Watch without_clock(never);
+  PatchInput blind = input;
+  blind.probe_a = blind.probe_b = {};
+  if (piece_count < least_pairs) make_rim(blind, least_pairs, without_clock);
+  patch_count = 0;
+  const std::size_t stride = (piece_count + hasty_pieces - 1) / hasty_pieces;
+  std::size_t count = 0;
+  patch::RimSums sums;
+  for (std::size_t i = 0; i < piece_count; i += stride) {
+    by_patch[count++] = static_cast<std::uint32_t>(i);
+    sums.add(pieces[i], pairs[pieces[i].pair], rim.origin);
+  }
+  if (count == 0) return;
+  sums.loose_ends = 1;
+  patches[patch_count++] = make_patch(blind, sums, Indices{by_patch.data(), count}, hasty, without_clock);
+}
+
+/// Fills `witnesses` with the overlap's corners of the pairs of the pieces; at least one.
 void PatchBuilder::Scratch::find_witnesses(Indices indices, const patch::Frame& frame, Watch& watch) noexcept {
   witness_count = 0;
   std::uint32_t last_pair = no_feature;
@@ -264,7 +291,9 @@ Patch PatchBuilder::Scratch::make_patch(const PatchInput& input, const patch::Ri
   made.normal = patch::patch_normal({input, rim, sums, indices, effort.sample}, watch);
   const patch::Frame frame(made.normal);
   const Vec3 centre = span_centre(rim, indices, sums.centre(rim.origin), made.normal);
-  find_witnesses(indices, frame, watch);
+  find_witnesses(effort.ends_only ? telling.ends_of(rim.pieces, indices, frame, fan, centre)
+                                  : telling.of(rim.pieces, rim.pairs, indices, frame, fan, centre),
+                 frame, watch);
   const double radius = 0.5 * sums.diagonal();
   const Witness deepest = patch::deepest_of({witnesses.data(), witness_count}, frame, centre, radius);
   patch::Extremes extremes(frame, fan, centre, deepest);
@@ -361,16 +390,18 @@ std::span<const Contact> PatchBuilder::build(const PatchInput& input, const Dead
   Scratch& s = *scratch_;
   Watch watch(deadline);
   s.place_pairs(input, watch);
-  if (!s.make_patches(input, thorough, watch)) {
-    const Deadline never;
-    Watch without_clock(never);
-    PatchInput without_probes = input;
-    without_probes.probe_a = without_probes.probe_b = {};
-    s.make_patches(without_probes, hasty, without_clock);
-  }
+  s.piece_count = 0;
+  s.finished = s.make_patches(input, watch);
+  if (!s.finished) s.make_hasty_patch(input);
   s.drop_opposed(input.previous_normal);
   s.write(input);
   return {s.contacts.data(), s.contact_count};
+}
+
+bool PatchBuilder::finished() const noexcept { return scratch_->finished; }
+std::uint32_t PatchBuilder::pairs_used() const noexcept {
+  return static_cast<std::uint32_t>(scratch_->finished ? scratch_->pair_count
+                                                       : std::min(scratch_->piece_count, hasty_pieces));
 }
 
 }  // namespace odds::query

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "odds/math/pose.hpp"
-#include "query/motion.hpp"
+#include "odds/math/motion.hpp"
 
 namespace odds::query {
 
@@ -22,7 +22,7 @@ class KnownDepth {
   [[nodiscard]] bool known() const noexcept { return known_; }
   /// Of any contact at this pose; infinite if nothing is known. `reach` of B's surface from its frame's origin.
   [[nodiscard]] double most(const math::Pose& pose, double reach) const noexcept {
-    return known_ ? depth_ + motion_bound(pose_, pose, reach) : std::numeric_limits<double>::infinity();
+    return known_ ? depth_ + math::motion_bound(pose_, pose, reach) : std::numeric_limits<double>::infinity();
   }
 
  private:

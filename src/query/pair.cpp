@@ -16,22 +16,24 @@ namespace odds::query {
 
 namespace {
 
-constexpr double hits_per_microsecond = 0.6;
+// A pair of triangles in a patch takes 0.3 us, half of it to be found; rays and choice some 25 us whatever their
+// number.
+constexpr double hits_per_microsecond = 3.0;
+constexpr double patch_base_us = 25.0;
 // Fewer may leave a gap in the rim of even two boxes, and the direction of a patch needs all of its rim.
 constexpr double least_hits = 64.0;
-// What a patch takes from hearing of the deadline to its end: a ray or two and the choice of contacts; a single
-// contact.
+// What a patch takes from hearing of the deadline to its end: a ray or two, and one made hastily of what there is.
 constexpr std::int64_t patch_finish_ns = 10000;
-constexpr std::int64_t single_finish_ns = 3000;
-constexpr std::int64_t rough_finish_ns = 800;  ///< of one more rough contact, and the writing of the answer
+constexpr std::int64_t hasty_finish_ns = 8000;   ///< of one that is hasty from the start
+constexpr std::int64_t single_finish_ns = 3000;  ///< of a single contact
+constexpr std::int64_t rough_finish_ns = 1500;   ///< of one more rough contact, their direction, and writing the answer
 
-/// Hits that are wanted: one proves; a patch takes as many as its making has time for: 1 to 2 us each, and some 30 us
-/// for rays.
+/// Hits that are wanted: one proves; a patch takes as many as its making has time for.
 std::uint32_t wanted_hits(const Request& request) noexcept {
   if (request.max_contacts <= 1) return 1;
   if (!std::isfinite(request.budget.microseconds)) return no_feature;
-  return static_cast<std::uint32_t>(
-      std::clamp(hits_per_microsecond * request.budget.microseconds, least_hits, 65536.0));
+  const double for_hits_us = request.budget.microseconds - patch_base_us;
+  return static_cast<std::uint32_t>(std::clamp(hits_per_microsecond * for_hits_us, least_hits, 65536.0));
 }
 
 /// A pose or request that no query can be run with: answered as undecided, never as a NaN.
@@ -142,9 +144,11 @@ double deepest_of(std::span<const Contact> contacts) noexcept {
   return deepest;
 }
 
-/// What nobody has measured is not pushed apart, only stopped: from a part of the rim a depth may be anything.
+/// From a part of the rim a depth may be anything. What nobody has measured is pushed apart no harder than that a body
+/// does not sink in.
 double believed_depth(double most_depth, const Pair::Implementation& pair) noexcept {
-  return pair.known_depth.known() ? most_depth : 0.0;
+  const double smaller = std::min(pair.a->mesh().size(), pair.b->mesh().size());
+  return pair.known_depth.known() ? most_depth : tolerances::unmeasured_depth * smaller;
 }
 
 /// A direction from a part of the rim may be far off: nothing is believed that is deeper than can be.
@@ -168,17 +172,19 @@ void make_rough_contacts(const PosedMeshes& meshes, double most_depth, const Req
                                            towards_a, believed, room, [&] { return spending.may_make_contacts(); });
   pair.answer.contacts = room.first(count);
   pair.answer.contacts_complete = false;
+  pair.answer.contact_pairs = static_cast<std::uint32_t>(count);
 }
 
 /// `ended`: how the search did that found the hits; `most_depth`: what is known of the depth, metres.
 void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, Progressed ended, double most_depth,
                    const Request& request, Pair::Implementation& pair, Spending& spending) noexcept {
   const Vec3 centre_b = meshes.pose().translation + meshes.origin_a();
-  spending.reserve_for_contacts(request.max_contacts > 1 ? patch_finish_ns : single_finish_ns);
+  spending.reserve_for_contacts(request.max_contacts > 1 ? hasty_finish_ns : single_finish_ns);
   if (!spending.may_make_contacts()) {
     make_rough_contacts(meshes, most_depth, request, pair, spending);
     return;
   }
+  if (request.max_contacts > 1) spending.reserve_for_contacts(patch_finish_ns);
   PatchInput input;
   input.hits = pair.hits.pairs();
   input.vertices_a = pair.a->mesh().vertices();
@@ -203,13 +209,13 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, Pro
                           &spending};
   pair.answer.contacts = pair.patches.build(input, deadline);
   if (pair.answer.contacts.empty()) return;
-  if (!spending.may_make_contacts()) {  // a patch that was cut short may point anywhere
-    make_rough_contacts(meshes, most_depth, request, pair, spending);
-    return;
-  }
-  pair.answer.contacts_complete = ended != Progressed::spent;
-  if (ended != Progressed::finished || !pair.answer.contacts_complete)
+  pair.answer.contact_pairs = pair.patches.pairs_used();
+  pair.answer.contacts_complete = pair.patches.finished() && ended != Progressed::spent;
+  if (!pair.answer.contacts_complete) {
     limit_depth(believed_depth(most_depth, pair), pair);
+  } else if (ended != Progressed::finished) {
+    limit_depth(most_depth, pair);
+  }
   if (!pair.answer.contacts_complete) return;
   if (ended == Progressed::finished) pair.known_depth.note(meshes.pose(), deepest_of(pair.answer.contacts));
   pair.previous_normal = pair.answer.contacts.front().normal;

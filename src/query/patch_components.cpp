@@ -107,9 +107,10 @@ std::uint32_t Components::joint_at(const Vec3& point, std::uint32_t piece) noexc
   // Shifted by an odd amount, so that rims in planes of round coordinates do not lie on the borders of cells.
   const auto cell_of = [this](const Vec3& p) noexcept {
     constexpr double odd = 1099511627776.3819660;
-    return Cell{static_cast<std::uint64_t>(p.x() * cells_per_metre_ + odd),
-                static_cast<std::uint64_t>(p.y() * cells_per_metre_ + odd),
-                static_cast<std::uint64_t>(p.z() * cells_per_metre_ + odd)};
+    const auto index = [this](double x) noexcept {  // signed, for which processors have an instruction
+      return static_cast<std::uint64_t>(static_cast<std::int64_t>(x * cells_per_metre_ + odd));
+    };
+    return Cell{index(p.x()), index(p.y()), index(p.z())};
   };
   const auto slot_of = [this](const Cell& c) noexcept {
     const std::uint64_t key = c[0] + (c[1] << 21U) + (c[1] >> 43U) + (c[2] << 42U) + (c[2] >> 22U);

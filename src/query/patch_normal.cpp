@@ -68,6 +68,7 @@ struct Directions {
 
 /// How much a face normal counts as the flat face `flat`: 1 up to half a degree, 0 from three degrees on.
 double flatness(const Vec3& normal, const Vec3& flat) noexcept {
+  if (normal.dot(flat) > 1.0 - 0.5 * tolerances::flat_from * tolerances::flat_from) return 1.0;
   return 1.0 - smooth_step(tolerances::flat_from, tolerances::flat_to, normal.cross(flat).norm());
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "odds/math/tolerances.hpp"
 #include "odds/primitive/triangle_triangle.hpp"
 #include "odds/query/answer.hpp"
 #include "odds/query/contact_patch.hpp"
@@ -81,6 +82,43 @@ struct Crossing {
   return towards_a.norm() > 0.0 ? Vec3(towards_a.normalized()) : Vec3(Vec3::UnitZ());
 }
 
+/// The normal of a face that carries most of the crossings, if it is not far from `direction` and parts the triangles
+/// sooner; else `direction`. A face that lies on a face is then pushed straight, from however few crossings.
+[[nodiscard]] inline Vec3 snapped_to_face(std::span<const Crossing> crossings, bool both_solid,
+                                          const Vec3& direction) noexcept {
+  const auto towards = [&](const Vec3& normal) noexcept {
+    return !both_solid && normal.dot(direction) < 0.0 ? Vec3(-normal) : normal;
+  };
+  const auto share_on = [&](const Vec3& face) noexcept {
+    double on = 0.0;
+    double all = 0.0;
+    for (const Crossing& crossing : crossings) {
+      const double length = (crossing.segment.end - crossing.segment.begin).norm();
+      all += length;
+      if (std::max(face.dot(towards(crossing.normal_b)), face.dot(towards(-crossing.normal_a))) > tolerances::same_face)
+        on += length;
+    }
+    return on / all;  // not a number where nothing has a length: no share
+  };
+  const auto most_overlap = [&](const Vec3& along) noexcept {
+    double most = 0.0;
+    for (const Crossing& crossing : crossings) most = std::max(most, crossing.overlap_along(along));
+    return most;
+  };
+  Vec3 best = direction;
+  double least = most_overlap(direction);
+  for (const Crossing& crossing : crossings) {
+    for (const Vec3& face : {towards(crossing.normal_b), towards(-crossing.normal_a)}) {
+      if (face == best || !(face.dot(direction) > 0.5) || !(share_on(face) > tolerances::snap_from)) continue;
+      const double overlap = most_overlap(face);
+      if (!(overlap < least)) continue;
+      least = overlap;
+      best = face;
+    }
+  }
+  return best;
+}
+
 /// Diagonal of the box about all segments.
 [[nodiscard]] inline double extent_of(std::span<const Crossing> crossings) noexcept {
   Vec3 lower = crossings.front().segment.begin;
@@ -93,27 +131,33 @@ struct Crossing {
 }
 
 /// As many contacts as there is room for, spread over the hits, all with one direction and one depth: the least overlap
-/// of these pairs of triangles along it, at most `most_depth` (metres) and the extent of what was cut. In A's mesh
-/// frame. About 0.4 us each; `may_go_on()` is asked before every one after the first. Returns how many.
+/// of some pairs of triangles along it, at most `most_depth` (metres) and the extent of what was cut. In A's mesh
+/// frame. About 0.4 us for each pair; `may_go_on()` is asked before every one after the first. Returns how many.
 template <class MayGoOn>
 std::size_t rough_contacts(const PosedMeshes& meshes, std::span<const TrianglePair> hits, bool both_solid,
                            const Vec3& towards_a, double most_depth, std::span<Contact> written,
                            MayGoOn may_go_on) noexcept {
-  std::array<Crossing, most_contacts> crossings;
-  const std::size_t most = std::min({hits.size(), written.size(), crossings.size()});
+  std::array<Crossing, most_contacts> crossings;  // also for one contact: a direction is made of several
+  std::array<TrianglePair, most_contacts> chosen;
+  const std::size_t most = std::min(hits.size(), crossings.size());
+  // First those that are far apart in the list: if time is short, they are all there is.
+  constexpr std::array<std::size_t, most_contacts> eighths{0, 4, 2, 6, 1, 5, 3, 7};
   std::size_t count = 0;
-  while (count < most && (count == 0 || may_go_on())) {
-    crossings[count] = Crossing::of(meshes, hits[count * hits.size() / most]);
+  for (const std::size_t eighth : eighths) {
+    if (eighth >= most) continue;
+    if (count > 0 && !may_go_on()) break;
+    chosen[count] = hits[eighth * hits.size() / most];
+    crossings[count] = Crossing::of(meshes, chosen[count]);
     ++count;
   }
   const std::span<const Crossing> made = std::span(crossings).first(count);
-  const Vec3 direction = rough_direction(made, both_solid, towards_a);
+  const Vec3 direction = snapped_to_face(made, both_solid, rough_direction(made, both_solid, towards_a));
   // A corner that has just come through is not deeper than its rim is wide, though the triangles reach on.
   double depth = std::min(most_depth, extent_of(made));
   for (const Crossing& crossing : made) depth = std::min(depth, crossing.overlap_along(direction));
+  count = std::min(count, written.size());
   for (std::size_t i = 0; i < count; ++i) {
-    const TrianglePair& hit = hits[i * hits.size() / most];
-    written[i] = {made[i].middle() + meshes.origin_a(), direction, depth, hit.a, hit.b};
+    written[i] = {made[i].middle() + meshes.origin_a(), direction, depth, chosen[i].a, chosen[i].b};
   }
   return count;
 }

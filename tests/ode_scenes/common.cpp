@@ -5,7 +5,7 @@
 namespace odds::ode_scenes {
 
 std::vector<Collider> colliders(const Plan& plan, bool primitive) {
-  std::vector<Collider> list{{Collider::Kind::odds, 100.0}};
+  std::vector<Collider> list;
   for (const double budget : plan.budgets_us) list.push_back({Collider::Kind::odds, budget});
   if (!plan.others) return list;
   list.push_back({Collider::Kind::stock});

@@ -27,11 +27,23 @@ constexpr std::pair<const char*, Scene> all[] = {{"stacks", &stacks},     {"peg"
 int usage() {
   fmt::print(stderr,
              "usage: odds_ode_scenes [--out FOLDER] [--only stacks|peg|gears|bolt|drag|crowd] [--quick] [--seconds S]\n"
-             "                       [--ours] [--gimpact]\n"
+             "                       [--budgets US,US,...] [--ours] [--gimpact]\n"
              "       odds_ode_scenes --soak [--seconds S] [--out FOLDER]   (stacks of five, ten minutes)\n"
-             "--quick: ten seconds, one gap, stacks of 2 and 5; --ours: without those that it is compared with;\n"
+             "--quick: ten seconds, one gap, stacks of 2 and 5; --budgets: of ours, else 100,5,10,20 us; --ours: "
+             "without those that it is compared with;\n"
              "--gimpact: Bullet's GImpact, too, if built with Bullet\n");
   return 2;
+}
+
+/// Positive numbers between commas.
+bool read_list(const char* text, std::vector<double>& numbers) {
+  numbers.clear();
+  for (char* end = nullptr; numbers.empty() || *end == ','; text = end + 1) {
+    numbers.push_back(std::strtod(text, &end));
+    if (end == text || !(numbers.back() > 0.0)) return false;
+    if (*end == '\0') return true;
+  }
+  return false;
 }
 
 bool read(int argc, char** argv, Options& options) {
@@ -49,6 +61,8 @@ bool read(int argc, char** argv, Options& options) {
       options.plan.seconds = 10.0;
       options.plan.gaps_mm = {0.1};
       options.plan.bricks = {2, 5};
+    } else if (argument == "--budgets" && i + 1 < argc) {
+      if (!read_list(argv[++i], options.plan.budgets_us)) return false;
     } else if (argument == "--ours") {
       options.plan.others = false;
     } else if (argument == "--gimpact") {

@@ -70,10 +70,12 @@ struct Answer {
   Basis basis = Basis::proved;
   double probability = 0.0;           ///< of a hit, in [0, 1]; exactly 1 or 0 where proved
   std::span<const Contact> contacts;  ///< in A's mesh frame, best first; valid until the pair's next run
-  /// False if the time ended before the contacts were made with care: they come from one pair of triangles (then their
-  /// depth is 0, for nobody has measured it) or from a part of the patch. A caller that has contacts of the last tick
-  /// may prefer those.
+  /// False if the time ended before the contacts were made with care: they come from some of the pairs of triangles
+  /// that meet, have one direction, and a depth that is bounded by what earlier runs proved, not measured.
   bool contacts_complete = true;
+  /// Pairs of triangles that the contacts were made from. Where they are not complete, some twenty tell a direction; of
+  /// fewer than that it is a guess, and a caller that has good contacts of the last tick may prefer those.
+  std::uint32_t contact_pairs = 0;
   bool has_cell_pair = false;  ///< whether `cell_pair` is set: some pair of nodes remained undecided
   Contact cell_pair;           ///< where the surfaces most probably meet: centroids, mean normals, depth estimate
   double cell_pair_probability = 0.0;  ///< of an intersection within that pair of nodes

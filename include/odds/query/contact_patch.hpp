@@ -51,15 +51,15 @@ struct PatchInput {
   std::span<const Vec3> vertices_b;  ///< B's own frame
   std::span<const mesh::Triangle> triangles_b;
   math::Pose pose_b_in_a;
-  bool solid_a = false;                   ///< closed and consistently oriented outwards; otherwise a two-sided sheet
-  bool solid_b = false;                   ///< the same for B
-  Vec3 reference_a = Vec3::Zero();        ///< centre of A's body; says on which side of a sheet the bodies are
-  Vec3 reference_b = Vec3::Zero();        ///< centre of B's body, in A's frame
-  const Vec3* previous_normal = nullptr;  ///< unit; the first contact's normal of the last run, in A's frame, or null
+  bool solid_a = false;                     ///< closed and consistently oriented outwards; otherwise a two-sided sheet
+  bool solid_b = false;                     ///< the same for B
+  Vec3 reference_a = Vec3::Zero();          ///< centre of A's body; says on which side of a sheet the bodies are
+  Vec3 reference_b = Vec3::Zero();          ///< centre of B's body, in A's frame
+  const Vec3* previous_normal = nullptr;    ///< unit; the first contact's normal of the last run, in A's frame, or null
   const Vec3* previous_position = nullptr;  ///< where that contact was, in A's frame, or null
-  int max_contacts = 4;                   ///< 1 .. most_contacts (clamped)
-  DepthProbe probe_a;                     ///< optional
-  DepthProbe probe_b;                     ///< optional
+  int max_contacts = 4;                     ///< 1 .. most_contacts (clamped)
+  DepthProbe probe_a;                       ///< optional
+  DepthProbe probe_b;                       ///< optional
 };
 
 /// Makes contacts: at most eight, one normal per patch, the deepest first, then those that span the largest area, so
@@ -84,8 +84,13 @@ class PatchBuilder {
   PatchBuilder& operator=(PatchBuilder&&) noexcept;
 
   /// Contacts in A's mesh frame, valid until the next call. Empty only if no hit has indices in range; every number
-  /// finite. After the deadline has expired it finishes with what is known, within about four microseconds.
+  /// finite. After the deadline has expired it makes one patch of what it has of the rim, within about eight
+  /// microseconds.
   [[nodiscard]] std::span<const Contact> build(const PatchInput& input, const Deadline& deadline = {}) noexcept;
+  /// Whether the last `build` was done before its deadline.
+  [[nodiscard]] bool finished() const noexcept;
+  /// How many pairs of triangles its contacts were made from.
+  [[nodiscard]] std::uint32_t pairs_used() const noexcept;
 
  private:
   struct Scratch;

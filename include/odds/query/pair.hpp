@@ -24,7 +24,7 @@ enum class InstructionSet : std::uint8_t {
 struct PairOptions {
   std::uint32_t queue_capacity = 4096;   ///< pairs of nodes in the priority queue, 64 .. 2^20
   std::uint32_t slice_capacity = 16384;  ///< nodes of the test tree kept by the incremental method, 64 .. 2^24
-  std::uint32_t hit_capacity = 256;      ///< intersecting triangle pairs kept for contacts, 8 .. 65536
+  std::uint32_t hit_capacity = 512;      ///< intersecting triangle pairs kept for contacts, 8 .. 65536
   InstructionSet instruction_set = InstructionSet::best;
 };
 

@@ -8,7 +8,7 @@
 
 #include "odds/math/pose.hpp"
 #include "odds/tree/wide_tree.hpp"
-#include "query/motion.hpp"
+#include "odds/math/motion.hpp"
 
 namespace odds::query::wide {
 
@@ -39,7 +39,7 @@ class KineticFront {
       travelled_ = 0.0;
       add({tree::WideTree::root, tree::WideTree::root, 0}, at_once);
     } else {
-      travelled_ += motion_bound(pose_, pose, reach);
+      travelled_ += math::motion_bound(pose_, pose, reach);
     }
     pose_ = pose;
   }

@@ -3,15 +3,15 @@
 
 #include "odds/math/pose.hpp"
 
-namespace odds::query {
+namespace odds::math {
 
 /// No point within `reach` of the moved frame's origin goes farther from pose `from` to pose `to`. Metres. A rotation
 /// by an angle differs from the identity by 2 sin(angle / 2) in the spectral norm, and by sqrt(2) times that in the
 /// Frobenius norm.
-[[nodiscard]] inline double motion_bound(const math::Pose& from, const math::Pose& to, double reach) noexcept {
+[[nodiscard]] inline double motion_bound(const Pose& from, const Pose& to, double reach) noexcept {
   constexpr double root_half = 0.70710678118654757;
   return ((to.translation - from.translation).norm() + reach * root_half * (to.rotation - from.rotation).norm()) *
          (1.0 + 1e-12);
 }
 
-}  // namespace odds::query
+}  // namespace odds::math

@@ -1,0 +1,68 @@
+#include "query/patch_witnesses.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "odds/math/random.hpp"
+
+namespace odds::query::patch {
+namespace {
+
+/// Where a patch ends in the directions of the fan: positions in `indices`. A direction and its opposite share a pass.
+using Ends = std::array<std::size_t, Fan::size>;
+
+Ends find_ends(std::span<const RimPiece> pieces, std::span<const std::uint32_t> indices, const Frame& frame,
+               const Fan& fan, const Vec3& centre) noexcept {
+  Ends ends{};
+  std::array<double, Fan::size> farthest;
+  farthest.fill(-std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    // The middle: both ends of a piece belong to its neighbours too.
+    const Vec3 out = pieces[indices[i]].middle() - centre;
+    const double u = frame.u.dot(out);
+    const double v = frame.v.dot(out);
+    for (std::size_t d = 0; d < Fan::size; ++d) {
+      const double far = fan.directions[d][0] * u + fan.directions[d][1] * v;
+      const bool farther = far > farthest[d];
+      farthest[d] = farther ? far : farthest[d];
+      ends[d] = farther ? i : ends[d];
+    }
+  }
+  std::sort(ends.begin(), ends.end());
+  return ends;
+}
+
+}  // namespace
+
+std::span<const std::uint32_t> Telling::of(std::span<const RimPiece> pieces, std::span<const PlacedPair> pairs,
+                                           std::span<const std::uint32_t> indices, const Frame& frame, const Fan& fan,
+                                           const Vec3& centre) noexcept {
+  if (indices.size() <= few) return indices;
+  const Ends ends = find_ends(pieces, indices, frame, fan, centre);
+  const std::uint64_t share = std::numeric_limits<std::uint64_t>::max() / indices.size() * sampled;
+  std::size_t count = 0;
+  std::size_t next_end = 0;
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    bool tells = false;
+    for (; next_end < ends.size() && ends[next_end] == i; ++next_end) tells = true;
+    if (!tells) {
+      const TrianglePair& index = pairs[pieces[indices[i]].pair].index;
+      tells = math::scramble((std::uint64_t{index.a} << 32U) | index.b) < share;
+    }
+    if (tells) chosen_[count++] = indices[i];
+  }
+  return {chosen_.data(), count};
+}
+
+std::span<const std::uint32_t> Telling::ends_of(std::span<const RimPiece> pieces,
+                                                std::span<const std::uint32_t> indices, const Frame& frame,
+                                                const Fan& fan, const Vec3& centre) noexcept {
+  const Ends ends = find_ends(pieces, indices, frame, fan, centre);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    if (i == 0 || ends[i] != ends[i - 1]) chosen_[count++] = indices[ends[i]];
+  }
+  return {chosen_.data(), count};
+}
+
+}  // namespace odds::query::patch
