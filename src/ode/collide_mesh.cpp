@@ -13,10 +13,6 @@
 namespace odds::ode {
 namespace {
 
-// Of triangles, for contacts that are fresher, and so better, than held ones: these know of one side of a body that
-// rocks.
-constexpr std::uint32_t enough_pairs = 12;
-
 query::Request request_for(const Settings& settings, int limit) noexcept {
   query::Request request;
   request.method = settings.method;
@@ -37,24 +33,13 @@ bool use_cell_pair(const query::Answer& answer, const Settings& settings) noexce
   return settings.undecided_policy == ODDS_UNDECIDED_HIT && answer.probability > settings.undecided_probability;
 }
 
-// The answer's own contacts if they were made with care, or from enough triangles to be right about the direction. If
-// the budget ended before that, or before anything was decided, what the pair holds from earlier ticks.
 std::span<const query::Contact> contacts_to_give(PairEntry& entry, const query::Answer& answer,
                                                  const Settings& settings, const math::Pose& b_in_a) noexcept {
-  const bool proved = answer.basis == query::Basis::proved;
-  if (proved && answer.contacts_complete) {  // or clear, and there are none
-    entry.held.keep(answer.contacts, b_in_a, true);
-    return answer.contacts;
-  }
-  if (answer.basis == query::Basis::estimated || settings.undecided_policy != ODDS_UNDECIDED_HIT) {
-    return answer.contacts;
-  }
+  const bool decided = answer.basis == query::Basis::proved && answer.contacts_complete;
+  const bool holds = answer.basis != query::Basis::estimated && settings.undecided_policy == ODDS_UNDECIDED_HIT;
+  if (!decided && !holds) return answer.contacts;
   const double size = std::min(entry.pair->a().mesh().size(), entry.pair->b().mesh().size());
-  const std::span<const query::Contact> held = entry.held.at(b_in_a, size);
-  const bool rough = answer.contact_pairs < enough_pairs;
-  if (answer.contacts.empty() || (rough && entry.held.better_than_rough() && !held.empty())) return held;
-  entry.held.keep(answer.contacts, b_in_a, !rough);
-  return answer.contacts;
+  return entry.held.best_of(answer, b_in_a, size);
 }
 
 // Contacts of an answer are in A's mesh frame with normals into A.

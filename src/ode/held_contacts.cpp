@@ -12,6 +12,19 @@ HeldContacts::Held HeldContacts::held(const query::Contact& contact, const math:
   return {contact.position - half, b_in_a.inverse() * Vec3(contact.position + half), contact};
 }
 
+std::span<const query::Contact> HeldContacts::best_of(const query::Answer& answer, const math::Pose& b_in_a,
+                                                      double size) noexcept {
+  if (answer.basis == query::Basis::proved && answer.contacts_complete) {  // or clear, and there are none
+    keep(answer.contacts, b_in_a, true);
+    return answer.contacts;
+  }
+  const std::span<const query::Contact> still_held = at(b_in_a, size);
+  const bool rough = answer.contact_pairs < enough_pairs;
+  if (answer.contacts.empty() || (rough && better_than_rough() && !still_held.empty())) return still_held;
+  keep(answer.contacts, b_in_a, !rough);
+  return answer.contacts;
+}
+
 void HeldContacts::keep(std::span<const query::Contact> found, const math::Pose& b_in_a, bool careful) noexcept {
   count_ = std::min(found.size(), most);
   for (std::size_t i = 0; i < count_; ++i) held_[i] = held(found[i], b_in_a);

@@ -25,6 +25,16 @@ class HeldContacts {
   /// that anywhere else, however long ago it was.
   static constexpr double rest = 0.0001;
 
+  /// Of triangles, for contacts that were made in a hurry: so many of them are right about the direction, and fresher,
+  /// and so better, than held ones, which know of one side of a body that rocks.
+  static constexpr std::uint32_t enough_pairs = 12;
+
+  /// What to give for the answer of a run: its own contacts if they were made with care or from enough triangles; what
+  /// is held if the budget ended before that, or before anything was decided. Keeps what it gives. `size`: diameter of
+  /// the smaller body. Valid until the next call, or the pair's next run.
+  [[nodiscard]] std::span<const query::Contact> best_of(const query::Answer& answer, const math::Pose& b_in_a,
+                                                        double size) noexcept;
+
   /// Takes the place of all that was held. `careful`: not what a run gave that had no time to measure.
   void keep(std::span<const query::Contact> found, const math::Pose& b_in_a, bool careful) noexcept;
 

@@ -17,8 +17,8 @@ namespace odds::query::patch {
 /// same ones speak, and contacts do not flicker.
 class Telling {
  public:
-  static constexpr std::size_t few = 64;                    ///< patches of up to so many pieces are heard whole
-  static constexpr std::size_t sampled = 40;                ///< about so many of the others beside the extremes
+  static constexpr std::size_t few = 96;                    ///< patches of up to so many pieces are heard whole
+  static constexpr std::size_t sampled = 64;                ///< about so many of the others beside the extremes
   static constexpr std::size_t most = 4 * (few + sampled);  ///< chosen, and then some
 
   explicit Telling(std::size_t most_pieces) : chosen_(most_pieces) {}

@@ -75,18 +75,22 @@ TEST_F(CarBodies, VerdictsWithoutABudgetAreFcls) {
   }
 }
 
-TEST_F(CarBodies, EveryPoseIsAnsweredWithin20Microseconds) {
-  std::size_t proved = 0;
-  for (const Row& row : query("--budget-us 20")) {
-    const double p = std::stod(row.at("probability"));
-    EXPECT_TRUE(p >= 0.0 && p <= 1.0);
-    EXPECT_TRUE(row.at("verdict") == "hit" || row.at("verdict") == "clear");
-    if (row.at("basis") != "proved") continue;
-    ++proved;
-    EXPECT_EQ(row.at("verdict"), poses_[std::stoul(row.at("row"))].at("fcl") == "1" ? "hit" : "clear")
-        << "a proof must be right";
+TEST_F(CarBodies, EveryPoseIsAnsweredWithinABudgetAndProofsAreRight) {
+  // How many are proved within some time is the machine's affair; within some work it is ours.
+  for (const char* budget : {"--budget-us 20", "--work 1000"}) {
+    std::size_t proved = 0;
+    for (const Row& row : query(budget)) {
+      const double p = std::stod(row.at("probability"));
+      EXPECT_TRUE(p >= 0.0 && p <= 1.0);
+      EXPECT_TRUE(row.at("verdict") == "hit" || row.at("verdict") == "clear");
+      if (row.at("basis") != "proved") continue;
+      ++proved;
+      EXPECT_EQ(row.at("verdict"), poses_[std::stoul(row.at("row"))].at("fcl") == "1" ? "hit" : "clear")
+          << budget << ": a proof must be right";
+    }
+    if (std::string_view(budget) != "--work 1000") continue;
+    EXPECT_GT(proved, count / 2);
   }
-  EXPECT_GT(proved, count / 4);
 }
 
 }  // namespace

@@ -28,11 +28,11 @@ class Incremental {
       if (!front_.expired(i)) {
         if (i % entries_between_polls == entries_between_polls - 1 && !task_.spending.may_go_on()) {
           task_.result.ended = Progressed::spent;
-          return;
+          return weigh_rest(i);
         }
         continue;
       }
-      if (!may_go_on()) return;
+      if (!may_go_on()) return weigh_rest(i);
       KineticFront::Entry& entry = front_.entry(i);
       if (met_.are_leaves(entry.a, entry.b)) {
         front_.set_expiry(i, KineticFront::at_once);
@@ -52,6 +52,16 @@ class Incremental {
     }
     task_.result.ended = Progressed::spent;
     return false;
+  }
+
+  /// The budget has ended in the scan: the first of the next few that would have been looked at is the candidate.
+  void weigh_rest(std::uint32_t from) noexcept {
+    const std::uint32_t end = std::min(front_.size(), from + entries_between_polls);
+    for (std::uint32_t i = from; i < end; ++i) {
+      if (!front_.expired(i)) continue;
+      consider(task_.result, {front_.entry(i).a, front_.entry(i).b, 0.0F});
+      return;
+    }
   }
 
   /// Puts the lanes that overlap and were not open on the stack; returns when the others must be looked at again.
