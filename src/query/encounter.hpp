@@ -25,6 +25,7 @@ class HitList {
   }
   [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
+  [[nodiscard]] std::size_t capacity() const noexcept { return pairs_.size(); }
   void add(TrianglePair pair) noexcept {
     if (size_ < pairs_.size()) pairs_[size_++] = pair;
   }

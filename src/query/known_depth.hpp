@@ -1,10 +1,11 @@
 // What earlier runs of a pair say about how deep the bodies can be in each other now.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 
-#include "odds/math/pose.hpp"
 #include "odds/math/motion.hpp"
+#include "odds/math/pose.hpp"
 
 namespace odds::query {
 
@@ -24,8 +25,20 @@ class KnownDepth {
   [[nodiscard]] double most(const math::Pose& pose, double reach) const noexcept {
     return known_ ? depth_ + math::motion_bound(pose_, pose, reach) : std::numeric_limits<double>::infinity();
   }
+  /// What is believed of one contact, metres: what was known, and how far B has since come along its normal there; a
+  /// small share of how far it has slid, for surfaces have slopes. `place` in A's frame, `normal` unit and into A; 0 if
+  /// nothing is known.
+  [[nodiscard]] double believed(const Vec3& place, const Vec3& normal, const math::Pose& pose) const noexcept {
+    if (!known_) return 0.0;
+    const Vec3 come = place - pose_ * (pose.inverse() * place);
+    const double along = normal.dot(come);
+    const double slid = (come - along * normal).norm();
+    return std::max(depth_ + along + slope * slid, 0.0);
+  }
 
  private:
+  static constexpr double slope = 0.05;
+
   math::Pose pose_;
   double depth_ = 0.0;
   bool known_ = false;

@@ -144,33 +144,44 @@ double deepest_of(std::span<const Contact> contacts) noexcept {
   return deepest;
 }
 
-/// From a part of the rim a depth may be anything. What nobody has measured is pushed apart no harder than that a body
-/// does not sink in.
-double believed_depth(double most_depth, const Pair::Implementation& pair) noexcept {
-  const double smaller = std::min(pair.a->mesh().size(), pair.b->mesh().size());
-  return pair.known_depth.known() ? most_depth : tolerances::unmeasured_depth * smaller;
-}
-
-/// A direction from a part of the rim may be far off: nothing is believed that is deeper than can be.
-void limit_depth(double most_depth, Pair::Implementation& pair) noexcept {
+/// The answer's contacts in memory of our own, to be changed.
+std::span<Contact> own_contacts(Pair::Implementation& pair) noexcept {
   const std::size_t count = std::min(pair.answer.contacts.size(), pair.rough.size());
   std::copy_n(pair.answer.contacts.begin(), count, pair.rough.begin());
-  for (Contact& contact : pair.rough) contact.depth = std::min(contact.depth, most_depth);
-  pair.answer.contacts = std::span(pair.rough).first(count);
+  const std::span<Contact> own = std::span(pair.rough).first(count);
+  pair.answer.contacts = own;
+  return own;
+}
+
+/// From a part of the rim a depth may be anything. What nobody has measured is pushed apart no harder than is known
+/// from motion, or than that a body does not sink in.
+void limit_to_believed(const PosedMeshes& meshes, Pair::Implementation& pair) noexcept {
+  const double smaller = std::min(pair.a->mesh().size(), pair.b->mesh().size());
+  const double unmeasured = tolerances::unmeasured_depth * smaller;
+  for (Contact& contact : own_contacts(pair)) {
+    const Vec3 place = contact.position - meshes.origin_a();
+    const double believed = pair.known_depth.believed(place, contact.normal, meshes.pose());
+    contact.depth = std::min(contact.depth, std::max(believed, unmeasured));
+  }
+}
+
+/// Part of the rim may be enough, and yet nothing is deeper than can be.
+void limit_depth(double most_depth, Pair::Implementation& pair) noexcept {
+  for (Contact& contact : own_contacts(pair)) contact.depth = std::min(contact.depth, most_depth);
 }
 
 /// What single pairs of triangles say, when there is no time for a patch.
-void make_rough_contacts(const PosedMeshes& meshes, double most_depth, const Request& request,
-                         Pair::Implementation& pair, Spending& spending) noexcept {
+void make_rough_contacts(const PosedMeshes& meshes, const Request& request, Pair::Implementation& pair,
+                         Spending& spending) noexcept {
   const Vec3 centre_b = meshes.pose().translation + meshes.origin_a();
   const Vec3 towards_a = pair.previous_normal.isZero() ? Vec3(meshes.origin_a() - centre_b) : pair.previous_normal;
   spending.reserve_for_contacts(rough_finish_ns);
   const auto room =
       std::span(pair.rough).first(std::min(static_cast<std::size_t>(request.max_contacts), pair.rough.size()));
-  const double believed = believed_depth(most_depth, pair);
   const std::size_t count = rough_contacts(meshes, pair.hits.pairs(), pair.a->is_solid() && pair.b->is_solid(),
-                                           towards_a, believed, room, [&] { return spending.may_make_contacts(); });
+                                           towards_a, room, [&] { return spending.may_make_contacts(); });
   pair.answer.contacts = room.first(count);
+  limit_to_believed(meshes, pair);
   pair.answer.contacts_complete = false;
   pair.answer.contact_pairs = static_cast<std::uint32_t>(count);
 }
@@ -181,7 +192,7 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, Pro
   const Vec3 centre_b = meshes.pose().translation + meshes.origin_a();
   spending.reserve_for_contacts(request.max_contacts > 1 ? hasty_finish_ns : single_finish_ns);
   if (!spending.may_make_contacts()) {
-    make_rough_contacts(meshes, most_depth, request, pair, spending);
+    make_rough_contacts(meshes, request, pair, spending);
     return;
   }
   if (request.max_contacts > 1) spending.reserve_for_contacts(patch_finish_ns);
@@ -210,9 +221,12 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, Pro
   pair.answer.contacts = pair.patches.build(input, deadline);
   if (pair.answer.contacts.empty()) return;
   pair.answer.contact_pairs = pair.patches.pairs_used();
-  pair.answer.contacts_complete = pair.patches.finished() && ended != Progressed::spent;
+  // As many hits as there was time for are a part of them; as many as were asked for, or as are kept, are what was
+  // asked.
+  const bool part = ended == Progressed::enough && request.max_contacts > 1 && pair.hits.size() < pair.hits.capacity();
+  pair.answer.contacts_complete = pair.patches.finished() && ended != Progressed::spent && !part;
   if (!pair.answer.contacts_complete) {
-    limit_depth(believed_depth(most_depth, pair), pair);
+    limit_to_believed(meshes, pair);
   } else if (ended != Progressed::finished) {
     limit_depth(most_depth, pair);
   }
