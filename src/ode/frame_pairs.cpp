@@ -1,4 +1,4 @@
-// Open addressing within a short reach.
+// Open addressing in two tables that change places with each frame, so that nothing is ever removed from either.
 #include "ode/frame_pairs.hpp"
 
 #include <bit>
@@ -8,8 +8,6 @@
 namespace odds::ode {
 namespace {
 
-constexpr std::size_t reach = 32;
-
 std::size_t mix(dGeomID a, dGeomID b) noexcept {
   std::uint64_t key = reinterpret_cast<std::uintptr_t>(a) * 0x9e3779b97f4a7c15U ^
                       reinterpret_cast<std::uintptr_t>(b) * 0xc2b2ae3d27d4eb4fU;
@@ -18,27 +16,43 @@ std::size_t mix(dGeomID a, dGeomID b) noexcept {
   return static_cast<std::size_t>(key ^ (key >> 32));
 }
 
+// The entry of that pair and frame, or the free one where it belongs.
+FramePair& find(std::vector<FramePair>& slots, dGeomID a, dGeomID b, std::uint64_t frame) noexcept {
+  const std::size_t mask = slots.size() - 1;
+  std::size_t i = mix(a, b) & mask;
+  while (slots[i].seen == frame && (slots[i].a != a || slots[i].b != b)) i = (i + 1) & mask;
+  return slots[i];
+}
+
 }  // namespace
 
-FramePairs::FramePairs(std::size_t most_pairs) : slots_(std::bit_ceil(4 * most_pairs + reach)) {}
+FramePairs::FramePairs(std::size_t most_pairs)
+    : now_(std::bit_ceil(2 * most_pairs)), before_(std::bit_ceil(2 * most_pairs)) {}
 
-FramePair* FramePairs::at(dGeomID a, dGeomID b, std::uint64_t frame) noexcept {
+void FramePairs::begin_frame() noexcept {
+  ++frame_;
+  now_.swap(before_);
+}
+
+FramePair& FramePairs::at(dGeomID a, dGeomID b) noexcept {
   if (std::less<>()(b, a)) std::swap(a, b);
-  const std::size_t mask = slots_.size() - 1;
-  const std::size_t first = mix(a, b);
-  FramePair* free = nullptr;
-  for (std::size_t i = 0; i < reach; ++i) {
-    FramePair& slot = slots_[(first + i) & mask];
-    if (slot.a == a && slot.b == b) return &slot;
-    if (free == nullptr && (slot.a == nullptr || slot.seen + 1 < frame)) free = &slot;
+  FramePair& entry = find(now_, a, b, frame_);
+  if (entry.seen == frame_) return entry;
+  const FramePair& known = find(before_, a, b, frame_ - 1);
+  if (known.seen == frame_ - 1) {
+    entry = known;
+  } else {
+    entry = FramePair{};
+    entry.a = a;
+    entry.b = b;
+    entry.served = frame_ - 1;
   }
-  if (free != nullptr) {
-    *free = FramePair{};
-    free->a = a;
-    free->b = b;
-    free->served = frame - 1;
-  }
-  return free;
+  entry.seen = frame_;
+  return entry;
+}
+
+void FramePairs::forget_costs() noexcept {
+  for (FramePair& entry : now_) entry.cost = 0.0;
 }
 
 }  // namespace odds::ode

@@ -1,35 +1,45 @@
-// Pairs of geoms that a frame remembers: a table of fixed size, searched by both geoms.
+// Pairs of geoms that a frame remembers: tables of fixed size, searched by both geoms.
 #pragma once
 
 #include <ode/ode.h>
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 namespace odds::ode {
 
 struct FramePair {
-  dGeomID a = nullptr;  ///< the lesser address; null: free
+  dGeomID a = nullptr;  ///< the lesser address
   dGeomID b = nullptr;
-  std::uint64_t seen = 0;     ///< number of the last frame that met it
-  std::uint64_t served = 0;   ///< ... that called for it
-  std::uint64_t touched = 0;  ///< ... in which it gave contacts; 0: never
+  std::uint64_t seen = 0;     ///< number of the frame that met it
+  std::uint64_t served = 0;   ///< ... of the last that called for it; of one before its first, if none did
+  std::uint64_t touched = 0;  ///< ... of the last in which it gave contacts; 0: never
   double probability = 0.5;   ///< of a hit, at the last service
   bool proved = false;
-  double cost = 0.0;  ///< of the last service: microseconds, or work units
+  double cost = 0.0;  ///< of the last service: microseconds, or work units; 0: unknown
 };
 
-/// Finds and makes entries without allocating. An entry that its last frame did not see may be given away.
+/// Finds and makes entries without allocating. A pair that a frame does not meet is forgotten with that frame. What is
+/// remembered does not depend on where the geoms lie in memory.
 class FramePairs {
  public:
   explicit FramePairs(std::size_t most_pairs);
 
-  /// The entry of this pair, new if there is none; null where none is free.
-  [[nodiscard]] FramePair* at(dGeomID a, dGeomID b, std::uint64_t frame) noexcept;
+  /// From here on `at` makes the entries of the next frame, out of those of the last.
+  void begin_frame() noexcept;
+  [[nodiscard]] std::uint64_t frame() const noexcept { return frame_; }
+
+  /// The entry of this pair in this frame: its own, until the next one begins. At most `most_pairs` different ones.
+  [[nodiscard]] FramePair& at(dGeomID a, dGeomID b) noexcept;
+
+  /// No cost is known any more.
+  void forget_costs() noexcept;
 
  private:
-  std::vector<FramePair> slots_;  // a power of two; pairs of this frame and of the last fill half of it at most
+  // Each of a power of two, half full at most. An entry that another frame has seen is free.
+  std::vector<FramePair> now_;
+  std::vector<FramePair> before_;
+  std::uint64_t frame_ = 1;
 };
 
 }  // namespace odds::ode

@@ -55,17 +55,21 @@ GeomData& own_data(dGeomID geom) noexcept {
   return **static_cast<GeomData**>(dGeomGetClassData(geom));
 }
 
-GeomData* find_data(dGeomID geom, const char* caller) noexcept {
+GeomData* known_data(dGeomID geom) noexcept {
   const int our_class = oddsGetClass();
-  if (our_class >= 0 && geom != nullptr) {
-    if (dGeomGetClass(geom) == our_class) return &own_data(geom);
-    const Partner* partner = partner_table().find(geom);
-    if (partner != nullptr && partner->mesh != nullptr) return partner->mesh.get();
-  }
+  if (our_class < 0 || geom == nullptr) return nullptr;
+  if (dGeomGetClass(geom) == our_class) return &own_data(geom);
+  const Partner* partner = partner_table().find(geom);
+  return partner != nullptr ? partner->mesh.get() : nullptr;
+}
+
+GeomData* find_data(dGeomID geom, const char* caller) noexcept {
+  if (GeomData* known = known_data(geom)) return known;
   try {
     set_last_error(std::string(caller) +
-                   (our_class < 0 ? ": the library is not initialised; call oddsInitODE first"
-                                  : ": not a geom made by dCreateOddsMesh, nor one with a mesh that stands in for it"));
+                   (oddsGetClass() < 0
+                        ? ": the library is not initialised; call oddsInitODE first"
+                        : ": not a geom made by dCreateOddsMesh, nor one with a mesh that stands in for it"));
   } catch (...) {
     set_last_error("not a geom made by dCreateOddsMesh");
   }

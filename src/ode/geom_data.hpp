@@ -45,7 +45,10 @@ struct GeomData {
 /// The data of a geom that is known to be of our class, or to have a mesh that stands in for it (in colliders).
 [[nodiscard]] GeomData& own_data(dGeomID geom) noexcept;
 
-/// The data of any geom, or null with the last error set if it is neither one of ours nor has a mesh that stands in.
+/// The data of any geom, or null if it is neither one of ours nor has a mesh that stands in. Allocates nothing.
+[[nodiscard]] GeomData* known_data(dGeomID geom) noexcept;
+
+/// The same, with the last error set where there is none.
 [[nodiscard]] GeomData* find_data(dGeomID geom, const char* caller) noexcept;
 
 /// Whether a point is finite and no farther than 1e15 m from the origin.

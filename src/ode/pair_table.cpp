@@ -126,6 +126,14 @@ void PairTable::remove_from_bucket(PairEntry& entry) noexcept {
   }
 }
 
+const PairEntry* answered_pair(dGeomID g1, dGeomID g2) noexcept {
+  const GeomData* x = known_data(g1);
+  const GeomData* y = known_data(g2);
+  if (x == nullptr || y == nullptr) return nullptr;
+  const PairEntry* entry = pair_table().find(*x, *y);
+  return entry != nullptr && entry->answered ? entry : nullptr;
+}
+
 void PairTable::forget(GeomData& geom) noexcept {
   try {
     const std::lock_guard lock(writers_);
@@ -176,14 +184,13 @@ int oddsPreparePair(dGeomID g1, dGeomID g2) noexcept {
 int oddsGetLastAnswer(dGeomID g1, dGeomID g2, oddsAnswer* answer) noexcept {
   using namespace odds::ode;
   const GeomData* x = find_data(g1, "oddsGetLastAnswer");
-  const GeomData* y = x != nullptr ? find_data(g2, "oddsGetLastAnswer") : nullptr;
-  if (x == nullptr || y == nullptr) return 0;
+  if (x == nullptr || find_data(g2, "oddsGetLastAnswer") == nullptr) return 0;
   if (answer == nullptr) {
     set_last_error("oddsGetLastAnswer: the place for the answer is null; give one");
     return 0;
   }
-  const PairEntry* entry = pair_table().find(*x, *y);
-  if (entry == nullptr || !entry->answered) {
+  const PairEntry* entry = answered_pair(g1, g2);
+  if (entry == nullptr) {
     set_last_error("oddsGetLastAnswer: these two geoms never collided");
     return 0;
   }

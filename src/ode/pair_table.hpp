@@ -56,4 +56,8 @@ class PairTable {
 
 [[nodiscard]] PairTable& pair_table() noexcept;
 
+/// The workspace of two geoms whose meshes have collided; null where they have not, or one is no mesh of this library.
+/// Sets no error.
+[[nodiscard]] const PairEntry* answered_pair(dGeomID g1, dGeomID g2) noexcept;
+
 }  // namespace odds::ode

@@ -1,8 +1,10 @@
 // odds_bench_frames: 200 pairs of meshes in a frame of 500 us: by importance, and with equal shares.
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
-#include <cstdlib>
+#include <span>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "odds/realtime/thread_setup.hpp"
@@ -60,22 +62,42 @@ Figures measure(Crowd& crowd, dSpaceID space, int sharing, double frame_us, int 
   return figures;
 }
 
-}  // namespace
+// The whole of `text`, or false.
+template <class Number>
+bool read_number(std::string_view text, Number& number) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && end == text.data() + text.size();
+}
 
-int main(int argc, char** argv) {
+struct Options {
   int pairs = 200;
   int frames = 2000;
   double frame_us = 500.0;
-  for (int i = 1; i + 1 < argc; i += 2) {
-    const std::string_view name = argv[i];
-    if (name == "--pairs") pairs = std::atoi(argv[i + 1]);
-    if (name == "--frames") frames = std::atoi(argv[i + 1]);
-    if (name == "--frame-us") frame_us = std::atof(argv[i + 1]);
+};
+
+// False for an option that there is not, or a value that is none of its own.
+bool read_options(std::span<char*> words, Options& options) {
+  if (words.size() % 2 != 0) return false;
+  for (std::size_t i = 0; i < words.size(); i += 2) {
+    const std::string_view name = words[i];
+    const std::string_view value = words[i + 1];
+    const bool known = (name == "--pairs" && read_number(value, options.pairs)) ||
+                       (name == "--frames" && read_number(value, options.frames)) ||
+                       (name == "--frame-us" && read_number(value, options.frame_us));
+    if (!known) return false;
   }
-  if (argc % 2 == 0 || pairs < 1 || frames < 1 || !(frame_us > 0.0)) {
+  return options.pairs >= 1 && options.frames >= 1 && options.frame_us > 0.0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  if (!read_options(std::span(argv, static_cast<std::size_t>(argc)).subspan(1), options)) {
     std::fprintf(stderr, "usage: odds_bench_frames [--pairs N] [--frames N] [--frame-us T]\n");
     return 2;
   }
+  const auto [pairs, frames, frame_us] = options;
   if (oddsInitODE(0) == 0) return 1;
   odds::realtime::ThreadRequest request;
   request.fifo_priority = 50;  // where the system grants it, stalls are fewer

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "ode/frame_crowd.hpp"
+#include "ode/frame_fixture.hpp"
 #include "ode/frame_pairs.hpp"
 #include "ode/importance.hpp"
 #include "support/allocation_counter.hpp"
@@ -18,24 +20,7 @@ using ode::importance;
 using ode::PairSigns;
 using ode::share_of;
 
-class FrameBudget : public OdeTest {
- protected:
-  void SetUp() override {
-    OdeTest::SetUp();
-    budget = oddsFrameBudgetCreate(512);
-    ASSERT_NE(budget, nullptr);
-  }
-  void TearDown() override {
-    oddsFrameBudgetDestroy(budget);
-    OdeTest::TearDown();
-  }
-  oddsFrameSummary summary() const {
-    oddsFrameSummary summary;
-    EXPECT_EQ(oddsFrameBudgetGetSummary(budget, &summary), 1);
-    return summary;
-  }
-  oddsFrameBudgetID budget = nullptr;
-};
+using FrameBudget = FrameTest;
 
 TEST_F(FrameBudget, WithoutALimitEveryPairIsAnsweredAsByDSpaceCollide) {
   Crowd crowd(space, 20);
@@ -84,7 +69,7 @@ TEST_F(FrameBudget, WhatTouchesIsServedFirstAndIsRight) {
   for (std::ptrdiff_t i = 0; i < touching; ++i) {
     EXPECT_TRUE(crowd.pairs()[crowd.order()[static_cast<std::size_t>(i)]].touches) << "place " << i;
   }
-  // A tenth of what all of them need.
+  // A quarter of what all of them need.
   const unsigned long all = summary().work;
   int right_by_importance = 0;
   int right_by_equal_shares = 0;
@@ -117,23 +102,6 @@ TEST_F(FrameBudget, AttentionBringsAPairForward) {
     const auto position = std::find(crowd.order().begin(), crowd.order().end(), watched) - crowd.order().begin();
     EXPECT_LE(position, touching) << watched;  // behind nothing but what touches
   }
-}
-
-TEST_F(FrameBudget, SpacesInsideOfSpacesAreSearched) {
-  const dSpaceID inner = dSimpleSpaceCreate(space);
-  const auto shape = sphere_shape(0.1);
-  const dGeomID outer = mesh_geom(shape, space);
-  const dGeomID first = mesh_geom(shape, inner);
-  const dGeomID second = mesh_geom(shape, inner);
-  dGeomSetPosition(first, 0.15, 0.0, 0.0);
-  dGeomSetPosition(second, 0.1, 0.1, 0.0);
-  std::vector<std::pair<dGeomID, dGeomID>> met;
-  const auto note = [](void* data, dGeomID a, dGeomID b) {
-    static_cast<std::vector<std::pair<dGeomID, dGeomID>>*>(data)->emplace_back(a, b);
-  };
-  ASSERT_EQ(oddsSpaceCollide(space, &met, note, budget), 1);
-  EXPECT_EQ(met.size(), 3U);
-  (void)outer;
 }
 
 TEST_F(FrameBudget, PairsBeyondItsMemoryAreServedToo) {
@@ -212,7 +180,7 @@ TEST(Importance, TouchingComesBeforeApartAndWaitingBeatsEverythingInTime) {
   PairSigns apart;
   apart.hit_probability = 0.0;
   apart.proved = true;
-  EXPECT_GT(importance(touching), 10.0 * importance(apart));
+  EXPECT_GT(importance(touching), importance(apart) + std::log2(10.0));
   PairSigns moving = apart;
   moving.way_share = 0.5;
   EXPECT_GT(importance(moving), importance(apart));
@@ -222,36 +190,67 @@ TEST(Importance, TouchingComesBeforeApartAndWaitingBeatsEverythingInTime) {
   EXPECT_GT(importance(doubtful), importance(apart));
   touching.relative_speed = 1.0;
   apart.attention = 0.1;
-  apart.waited = 12;
-  EXPECT_GT(importance(apart), importance(touching));
-  apart.waited = 4'000'000'000U;
+  for (const std::uint64_t others : {0ULL, 100ULL, 100'000ULL}) {  // however long everybody waits
+    touching.waited = others;
+    apart.waited = others + 12;
+    EXPECT_GT(importance(apart), importance(touching));
+  }
+  apart.waited = 4'000'000'000'000U;
   EXPECT_TRUE(std::isfinite(importance(apart)));
 }
 
-TEST(Share, KeepsAFloorForThoseThatComeLaterAndGivesNoMoreThanThereIs) {
-  EXPECT_DOUBLE_EQ(share_of({100.0, 1000.0, 1.0, 1.0, 0.0, 1.0}), 100.0);  // the last gets the rest
-  EXPECT_DOUBLE_EQ(share_of({100.0, 1000.0, 1.0, 1e9, 20.0, 1.0}), 40.0);  // half of what no floor needs
-  EXPECT_DOUBLE_EQ(share_of({100.0, 5.0, 1.0, 1e9, 20.0, 1.0}), 5.0);
-  EXPECT_DOUBLE_EQ(share_of({10.0, 5.0, 1.0, 1e9, 20.0, 1.0}), 1.0);
-  EXPECT_DOUBLE_EQ(share_of({0.5, 5.0, 1.0, 2.0, 20.0, 1.0}), 0.5);
-  EXPECT_DOUBLE_EQ(share_of({100.0, 0.0, 1.0, 2.0, 0.0, 1.0}), 50.0);
+TEST(Importance, PartsAreThoseOfTheSumHoweverFarApart) {
+  ode::PartsOfRest parts;
+  EXPECT_DOUBLE_EQ(parts.next(-3.0), 1.0);
+  EXPECT_DOUBLE_EQ(parts.next(-3.0), 0.5);
+  EXPECT_DOUBLE_EQ(parts.next(-2.0), 0.5);      // 2 of 2 + 1 + 1
+  EXPECT_DOUBLE_EQ(parts.next(-1.0), 0.5);      // 4 of 8
+  EXPECT_DOUBLE_EQ(parts.next(40'000.0), 1.0);  // all the others together are nothing beside it
+  EXPECT_DOUBLE_EQ(parts.next(40'000.0), 0.5);  // two alike share
+  EXPECT_NEAR(parts.next(40'001.0), 0.5, 1e-15);
 }
 
-TEST(FramePairsTable, FindsWhatItKnowsAndForgetsWhatIsGone) {
-  FramePairs pairs(100);
-  const auto id = [](std::uintptr_t i) { return reinterpret_cast<dGeomID>(64 * (i + 1)); };
-  ode::FramePair* first = pairs.at(id(1), id(2), 2);
-  ASSERT_NE(first, nullptr);
-  first->cost = 7.0;
-  first->seen = 2;
-  EXPECT_EQ(pairs.at(id(2), id(1), 3), first);
-  EXPECT_EQ(first->cost, 7.0);
-  for (std::uintptr_t i = 0; i < 10'000; ++i) {
-    const std::uint64_t frame = 10 + i / 100;
-    ode::FramePair* pair = pairs.at(id(i), id(i + 7), frame);
-    ASSERT_NE(pair, nullptr) << i;  // a hundred live ones at a time always find room
-    pair->seen = frame;
+TEST(Share, KeepsAFloorForThoseThatComeLaterAndGivesNoMoreThanThereIs) {
+  EXPECT_DOUBLE_EQ(share_of({100.0, 1000.0, 1.0, 0.0, 1.0}), 100.0);   // the last gets the rest
+  EXPECT_DOUBLE_EQ(share_of({100.0, 1000.0, 1e-9, 20.0, 1.0}), 40.0);  // half of what no floor needs
+  EXPECT_DOUBLE_EQ(share_of({100.0, 5.0, 1e-9, 20.0, 1.0}), 5.0);
+  EXPECT_DOUBLE_EQ(share_of({10.0, 5.0, 1e-9, 20.0, 1.0}), 1.0);
+  EXPECT_DOUBLE_EQ(share_of({0.5, 5.0, 0.5, 20.0, 1.0}), 0.5);
+  EXPECT_DOUBLE_EQ(share_of({100.0, 0.0, 0.5, 0.0, 1.0}), 50.0);
+}
+
+dGeomID geom_at(std::uintptr_t i) { return reinterpret_cast<dGeomID>(64 * (i + 1)); }
+
+TEST(FramePairsTable, EveryPairOfAFrameHasAnEntryOfItsOwnAndFindsItInTheNext) {
+  constexpr std::uintptr_t count = 1000;
+  FramePairs pairs(count);
+  for (int frame = 0; frame < 5; ++frame) {
+    pairs.begin_frame();
+    std::set<const ode::FramePair*> entries;
+    for (std::uintptr_t i = 0; i < count; ++i) {
+      ode::FramePair& pair = pairs.at(geom_at(i), geom_at(i + 7));
+      EXPECT_EQ(pair.cost, static_cast<double>(frame == 0 ? 0 : i + 1)) << i;
+      pair.cost = static_cast<double>(i + 1);
+      EXPECT_EQ(&pairs.at(geom_at(i + 7), geom_at(i)), &pair);
+      entries.insert(&pair);
+    }
+    EXPECT_EQ(entries.size(), count);
   }
+}
+
+TEST(FramePairsTable, ForgetsWhatAFrameDidNotMeet) {
+  FramePairs pairs(100);
+  for (std::uintptr_t i = 0; i < 100'000; ++i) {
+    if (i % 100 == 0) pairs.begin_frame();
+    ode::FramePair& pair = pairs.at(geom_at(i), geom_at(i + 7));
+    ASSERT_EQ(pair.cost, 0.0);
+    pair.cost = 7.0;
+  }
+  pairs.begin_frame();
+  EXPECT_EQ(pairs.at(geom_at(99'999), geom_at(100'006)).cost, 7.0);
+  pairs.begin_frame();
+  pairs.begin_frame();
+  EXPECT_EQ(pairs.at(geom_at(99'999), geom_at(100'006)).cost, 0.0);
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ int oddsFrameBudgetSetAttention(oddsFrameBudgetID budget, const dReal* position,
 
 enum {
   ODDS_SHARE_BY_IMPORTANCE = 0, /* default */
-  ODDS_SHARE_EQUALLY = 1        /* every pair as much, in ODE's order: for comparison */
+  ODDS_SHARE_EQUALLY = 1        /* every pair as much, in ODE's order, whoever has waited: for comparison only */
 };
 int oddsFrameBudgetSetSharing(oddsFrameBudgetID budget, int sharing) ODDS_NOTHROW;
 
@@ -40,8 +40,9 @@ int oddsFrameBudgetSetSharing(oddsFrameBudgetID budget, int sharing) ODDS_NOTHRO
 typedef struct oddsFrameSummary {
   int pairs;           /* that the broad phase gave */
   int served;          /* whose callback ran; the others found no time left, and come first in the next frame */
-  int waiting_longest; /* frames that some pair has been without service by now */
-  int beyond_memory;   /* pairs beyond `most_pairs`: served at once, with the least share */
+  int waiting_longest; /* frames that some pair within `most_pairs` has been without service by now */
+  int beyond_memory;   /* pairs beyond `most_pairs`: called one after the other, through several frames if need be, each
+                        * with the least share, in the first half of a frame */
   double gross_us;     /* of the whole frame */
   double overshoot_us; /* beyond the budget, >= 0 */
   unsigned long work;  /* units spent between meshes */
@@ -53,8 +54,10 @@ int oddsFrameBudgetGetSummary(oddsFrameBudgetID budget, oddsFrameSummary* summar
  * frame has left; what it does not use goes to the next. The share bounds the collision in addition to the geoms' own
  * budgets. Important is what probably touches, touched lately, moves fast against each other, is near to the attention,
  * or has waited long. A pair that finds no time left is not called; a body may then sink in for a frame. One pair at
- * least is called in every frame, and no pair waits for ever. Spaces inside of `space` are searched too. Allocates
- * nothing. Returns 1, or 0 with an error. */
+ * least is called in every frame, and no pair waits for ever (by importance; equal shares let it). Spaces inside of
+ * `space` are searched too, each once, and each pair of geoms is called once. A pair that the broad phase does not give
+ * is forgotten. odds allocates nothing here; ODE's hash and sweep-and-prune spaces do. The last error stays as it is.
+ * Returns 1, or 0 with an error. */
 int oddsSpaceCollide(dSpaceID space, void* data, dNearCallback* callback, oddsFrameBudgetID budget) ODDS_NOTHROW;
 
 #ifdef __cplusplus

@@ -1,0 +1,71 @@
+// Which pairs a frame finds: spaces inside of spaces, and that finding them costs nothing but their search.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "ode/frame_fixture.hpp"
+#include "support/allocation_counter.hpp"
+
+namespace odds::test {
+namespace {
+
+using Calls = std::map<std::pair<dGeomID, dGeomID>, int>;
+
+void count_call(void* calls, dGeomID a, dGeomID b) { ++(*static_cast<Calls*>(calls))[std::minmax(a, b)]; }
+
+class FrameSpaces : public FrameTest {
+ protected:
+  static dGeomID sphere(dSpaceID into, double x) {
+    const dGeomID geom = dCreateSphere(into, 1.0);
+    dGeomSetPosition(geom, x, 0.0, 0.0);
+    return geom;
+  }
+};
+
+TEST_F(FrameSpaces, EachPairIsCalledOnceHoweverManyThingsItsSpaceMeets) {
+  const dSpaceID inner = dHashSpaceCreate(space);
+  const dSpaceID innermost = dSimpleSpaceCreate(inner);
+  for (int i = 0; i < 2; ++i) sphere(inner, 0.1 * i);
+  for (int i = 0; i < 2; ++i) sphere(innermost, 0.3 + 0.1 * i);
+  for (int i = 0; i < 5; ++i) sphere(space, 0.05 * i);
+  Calls calls;
+  ASSERT_EQ(oddsSpaceCollide(space, &calls, &count_call, budget), 1);
+  EXPECT_EQ(calls.size(), 36U);  // nine spheres, each on each
+  for (const auto& [pair, count] : calls) EXPECT_EQ(count, 1);
+  EXPECT_EQ(summary().pairs, 36);
+}
+
+TEST_F(FrameSpaces, ASpaceThatMeetsNothingIsSearched) {
+  const dSpaceID inner = dSimpleSpaceCreate(space);
+  for (int i = 0; i < 2; ++i) sphere(inner, 0.1 * i);
+  Calls calls;
+  oddsSpaceCollide(space, &calls, &count_call, budget);
+  EXPECT_EQ(calls.size(), 1U);
+  dGeomDisable(reinterpret_cast<dGeomID>(inner));
+  calls.clear();
+  oddsSpaceCollide(space, &calls, &count_call, budget);
+  EXPECT_EQ(calls.size(), 0U);
+}
+
+TEST_F(FrameSpaces, PrimitivesCostNoMemoryAndLeaveTheLastErrorAlone) {
+  for (int i = 0; i < 4; ++i) sphere(space, 0.1 * i);
+  mesh_geom(sphere_shape(0.5), space);
+  const auto callback = [](void*, dGeomID a, dGeomID b) {
+    dContactGeom contacts[8];
+    dCollide(a, b, 8, contacts, sizeof(dContactGeom));
+  };
+  EXPECT_EQ(oddsFrameBudgetSetWork(nullptr, 1), 0);
+  const std::string error = oddsGetLastError();
+  oddsSpaceCollide(space, nullptr, callback, budget);
+  const support::AllocationCounter counter;
+  for (int frame = 0; frame < 10; ++frame) oddsSpaceCollide(space, nullptr, callback, budget);
+  EXPECT_EQ(counter.allocations(), 0U);
+  EXPECT_EQ(summary().served, 10);
+  EXPECT_EQ(oddsGetLastError(), error);
+}
+
+}  // namespace
+}  // namespace odds::test
