@@ -23,8 +23,8 @@ constexpr double patch_base_us = 25.0;
 // Fewer may leave a gap in the rim of even two boxes, and the direction of a patch needs all of its rim.
 constexpr double least_hits = 64.0;
 // What a patch takes from hearing of the deadline to its end: a ray or two, and one made hastily of what there is.
-constexpr std::int64_t patch_finish_ns = 10000;
-constexpr std::int64_t hasty_finish_ns = 8000;   ///< of one that is hasty from the start
+constexpr std::int64_t patch_finish_ns = 6500;
+constexpr std::int64_t hasty_finish_ns = 6500;   ///< of one that is hasty from the start
 constexpr std::int64_t single_finish_ns = 3000;  ///< of a single contact
 constexpr std::int64_t rough_finish_ns = 1500;   ///< of one more rough contact, their direction, and writing the answer
 

@@ -1,6 +1,7 @@
 // What a query may spend.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 
@@ -17,6 +18,9 @@ struct Budget {
   std::uint64_t work_units = std::numeric_limits<std::uint64_t>::max();  ///< > 0; max: no limit
   realtime::Clock clock = {};                                            ///< null: realtime::fastest_clock()
 
+  [[nodiscard]] bool is_limited() const noexcept {
+    return std::isfinite(microseconds) || work_units != std::numeric_limits<std::uint64_t>::max();
+  }
   [[nodiscard]] static Budget unlimited() noexcept { return {}; }
   [[nodiscard]] static Budget time(double microseconds) noexcept { return {.microseconds = microseconds}; }
   [[nodiscard]] static Budget work(std::uint64_t units) noexcept { return {.work_units = units}; }

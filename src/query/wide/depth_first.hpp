@@ -8,6 +8,9 @@ namespace odds::query::wide {
 /// Two pairs are opened at a time: each waits for its numbers most of its time, and neither waits for the other. What
 /// remains is kept without branches that nobody could predict.
 ///
+/// Where contacts are wanted and a budget may end the search, it does not go on beside a hit but somewhere else: the
+/// hits that are found until then come from all over the rim, and contacts made of them hold a body on all sides.
+///
 /// As the start of another search (`ranked`) it ends early, keeps the ranks of what is open, and leaves it to that.
 template <class L, bool ranked = false>
 class DepthFirst {
@@ -17,7 +20,11 @@ class DepthFirst {
     search.run(start_a, start_b);
   }
 
-  explicit DepthFirst(Task& task) noexcept : task_(task), met_(task.encounter) {}
+  explicit DepthFirst(Task& task) noexcept
+      : task_(task),
+        met_(task.encounter),
+        hits_(task.hits.size()),
+        spreads_(task.wanted > 1 && task.request.budget.is_limited()) {}
 
   [[nodiscard]] const SlotPairs& open() const noexcept { return open_; }
   [[nodiscard]] const SlotPairs& leaf_pairs() const noexcept { return leaf_pairs_; }
@@ -35,6 +42,7 @@ class DepthFirst {
       }
       if (leaf_pairs_.size >= leaf_batch || open_.size == 0) {
         if (!visit_leaf_pairs()) return;
+        if (spreads_) go_elsewhere();
         continue;
       }
       if (!task_.spending.may_go_on_after(units_between_polls) || !task_.spending.allows(2 * wide_lanes)) return stop();
@@ -51,6 +59,15 @@ class DepthFirst {
   }
 
  private:
+  /// After a hit, to an open pair that follows no order; going down from there needs as much room again at most.
+  void go_elsewhere() noexcept {
+    if (task_.hits.size() == hits_ || open_.size < 2 || open_.size > wide_stack_capacity) return;
+    hits_ = task_.hits.size();
+    constexpr std::uint64_t golden = 0x9E3779B9U;  // of 2^32: no index comes again soon
+    const std::uint64_t fraction = (hits_ * golden) & 0xFFFFFFFFU;
+    open_.bring_up(static_cast<std::size_t>((fraction * (open_.size - 1)) >> 32U));
+  }
+
   /// The deepest overlap is pushed last and so visited first: it is where a hit is found soonest.
   ODDS_LANES_INLINE void keep(const Expanded<L>& expanded) noexcept {
     if (expanded.leaf_lanes != 0) leaf_pairs_.add<false>(expanded, expanded.leaf_lanes);
@@ -97,12 +114,15 @@ class DepthFirst {
   }
 
   static constexpr std::size_t leaf_batch = 1;
+  static constexpr std::size_t capacity = 2 * wide_stack_capacity;
 
   Task& task_;
   const Encounter& met_;
-  Slot open_slots_[2][wide_stack_capacity];
+  std::size_t hits_;
+  bool spreads_;
+  Slot open_slots_[2][capacity];
   Slot leaf_slots_[2][leaf_batch + 4 * wide_lanes];
-  float ranks_[ranked ? wide_stack_capacity : 1];
+  float ranks_[ranked ? capacity : 1];
   SlotPairs open_{{open_slots_[0], open_slots_[1]}, ranks_};
   SlotPairs leaf_pairs_{{leaf_slots_[0], leaf_slots_[1]}};
 };

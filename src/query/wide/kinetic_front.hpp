@@ -6,9 +6,9 @@
 #include <limits>
 #include <vector>
 
+#include "odds/math/motion.hpp"
 #include "odds/math/pose.hpp"
 #include "odds/tree/wide_tree.hpp"
-#include "odds/math/motion.hpp"
 
 namespace odds::query::wide {
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <bit>
+#include <utility>
 
 #include "query/wide/searches.hpp"
 
@@ -104,6 +105,12 @@ struct SlotPairs {
     L::write_all(of[1 - expanded.side] + size, expanded.other);
     if constexpr (ranked) L::write_some(ranks + size, expanded.ranks, lanes);
     size += static_cast<std::size_t>(std::popcount(lanes));
+  }
+  /// Brings another pair to where the next one is taken from.
+  void bring_up(std::size_t index) noexcept {
+    std::swap(of[0][index], of[0][size - 1]);
+    std::swap(of[1][index], of[1][size - 1]);
+    if (ranks != nullptr) std::swap(ranks[index], ranks[size - 1]);
   }
   ODDS_LANES_INLINE SlotPair take() noexcept {
     --size;
