@@ -65,7 +65,7 @@ class DepthFirst {
     hits_ = task_.hits.size();
     constexpr std::uint64_t golden = 0x9E3779B9U;  // of 2^32: no index comes again soon
     const std::uint64_t fraction = (hits_ * golden) & 0xFFFFFFFFU;
-    open_.bring_up(static_cast<std::size_t>((fraction * (open_.size - 1)) >> 32U));
+    open_.bring_up<ranked>(static_cast<std::size_t>((fraction * (open_.size - 1)) >> 32U));
   }
 
   /// The deepest overlap is pushed last and so visited first: it is where a hit is found soonest.

@@ -107,10 +107,11 @@ struct SlotPairs {
     size += static_cast<std::size_t>(std::popcount(lanes));
   }
   /// Brings another pair to where the next one is taken from.
+  template <bool ranked>
   void bring_up(std::size_t index) noexcept {
     std::swap(of[0][index], of[0][size - 1]);
     std::swap(of[1][index], of[1][size - 1]);
-    if (ranks != nullptr) std::swap(ranks[index], ranks[size - 1]);
+    if constexpr (ranked) std::swap(ranks[index], ranks[size - 1]);
   }
   ODDS_LANES_INLINE SlotPair take() noexcept {
     --size;
