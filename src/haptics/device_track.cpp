@@ -11,6 +11,7 @@
 #include <limits>
 #include <sstream>
 
+#include "mesh/output_file.hpp"
 #include "odds/haptics/settings.hpp"
 
 namespace odds::haptics {
@@ -226,22 +227,21 @@ Result<DeviceTrack> read_track(const std::filesystem::path& path) {
 }
 
 std::optional<Error> write_track(const std::filesystem::path& path, const DeviceTrack& track) {
-  std::ofstream file(path, std::ios::binary);
-  for (std::size_t q = 0; q < quantities; ++q) file << (q > 0 ? "," : "") << quantity_names[q];
-  file << '\n';
+  Result<mesh::OutputFile> opened = mesh::OutputFile::open(path);
+  if (!opened) return opened.error();
+  mesh::OutputFile& file = opened.value();
+  for (std::size_t q = 0; q < quantities; ++q) file.write(fmt::format("{}{}", q > 0 ? "," : "", quantity_names[q]));
+  file.write("\n");
   for (const DeviceState& s : track.states) {
     const Vec3& p = s.position_m;
     const Quat& q = s.orientation;
     const Vec3& v = s.velocity_m_per_s;
     const Vec3& w = s.angular_velocity_rad_per_s;
     // {} of fmt is the shortest text that reads back to the same bits.
-    file << fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", s.t_ns, p.x(), p.y(), p.z(), q.w(), q.x(),
-                        q.y(), q.z(), v.x(), v.y(), v.z(), w.x(), w.y(), w.z(), s.buttons);
+    file.write(fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", s.t_ns, p.x(), p.y(), p.z(), q.w(), q.x(),
+                           q.y(), q.z(), v.x(), v.y(), v.z(), w.x(), w.y(), w.z(), s.buttons));
   }
-  file.flush();
-  if (!file)
-    return Error{path.string(), "", "cannot be written", "check the folder, its permissions and the free space"};
-  return std::nullopt;
+  return file.commit();
 }
 
 }  // namespace odds::haptics

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cerrno>
 #include <charconv>
 #include <cstdint>
-#include <fstream>
 #include <string>
-#include <system_error>
+#include <string_view>
+
+#include "mesh/output_file.hpp"
 
 namespace odds::mesh {
 namespace {
@@ -119,16 +119,11 @@ std::optional<Error> write(const TriangleMesh& mesh, const std::filesystem::path
     return Error{path.string(), "", "cannot tell the format to write from the extension '" + extension + "'",
                  "name the file .obj, .stl or .ply"};
   }
-  errno = 0;
-  std::ofstream file(path, std::ios::binary | std::ios::trunc);
-  if (file) writer(mesh, file);
-  file.close();
-  if (!file) {
-    const int reason = errno;
-    return Error{path.string(), "", "cannot write: " + std::generic_category().message(reason != 0 ? reason : EIO),
-                 "check the folder, its permissions and the free space"};
-  }
-  return std::nullopt;
+  Result<OutputFile> file = OutputFile::open(path);
+  if (!file.ok()) return file.error();
+  OutputStream out(file.value());
+  writer(mesh, out);
+  return file.value().commit();
 }
 
 }  // namespace odds::mesh

@@ -22,11 +22,17 @@ void append(std::string& file, std::uint32_t number) {
   file.append(bytes, sizeof bytes);
 }
 
-void append_chunk(std::string& file, const char* type, std::string content, char padding) {
-  content.append((4 - content.size() % 4) % 4, padding);
-  append(file, static_cast<std::uint32_t>(content.size()));
+constexpr std::size_t header_bytes = 12;
+
+std::size_t chunk_bytes(std::size_t content) { return 8 + (content + 3) / 4 * 4; }
+
+// Precondition: the chunk's size fits 32 bits.
+void append_chunk(std::string& file, const char* type, std::string_view content, char padding) {
+  const std::size_t end = file.size() + chunk_bytes(content.size());
+  append(file, static_cast<std::uint32_t>(chunk_bytes(content.size()) - 8));
   file.append(type, 4);
   file += content;
+  file.resize(end, padding);
 }
 
 }  // namespace
@@ -86,15 +92,22 @@ void GlbBuilder::animate(std::size_t node, const char* path, std::size_t times, 
       {{"sampler", animation["samplers"].size() - 1}, {"target", {{"node", node}, {"path", path}}}});
 }
 
-std::string GlbBuilder::file() {
+Result<std::string> GlbBuilder::file(std::uint64_t most_bytes) {
   json["buffers"] = {{{"byteLength", bytes_.size()}}};
-  std::string chunks;
-  append_chunk(chunks, "JSON", json.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace), ' ');
-  append_chunk(chunks, std::string("BIN\0", 4).c_str(), bytes_, '\0');
+  const std::string text = json.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+  const std::size_t size = header_bytes + chunk_bytes(text.size()) + chunk_bytes(bytes_.size());
+  if (size > most_bytes) {
+    return Error{"", "",
+                 "would have " + std::to_string(size) + " bytes, and a GLB file at most " + std::to_string(most_bytes),
+                 "show a shorter run, or coarser meshes"};
+  }
   std::string file = "glTF";
+  file.reserve(size);
   append(file, 2);
-  append(file, static_cast<std::uint32_t>(12 + chunks.size()));
-  return file + chunks;
+  append(file, static_cast<std::uint32_t>(size));
+  append_chunk(file, "JSON", text, ' ');
+  append_chunk(file, std::string("BIN\0", 4).c_str(), bytes_, '\0');
+  return file;
 }
 
 }  // namespace odds::report

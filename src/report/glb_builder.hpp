@@ -2,10 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <vector>
+
+#include "odds/math/error.hpp"
 
 namespace odds::report {
 
@@ -23,8 +26,11 @@ class GlbBuilder {
   /// One sampler and one channel of the first animation.
   void animate(std::size_t node, const char* path, std::size_t times, std::size_t values, const char* interpolation);
 
-  /// The file: header, JSON, binary, each padded to four bytes.
-  [[nodiscard]] std::string file();
+  /// The greatest size that a GLB file's header can state.
+  static constexpr std::uint64_t largest_file = std::numeric_limits<std::uint32_t>::max();
+
+  /// The file: header, JSON, binary, each padded to four bytes. An error if it had more than `most_bytes`.
+  [[nodiscard]] Result<std::string> file(std::uint64_t most_bytes = largest_file);
 
   nlohmann::ordered_json json;
 

@@ -33,7 +33,7 @@ class Glb {
     if (!(size_m_ > 0.0)) size_m_ = 1.0;
   }
 
-  std::string file() {
+  Result<std::string> file() {
     materials();
     meshes();
     bodies();
@@ -237,7 +237,8 @@ class Glb {
 
 }  // namespace
 
-std::string replay_glb(const RunInfo& info, const RunReplay& replay, std::span<const haptics::TickRecord> ticks) {
+Result<std::string> replay_glb(const RunInfo& info, const RunReplay& replay,
+                               std::span<const haptics::TickRecord> ticks) {
   return Glb(info, replay, ticks).file();
 }
 

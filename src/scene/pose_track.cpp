@@ -3,7 +3,7 @@
 
 #include <fmt/core.h>
 
-#include <fstream>
+#include "mesh/output_file.hpp"
 
 namespace odds::scene {
 
@@ -24,19 +24,18 @@ void PoseTrack::note(std::uint64_t tick, std::int64_t t_ns, const ode::World& wo
 }
 
 std::optional<Error> PoseTrack::write(const std::filesystem::path& path) const {
-  std::ofstream file(path, std::ios::binary);
-  file << "tick,t_ns,body,px_m,py_m,pz_m,qw,qx,qy,qz\n";
+  Result<mesh::OutputFile> opened = mesh::OutputFile::open(path);
+  if (!opened) return opened.error();
+  mesh::OutputFile& file = opened.value();
+  file.write("tick,t_ns,body,px_m,py_m,pz_m,qw,qx,qy,qz\n");
   for (std::size_t i = 0; i < used_; ++i) {
     const Row& row = rows_[i];
     const Vec3& p = row.position_m;
     const Quat& q = row.orientation;
-    file << fmt::format("{},{},{},{},{},{},{},{},{},{}\n", row.tick, row.t_ns, names_[row.body], p.x(), p.y(), p.z(),
-                        q.w(), q.x(), q.y(), q.z());
+    file.write(fmt::format("{},{},{},{},{},{},{},{},{},{}\n", row.tick, row.t_ns, names_[row.body], p.x(), p.y(), p.z(),
+                           q.w(), q.x(), q.y(), q.z()));
   }
-  file.flush();
-  if (!file)
-    return Error{path.string(), "", "cannot be written", "check the folder, its permissions and the free space"};
-  return std::nullopt;
+  return file.commit();
 }
 
 }  // namespace odds::scene

@@ -3,10 +3,11 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
 
+#include "mesh/output_file.hpp"
 #include "odds/query/saved_shape.hpp"
 #include "tool/command.hpp"
-#include "tool/output_file.hpp"
 #include "tool/shape_argument.hpp"
 #include "tool/shared_options.hpp"
 
@@ -22,7 +23,7 @@ struct BuildOptions {
 };
 
 int run(const BuildOptions& options) {
-  if (const auto error = refuse_overwriting(options.out, {options.mesh})) return fail(*error);
+  if (const auto error = mesh::refuse_overwriting(options.out, {options.mesh})) return fail(*error);
   const auto built = load_shape(options.mesh, options.scale, options.shape);
   if (!built.ok()) return fail(built.error());
   const auto shape = options.polygon_free ? built.value()->without_polygons() : built.value();
@@ -30,10 +31,12 @@ int run(const BuildOptions& options) {
   std::error_code unknown;
   const std::uintmax_t bytes = std::filesystem::file_size(options.out, unknown);
   const query::ShapeSummary& summary = shape->summary();
-  fmt::print("{}: {}, {} triangles{}, {:.2f} MiB ({:.0f} bytes a triangle), built in {:.1f} ms\n", options.out,
-             volume::name(shape->volume()), summary.triangles, shape->has_polygons() ? "" : " without their polygons",
-             static_cast<double>(bytes) / 1048576.0,
-             static_cast<double>(bytes) / static_cast<double>(summary.triangles), summary.build_ms);
+  const std::string size =
+      unknown ? ""  // a pipe has none
+              : fmt::format(", {:.2f} MiB ({:.0f} bytes a triangle)", static_cast<double>(bytes) / 1048576.0,
+                            static_cast<double>(bytes) / static_cast<double>(summary.triangles));
+  fmt::print("{}: {}, {} triangles{}{}, built in {:.1f} ms\n", options.out, volume::name(shape->volume()),
+             summary.triangles, shape->has_polygons() ? "" : " without their polygons", size, summary.build_ms);
   return exit_good;
 }
 

@@ -10,12 +10,12 @@
 #include <string>
 #include <type_traits>
 
+#include "mesh/output_file.hpp"
 #include "odds/mesh/faults.hpp"
 #include "odds/mesh/repair.hpp"
 #include "odds/mesh/write.hpp"
 #include "odds/query/shape.hpp"
 #include "tool/command.hpp"
-#include "tool/output_file.hpp"
 #include "tool/progress_line.hpp"
 #include "tool/shape_argument.hpp"
 #include "tool/shared_options.hpp"
@@ -214,7 +214,7 @@ Result<mesh::RepairLog> repair(const Inspection& found, const InspectOptions& op
 }
 
 int run(const InspectOptions& options) {
-  if (const auto error = refuse_overwriting(options.repair_to, {options.mesh})) return fail(*error);
+  if (const auto error = mesh::refuse_overwriting(options.repair_to, {options.mesh})) return fail(*error);
   const Result<Inspection> found = inspect(options);
   if (!found.ok()) return fail(found.error());
   std::optional<mesh::RepairLog> log;

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "tool/output_file.hpp"
+#include "mesh/output_file.hpp"
 
 namespace odds::tool {
 
@@ -14,7 +14,7 @@ std::optional<Error> prepare_folder(const std::filesystem::path& folder, std::in
     std::error_code code;
     std::filesystem::create_directories(each, code);
     if (code) return Error{folder.string(), "", "cannot be made: " + code.message(), "give another --out"};
-    const Result<OutputFile> trial = OutputFile::open((each / "writable").string());
+    const Result<mesh::OutputFile> trial = mesh::OutputFile::open(each / "writable");
     if (!trial) return Error{each.string(), "", trial.error().what, "check its permissions, or give another --out"};
   }
   return std::nullopt;

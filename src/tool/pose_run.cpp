@@ -33,9 +33,9 @@ Result<PoseRun> PoseRun::open(const PoseRunArguments& arguments) {
   Result<std::vector<math::Pose>> poses = read_poses(arguments.poses);
   if (!poses.ok()) return poses.error();
   const auto in_the_way =
-      refuse_overwriting(arguments.out, {arguments.poses, arguments.pair.mesh_a, arguments.pair.mesh_b});
+      mesh::refuse_overwriting(arguments.out, {arguments.poses, arguments.pair.mesh_a, arguments.pair.mesh_b});
   if (in_the_way) return *in_the_way;
-  Result<OutputFile> out = OutputFile::open(arguments.out);
+  Result<mesh::OutputFile> out = mesh::OutputFile::open_or_standard_output(arguments.out);
   if (!out.ok()) return out.error();
   Result<query::Pair> pair = make_pair(arguments.pair);
   if (!pair.ok()) return pair.error();

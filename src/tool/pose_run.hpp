@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "mesh/output_file.hpp"
 #include "odds/math/pose.hpp"
 #include "odds/query/budget.hpp"
 #include "odds/query/pair.hpp"
-#include "tool/output_file.hpp"
 #include "tool/pair_argument.hpp"
 
 namespace odds::tool {
@@ -31,7 +31,7 @@ void add_pose_run_options(CLI::App& command, PoseRunArguments& arguments, const 
 /// Opened in an order that fails early: the poses, the output, then the meshes, whose hierarchies take time.
 struct PoseRun {
   std::vector<math::Pose> poses;
-  OutputFile out;
+  mesh::OutputFile out;
   query::Pair pair;
 
   [[nodiscard]] static Result<PoseRun> open(const PoseRunArguments& arguments);

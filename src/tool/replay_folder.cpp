@@ -1,10 +1,12 @@
 // Writing the replay folder.
 #include "tool/replay_folder.hpp"
 
-#include <fstream>
+#include <fmt/format.h>
+
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "mesh/output_file.hpp"
 #include "odds/haptics/device_track.hpp"
 
 namespace odds::tool {
@@ -43,22 +45,19 @@ ordered_json describe(const scene::Simulation& simulation, const report::RunInfo
 
 std::optional<Error> write_events(const std::filesystem::path& path, const scene::Scene& scene,
                                   const scene::RunOutcome& outcome) {
-  std::ofstream file(path, std::ios::binary);
-  file << "t_ns,event,a,b,approach_m_per_s\n";
+  std::string text = "t_ns,event,a,b,approach_m_per_s\n";
   for (const haptics::ContactEvent& event : outcome.events) {
-    file << event.t_ns << (event.begins ? ",begin," : ",end,") << scene.bodies[event.a.index].name << ','
-         << scene.bodies[event.b.index].name << ',' << event.approach_m_per_s << '\n';
+    text += fmt::format("{},{},{},{},{}\n", event.t_ns, event.begins ? "begin" : "end",
+                        scene.bodies[event.a.index].name, scene.bodies[event.b.index].name, event.approach_m_per_s);
   }
-  file.flush();
-  if (file) return std::nullopt;
-  return Error{path.string(), "", "cannot be written", "check the folder, its permissions and the free space"};
+  return mesh::write_file(path, text);
 }
 
 }  // namespace
 
 std::optional<Error> write_replay_folder(const std::filesystem::path& folder, const scene::Simulation& simulation,
                                          const report::RunInfo& info, const scene::RunOutcome& outcome,
-                                         const std::string& glb) {
+                                         const Result<std::string>& glb) {
   std::error_code code;
   std::filesystem::create_directories(folder, code);
   if (code) return Error{folder.string(), "", "cannot be made: " + code.message(), "give another --out"};
@@ -69,20 +68,12 @@ std::optional<Error> write_replay_folder(const std::filesystem::path& folder, co
   if (simulation.scene().find_effect("events") != nullptr) {
     if (auto error = write_events(folder / "events.csv", simulation.scene(), outcome)) return error;
   }
-  std::ofstream picture(folder / "replay.glb", std::ios::binary);
-  picture << glb;
-  picture.flush();
-  if (!picture) {
-    return Error{(folder / "replay.glb").string(), "", "cannot be written",
-                 "check the folder, its permissions and the free space"};
-  }
-  const std::filesystem::path side_car = folder / "replay.json";
-  std::ofstream file(side_car, std::ios::binary);
-  file << describe(simulation, info).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
-  file.flush();
-  if (!file)
-    return Error{side_car.string(), "", "cannot be written", "check the folder, its permissions and the free space"};
-  return std::nullopt;
+  const std::string side_car =
+      describe(simulation, info).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  if (auto error = mesh::write_file(folder / "replay.json", side_car)) return error;
+  const std::filesystem::path picture = folder / "replay.glb";
+  if (!glb) return Error{picture.string(), "", glb.error().what, glb.error().remedy};
+  return mesh::write_file(picture, glb.value());
 }
 
 }  // namespace odds::tool

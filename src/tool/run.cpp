@@ -118,7 +118,7 @@ int run(const RunArguments& arguments) {
   const report::RunReplay replay = replay_view(simulation, outcome);
   const auto files = report::write_run_report(arguments.out, info, summary, outcome.ticks, &replay);
   if (!files) return fail(files.error());
-  const std::string glb = report::replay_glb(info, replay, outcome.ticks);
+  const Result<std::string> glb = report::replay_glb(info, replay, outcome.ticks);
   if (auto error =
           write_replay_folder(std::filesystem::path(arguments.out) / "replay", simulation, info, outcome, glb)) {
     return fail(*error);

@@ -7,6 +7,7 @@
 
 #include "odds/mesh/made/by_name.hpp"
 #include "odds/report/replay_glb.hpp"
+#include "report/glb_builder.hpp"
 #include "report/made_recording.hpp"
 
 #ifdef ODDS_HAS_TINYGLTF
@@ -45,7 +46,7 @@ std::uint32_t number_at(const std::string& bytes, std::size_t at) {
 
 TEST(ReplayGlb, HasTheLayoutOfItsSpecification) {
   const MadeRecording made = made_recording(1.0);
-  const std::string file = replay_glb(made.info, made_replay(), made.ticks);
+  const std::string file = replay_glb(made.info, made_replay(), made.ticks).value();
   ASSERT_EQ(file.substr(0, 4), "glTF");
   EXPECT_EQ(number_at(file, 4), 2U);
   EXPECT_EQ(number_at(file, 8), file.size());
@@ -72,9 +73,21 @@ TEST(ReplayGlb, AnEmptyRunIsAFileToo) {
   const MadeRecording made;
   RunReplay replay = made_replay();
   replay.frames.clear();
-  const std::string file = replay_glb(made.info, replay, {});
+  const std::string file = replay_glb(made.info, replay, {}).value();
   EXPECT_EQ(number_at(file, 8), file.size());
   EXPECT_EQ(file.find("animations"), std::string::npos);
+}
+
+TEST(ReplayGlb, AFileThatItsHeaderCannotMeasureIsRefused) {
+  GlbBuilder builder;
+  builder.floats(std::vector<float>{1.0F, 2.0F, 3.0F}, 1);
+  const std::size_t size = builder.file().value().size();
+  EXPECT_EQ(size % 4, 0U);
+  EXPECT_EQ(builder.file(size).value().size(), size);
+  const auto refused = builder.file(size - 1);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_FALSE(refused.error().remedy.empty());
+  EXPECT_EQ(GlbBuilder::largest_file, 0xffffffffU);
 }
 
 #ifdef ODDS_HAS_TINYGLTF
@@ -83,7 +96,7 @@ class ReplayGlbRead : public ::testing::Test {
  protected:
   void SetUp() override {
     const MadeRecording made = made_recording(1.0);
-    const std::string file = replay_glb(made.info, made_replay(), made.ticks);
+    const std::string file = replay_glb(made.info, made_replay(), made.ticks).value();
     std::string error;
     std::string warning;
     tinygltf::TinyGLTF reader;

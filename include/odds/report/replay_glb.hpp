@@ -5,6 +5,7 @@
 #include <string>
 
 #include "odds/haptics/tick_record.hpp"
+#include "odds/math/error.hpp"
 #include "odds/report/run_info.hpp"
 #include "odds/report/run_replay.hpp"
 
@@ -14,8 +15,9 @@ namespace odds::report {
 /// for the force on the hand, as long as the largest body for the greatest force; marks for contacts and for the most
 /// probable pairs of cells, hidden (of no size) where there are none. Metres; glTF's y is up, so a node named "world"
 /// turns the scene's z to it. Positions are told from the first body's place, which stands in the "extras" of that node
-/// as origin_m: floats are too coarse far from the origin.
-[[nodiscard]] std::string replay_glb(const RunInfo& info, const RunReplay& replay,
-                                     std::span<const haptics::TickRecord> ticks);
+/// as origin_m: floats are too coarse far from the origin. An error where the file
+/// would be larger than the 4 GiB that the format can state.
+[[nodiscard]] Result<std::string> replay_glb(const RunInfo& info, const RunReplay& replay,
+                                             std::span<const haptics::TickRecord> ticks);
 
 }  // namespace odds::report
