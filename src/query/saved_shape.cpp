@@ -1,16 +1,15 @@
 #include "odds/query/saved_shape.hpp"
 
-#include <unistd.h>
-
 #include <array>
-#include <cerrno>
+#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
+#include "mesh/output_file.hpp"
 #include "query/box_mesh.hpp"
 #include "query/count_bytes.hpp"
 #include "query/shape_data.hpp"
@@ -66,26 +65,41 @@ const char* fault_in(const SavedFacts& facts) {
   return nullptr;
 }
 
+/// Where the file holds what is wrong with the mesh in it: errors of meshes number a vertex or a triangle.
+Error fault_of_mesh(const SavedFile& file, const Error& error) {
+  const auto number_after = [&](std::string_view word) {
+    std::size_t number = 0;
+    const std::string_view place = error.place;
+    if (place.starts_with(word)) std::from_chars(place.data() + word.size(), place.data() + place.size(), number);
+    return number;
+  };
+  const std::string what = "its mesh: " + error.place + (error.place.empty() ? "" : ": ") + error.what;
+  if (!file.has(Section::vertices)) return file.damaged(Section::facts, 0, what);
+  if (error.place.starts_with("triangle ")) return file.damaged(Section::triangles, number_after("triangle "), what);
+  if (error.place.starts_with("vertex ")) return file.damaged(Section::vertices, number_after("vertex "), what);
+  return file.damaged(Section::facts, 0, what);
+}
+
 Result<mesh::TriangleMesh> read_mesh(const SavedFile& file, const SavedFacts& facts) {
   auto text = file.array<char>(Section::name);
   if (!text.ok()) return text.error();
   std::string name(text.value().data(), text.value().size());
-  if (facts.polygons == 0) return box_mesh(vector(facts.lower), vector(facts.upper), std::move(name));
+  if (facts.polygons == 0) {
+    auto box = box_mesh(vector(facts.lower), vector(facts.upper), std::move(name));
+    return box.ok() ? std::move(box) : fault_of_mesh(file, box.error());
+  }
   auto vertices = file.array<Vec3>(Section::vertices);
   if (!vertices.ok()) return vertices.error();
   auto triangles = file.array<mesh::Triangle>(Section::triangles);
   if (!triangles.ok()) return triangles.error();
-  return mesh::TriangleMesh::adopt(std::move(vertices).value(), std::move(triangles).value(), std::move(name),
-                                   vector(facts.lower), vector(facts.upper));
+  auto mesh = mesh::TriangleMesh::adopt(std::move(vertices).value(), std::move(triangles).value(), std::move(name),
+                                        vector(facts.lower), vector(facts.upper));
+  return mesh.ok() ? std::move(mesh) : fault_of_mesh(file, mesh.error());
 }
 
 Result<std::shared_ptr<const mesh::TriangleMesh>> shared_mesh(const SavedFile& file, const SavedFacts& facts) {
   auto mesh = read_mesh(file, facts);
-  if (!mesh.ok()) {
-    const Error& error = mesh.error();
-    return file.damaged(Section::triangles, 0,
-                        "its mesh: " + error.place + (error.place.empty() ? "" : ": ") + error.what);
-  }
+  if (!mesh.ok()) return mesh.error();
   if (facts.polygons != 0 && mesh.value().triangles().size() != facts.triangles) {
     return file.damaged(Section::facts, 0, "mesh and hierarchy differ in the number of triangles");
   }
@@ -159,16 +173,11 @@ void write_shape(const Shape& shape, std::ostream& out) {
 }
 
 std::optional<Error> save_shape(const Shape& shape, const std::filesystem::path& path) {
-  const std::filesystem::path part = path.string() + ".part" + std::to_string(getpid());
-  errno = 0;
-  std::ofstream file(part, std::ios::binary | std::ios::trunc);
-  if (file) write_shape(shape, file);
-  file.close();
-  if (file && std::rename(part.c_str(), path.c_str()) == 0) return std::nullopt;
-  const int reason = errno != 0 ? errno : EIO;
-  std::remove(part.c_str());
-  return Error{path.string(), "", "cannot be written: " + std::generic_category().message(reason),
-               "check that the folder exists, may be written to and has space left"};
+  Result<mesh::OutputFile> file = mesh::OutputFile::open(path);
+  if (!file.ok()) return file.error();
+  mesh::OutputStream out(file.value());
+  write_shape(shape, out);
+  return file.value().commit();
 }
 
 Result<std::shared_ptr<const Shape>> load_shape(const std::filesystem::path& path) {

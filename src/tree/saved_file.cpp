@@ -121,16 +121,9 @@ class Examination {
     if (table.size() != blocks * sizeof(std::uint64_t) || checksum(table) != header_.checksum_of_checksums) {
       return error(header_.checksums_at, "the checksums do not match their own: they were altered");
     }
-    std::atomic<std::size_t> first_bad{blocks};
-    for_parts(blocks, 16, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        if (is_right(data, table, i)) continue;
-        for (std::size_t seen = first_bad; i < seen && !first_bad.compare_exchange_weak(seen, i);) continue;
-        return;
-      }
-    });
-    if (first_bad == blocks) return std::nullopt;
-    const std::size_t begin = header_end + first_bad * SavedHeader::block_bytes;
+    const std::size_t altered = first_bad(blocks, 16, [&](std::size_t i) { return !is_right(data, table, i); });
+    if (altered == blocks) return std::nullopt;
+    const std::size_t begin = header_end + altered * SavedHeader::block_bytes;
     const std::size_t end = std::min<std::size_t>(begin + SavedHeader::block_bytes, header_.checksums_at);
     return error(begin, "the bytes up to " + std::to_string(end) + " do not match their checksum: they were altered");
   }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -12,7 +11,7 @@
 
 #include "odds/math/error.hpp"
 #include "odds/mesh/shared_array.hpp"
-#include "odds/tree/for_parts.hpp"
+#include "tree/first_bad.hpp"
 #include "tree/kept_bytes.hpp"
 #include "tree/record_layout.hpp"
 
@@ -102,19 +101,6 @@ class SavedFile {
 /// What to do about a file that is not as it was written.
 inline constexpr const char* damaged_file_remedy = "copy it again from where it is whole, or make it anew";
 
-/// The first record with a number that is not finite, or `records.size()`.
-template <class T>
-[[nodiscard]] std::size_t first_not_finite(std::span<const T> records) {
-  std::atomic<std::size_t> first{records.size()};
-  for_parts(records.size(), 8192, [&](std::size_t begin, std::size_t end) {
-    std::size_t at = begin;
-    while (at != end && is_finite(records[at])) ++at;
-    if (at == end) return;
-    for (std::size_t seen = first; at < seen && !first.compare_exchange_weak(seen, at);) continue;
-  });
-  return first;
-}
-
 template <class T>
 Result<mesh::SharedArray<T>> SavedFile::array(Section id) const {
   const SectionEntry* const entry = find(id);
@@ -136,7 +122,8 @@ Result<mesh::SharedArray<T>> SavedFile::array(Section id) const {
     // The writer put such records here, at an address that suits them.
     records = {{reinterpret_cast<const T*>(bytes.data()), entry->count}, file_.keeper};
   }
-  const std::size_t bad = first_not_finite(records.span());
+  const auto is_bad = [values = records.span()](std::size_t i) { return !is_finite(values[i]); };
+  const std::size_t bad = first_bad(records.size(), 8192, is_bad);
   if (bad != records.size()) return damaged(id, bad, "a number is not finite");
   return records;
 }

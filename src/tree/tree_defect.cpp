@@ -1,8 +1,9 @@
 #include "tree/tree_defect.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
+
+#include "tree/first_bad.hpp"
 
 namespace odds::tree {
 namespace {
@@ -10,6 +11,7 @@ namespace {
 using Found = std::optional<Defect>;
 
 constexpr std::uint32_t most_leaf_triangles = 16;
+constexpr std::size_t scan_part = 16384;  // records that a processor looks at before it asks for more
 
 /// The greatest magnitude of a coordinate or extent; four times that of a mesh leaves room for all that is derived.
 constexpr auto farthest = static_cast<float>(4.0 * mesh::TriangleMesh::largest_coordinate);
@@ -44,21 +46,8 @@ bool is_sound(const WideNode& node, std::uint32_t lane) noexcept {
   return sound;
 }
 
-/// The first index in [0, count) that `is_bad`, looked for by all processors; `count` if none is.
-template <class IsBad>
-std::size_t first_bad(std::size_t count, const IsBad& is_bad) {
-  std::atomic<std::size_t> first{count};
-  for_parts(count, 16384, [&](std::size_t begin, std::size_t end) {
-    std::size_t at = begin;
-    while (at != end && !is_bad(at)) ++at;
-    if (at == end) return;
-    for (std::size_t seen = first; at < seen && !first.compare_exchange_weak(seen, at);) continue;
-  });
-  return first;
-}
-
 Found find_bad_index(Section section, std::span<const std::uint32_t> indices, std::size_t triangles) {
-  const std::size_t bad = first_bad(indices.size(), [&](std::size_t i) { return indices[i] >= triangles; });
+  const std::size_t bad = first_bad(indices.size(), scan_part, [&](std::size_t i) { return indices[i] >= triangles; });
   if (bad == indices.size()) return std::nullopt;
   return Defect{section, bad, "the index of a triangle is out of range"};
 }
@@ -239,7 +228,7 @@ Found find_defect(const BinaryTree& tree) {
   if (tree.corners.size() != tree.triangles || tree.order.size() != tree.triangles) {
     return Defect{Section::corners, 0, "corners and triangles differ in number"};
   }
-  const std::size_t far = first_bad(tree.corners.size(), [&](std::size_t i) {
+  const std::size_t far = first_bad(tree.corners.size(), scan_part, [&](std::size_t i) {
     const auto out_of_range = [](const Vec3& p) {
       return p.cwiseAbs().maxCoeff() > 2.0 * mesh::TriangleMesh::largest_coordinate;
     };
@@ -251,7 +240,7 @@ Found find_defect(const BinaryTree& tree) {
 
 Found find_defect(const WideTree::Parts& parts) {
   if (auto defect = WideWalk(parts).walk()) return defect;
-  const std::size_t bad = first_bad(parts.leaves.size(), [&](std::size_t i) {
+  const std::size_t bad = first_bad(parts.leaves.size(), scan_part, [&](std::size_t i) {
     const auto& triangle = parts.leaves[i].triangle;
     return *std::max_element(std::begin(triangle), std::end(triangle)) >= parts.triangles;
   });

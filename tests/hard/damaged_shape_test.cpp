@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 
 #include <charconv>
+#include <cmath>
 #include <functional>
 
 #include "support/all_kinds.hpp"
@@ -152,6 +153,33 @@ TEST(DamagedShapes, WithRightChecksumsAreFoundByTheirLinks) {
       with(binary, Section::facts, sizeof(tree::SavedFacts), 0, offsetof(tree::SavedFacts, levels), std::uint64_t{1})};
   int number = 0;
   for (const std::string& bytes : cases) EXPECT_EQ(complaint(bytes), "") << "case " << number++;
+}
+
+TEST(DamagedShapes, NameTheByteOfTheVertexOrTriangleThatIsWrong) {
+  const std::string whole = small_file(volume::Kind::aabb);
+  const std::size_t vertices = testing::offset_of(whole, Section::vertices);
+  const std::size_t triangles = testing::offset_of(whole, Section::triangles);
+  const auto place = [](const std::string& bytes) { return error_of(bytes).place; };
+  const auto at = [](std::size_t byte) { return "byte " + std::to_string(byte); };
+  EXPECT_EQ(place(with(whole, Section::vertices, 24, 2, 8, std::nan(""))), at(vertices + 48));
+  EXPECT_EQ(place(with(whole, Section::vertices, 24, 3, 0, 1e16)), at(vertices + 72));
+  EXPECT_EQ(place(with(whole, Section::triangles, 12, 5, 0, std::uint32_t{4000})), at(triangles + 60));
+  EXPECT_EQ(error_of(with(whole, Section::vertices, 24, 2, 8, std::nan(""))).what, "a number is not finite");
+  const std::string free = saved_bytes(*load(whole).value()->without_polygons());
+  const std::string far =
+      with(free, Section::facts, sizeof(tree::SavedFacts), 0, offsetof(tree::SavedFacts, upper), 1e17);
+  EXPECT_EQ(place(far), at(testing::offset_of(free, Section::facts)));
+}
+
+TEST(DamagedShapes, OfAnotherLayoutKeepTheirRemedy) {
+  std::string bytes = small_file(volume::Kind::aabb);
+  tree::SavedHeader header = testing::header_of(bytes);
+  for (tree::SectionEntry& entry : header.sections) {
+    if (entry.id == static_cast<std::uint32_t>(Section::vertices)) ++entry.layout;
+  }
+  testing::put_header(bytes, header);
+  testing::reseal(bytes);
+  EXPECT_EQ(error_of(bytes).remedy, "make the file anew with this odds");
 }
 
 TEST(DamagedShapes, ThatAreNoFilesAreErrors) {
