@@ -42,6 +42,8 @@ std::string percent(double share) {
 }
 
 std::string utc_time(double epoch_seconds) {
+  constexpr double year_10000 = 253402300800.0;  // a time_t holds it; a NaN or 1e300 from a file it would not
+  if (!(epoch_seconds >= 0.0 && epoch_seconds < year_10000)) return "unknown time";
   const auto seconds = static_cast<std::time_t>(epoch_seconds);
   std::tm parts{};
   char text[40];

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -13,6 +14,7 @@
 #include "odds/report/hgrm.hpp"
 #include "odds/report/hlog.hpp"
 #include "report/made_recording.hpp"
+#include "report/text.hpp"
 
 namespace odds::report {
 namespace {
@@ -231,6 +233,16 @@ TEST_F(RunReport, hostile_names_stay_text) {
   EXPECT_EQ(page.find("<img"), std::string::npos);
   EXPECT_EQ(page.find("dataset.evil=1</script>"), std::string::npos);
   EXPECT_TRUE(nlohmann::json::accept(text_of(files.summary)));
+}
+
+TEST(Texts, times_that_no_clock_shows_are_unknown) {
+  EXPECT_EQ(utc_time(0.0), "1970-01-01 00:00:00 UTC");
+  EXPECT_EQ(utc_time(1714564800.5), "2024-05-01 12:00:00 UTC");
+  EXPECT_EQ(utc_time(253402300799.0), "9999-12-31 23:59:59 UTC");
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const double absurd : {1e300, -1e300, -1.0, 253402300800.0, infinity, -infinity, std::nan("")}) {
+    EXPECT_EQ(utc_time(absurd), "unknown time") << absurd;
+  }
 }
 
 TEST_F(RunReport, page_refers_to_nothing_outside_and_stays_small) {
