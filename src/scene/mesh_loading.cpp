@@ -64,7 +64,7 @@ namespace {
 Result<std::shared_ptr<const query::Shape>> load_saved(const Scene& scene, const Mesh& mesh,
                                                        const std::filesystem::path& path) {
   auto shape = query::load_shape(path);
-  if (!shape) return shape;
+  if (!shape) return at_scene(scene, mesh, shape.error());
   const auto refused = [&](const std::string& what, const std::string& remedy) {
     return at_scene(scene, mesh, {path.string(), "", what, remedy});
   };
@@ -98,7 +98,7 @@ Result<std::shared_ptr<const query::Shape>> load_shape(const Scene& scene, const
     mesh::ReadOptions options;
     options.scale = mesh.scale;
     Result<mesh::TriangleMesh> read = mesh::read(path.value(), options);
-    if (!read) return read.error();
+    if (!read) return at_scene(scene, mesh, read.error());
     triangles = std::make_shared<const mesh::TriangleMesh>(std::move(read).value());
   }
   query::ShapeOptions options;

@@ -9,6 +9,7 @@
 #include "odds/scene/import.hpp"
 #include "odds/scene/scene.hpp"
 #include "tool/command.hpp"
+#include "tool/one_line.hpp"
 
 namespace odds::tool {
 namespace {
@@ -41,10 +42,10 @@ int import_scene(const ImportArguments& arguments) {
   if (!scene) return fail(scene.error());
   std::size_t triangles = 0;
   for (const scene::ImportedMesh& mesh : made.meshes) triangles += mesh.mesh.triangles().size();
-  fmt::print("{}: {} models, {} links, {} joints: {} bodies of {} triangles\n", arguments.description, made.models,
-             made.links, made.joints, made.bodies, triangles);
-  for (const std::string& sentence : made.assumptions) fmt::print("assumed: {}\n", sentence);
-  fmt::print("scene: {}\n", file.string());
+  fmt::print("{}: {} models, {} links, {} joints: {} bodies of {} triangles\n", on_one_line(arguments.description),
+             made.models, made.links, made.joints, made.bodies, triangles);
+  for (const std::string& sentence : made.assumptions) fmt::print("assumed: {}\n", on_one_line(sentence));
+  fmt::print("scene: {}\n", on_one_line(file.string()));
   return exit_good;
 }
 

@@ -145,6 +145,17 @@ TEST_F(Build, DamagedFilesAndBadUsageAreSaidToBeSo) {
   EXPECT_EQ(contents_of(folder_ / "box.odds"), whole);
 }
 
+TEST_F(Build, ScenesNameTheLineThatAsksForABadFile) {
+  build("made:box -o box.odds");
+  folder_.write("short.odds", contents_of(folder_ / "box.odds").substr(0, 1000));
+  folder_.write("bad.obj", "v 0 0 0\nf 1 2 3\n");
+  for (const std::string file : {"short.odds", "bad.obj"}) {
+    folder_.write("scene.toml", "format = \"odds.scene/1\"\n[[mesh]]\nname = \"m\"\nfile = \"" + file +
+                                    "\"\n[[body]]\nname = \"b\"\nmesh = \"m\"\n");
+    expect_refused("explain scene.toml", "scene.toml:2", file + ":");
+  }
+}
+
 TEST_F(Build, LeavesCanGoUntested) {
   const std::string plain = answers("query made:gear made:gear --bv aabb --method exact --contacts 0");
   const std::string untested =

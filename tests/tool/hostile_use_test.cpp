@@ -58,6 +58,9 @@ TEST_F(HostileUse, ALinkGivenAsOutputStaysALink) {
   ASSERT_EQ(ran.status, 0) << ran.errors;
   EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.csv"));
   EXPECT_TRUE(contents_of(folder / "real.csv").starts_with("row,verdict"));
+  ASSERT_EQ(run_tool(folder, "build made:box -o link.csv").status, 0);
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.csv"));
+  EXPECT_NE(contents_of(folder / "real.csv").find("ODDS"), std::string::npos);
 }
 
 TEST_F(HostileUse, AnEmptyNameOfAnOutputIsRefusedAndLeavesNothing) {
@@ -96,6 +99,13 @@ TEST_F(HostileUse, WhatIsQuotedStaysOnOneLineAndCannotSteerTheTerminal) {
   expect_one_line_with(ran, "escape.csv:2: ");
   EXPECT_EQ(ran.errors.find('\x1b'), std::string::npos);
   expect_one_line_with(run_tool(folder, "inspect 'miss\ning.obj'"), "miss\\ning.obj");
+  folder.write("r.urdf",
+               "<robot name=\"r\"><link name=\"l\x1b[31m\"><collision><geometry><sphere radius=\"1\"/></geometry>"
+               "</collision></link></robot>");
+  const Ran imported = run_tool(folder, "import r.urdf --out out");
+  ASSERT_EQ(imported.status, 0) << imported.errors;
+  EXPECT_EQ(imported.output.find('\x1b'), std::string::npos) << imported.output;
+  EXPECT_NE(imported.output.find("'r::l\\x1b[31m' has no mass"), std::string::npos) << imported.output;
 }
 
 TEST_F(HostileUse, AnEndlessOrVeryLongLineOfPosesEndsInAShortError) {

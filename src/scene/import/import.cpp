@@ -5,9 +5,10 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
+#include <map>
 #include <set>
 
+#include "mesh/output_file.hpp"
 #include "odds/mesh/write.hpp"
 #include "odds/scene/scene.hpp"
 #include "scene/import/bodies.hpp"
@@ -16,24 +17,36 @@
 namespace odds::scene {
 namespace {
 
-// A name that is harmless as the name of a file, and like no other.
-std::string file_name(const std::string& name, std::set<std::string>& used) {
-  constexpr std::size_t longest = 80;
-  std::string safe;
-  for (const char c : name) {
-    const bool good = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
-    if (good) {
-      safe += c;
-    } else if (!safe.empty() && safe.back() != '_') {
-      safe += '_';
-    }
-    if (safe.size() >= longest) break;
+// Names that are harmless as names of files, and each like no other.
+class FileNames {
+ public:
+  std::string next(const std::string& name) {
+    const std::string safe = harmless(name);
+    int& number = numbers_.try_emplace(safe, 1).first->second;
+    std::string unique = number == 1 ? safe : fmt::format("{}_{}", safe, number);
+    while (!used_.insert(unique).second) unique = fmt::format("{}_{}", safe, ++number);
+    return unique;
   }
-  if (safe.empty()) safe = "body";
-  std::string unique = safe;
-  for (int i = 2; !used.insert(unique).second; ++i) unique = fmt::format("{}_{}", safe, i);
-  return unique;
-}
+
+ private:
+  static std::string harmless(const std::string& name) {
+    constexpr std::size_t longest = 80;
+    std::string safe;
+    for (const char c : name) {
+      const bool good = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
+      if (good) {
+        safe += c;
+      } else if (!safe.empty() && safe.back() != '_') {
+        safe += '_';
+      }
+      if (safe.size() >= longest) break;
+    }
+    return safe.empty() ? "body" : safe;
+  }
+
+  std::set<std::string> used_;
+  std::map<std::string, int> numbers_;  // the last one given, for each harmless name
+};
 
 std::string toml_text(const std::string& text) {
   std::string quoted = "\"";
@@ -49,10 +62,38 @@ std::string toml_text(const std::string& text) {
   return quoted + "\"";
 }
 
-// Comments must not end before their line does.
+// Bytes of the UTF-8 character that `text` begins with; 0: it begins with none (Unicode 15, table 3-7).
+std::size_t utf8_length(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned char lead = byte(0);
+  if (lead < 0x80) return 1;
+  const std::size_t length = lead >= 0xc2 && lead <= 0xdf ? 2U : lead >= 0xe0 && lead <= 0xef ? 3U : 4U;
+  if (lead < 0xc2 || lead > 0xf4 || text.size() < length) return 0;
+  const unsigned char least = lead == 0xe0 ? 0xa0 : lead == 0xf0 ? 0x90 : 0x80;
+  const unsigned char most = lead == 0xed ? 0x9f : lead == 0xf4 ? 0x8f : 0xbf;
+  if (byte(1) < least || byte(1) > most) return 0;
+  for (std::size_t i = 2; i < length; ++i) {
+    if (byte(i) < 0x80 || byte(i) > 0xbf) return 0;
+  }
+  return length;
+}
+
+// Comments must not end before their line does, and TOML is UTF-8, which names in descriptions and of files need not
+// be.
 std::string comment(const std::string& text) {
   std::string line;
-  for (const char c : text) line += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = utf8_length(std::string_view(text).substr(at));
+    const auto byte = static_cast<unsigned char>(text[at]);
+    if (length == 0) {
+      line += '?';
+    } else if (byte < 0x20 || byte == 0x7f) {
+      line += ' ';
+    } else {
+      line += text.substr(at, length);
+    }
+    at += std::max<std::size_t>(length, 1);
+  }
   return "# " + line + "\n";
 }
 
@@ -119,9 +160,9 @@ ImportedScene make_scene(Description& description, const ImportOptions& options,
     throw ImportFailure{{file, "", "no link has collision geometry", "add a <collision> to a link"}};
   }
   std::string text;
-  std::set<std::string> used;
+  FileNames names;
   for (const RigidBody& body : bodies) {
-    const std::string name = file_name(body.name, used);
+    const std::string name = names.next(body.name);
     Result<mesh::TriangleMesh> mesh =
         mesh::TriangleMesh::make(body.triangles.vertices, body.triangles.triangles, body.name);
     if (!mesh) throw ImportFailure{{file, "", mesh.error().message(), "correct the sizes of this link's shapes"}};
@@ -135,6 +176,8 @@ ImportedScene make_scene(Description& description, const ImportOptions& options,
   for (const std::string& sentence : description.assumptions) head += comment("- " + sentence);
   scene.text = head + fmt::format("format = \"{}\"\n", format_name) + text;
   scene.assumptions = description.assumptions;
+  scene.sources = resources.files();
+  scene.sources.push_back(resources.description());
   scene.models = description.models.size();
   for (const Model& model : description.models) {
     scene.links += model.links.size();
@@ -166,15 +209,25 @@ std::optional<Error> write_imported(const ImportedScene& imported, const std::fi
   std::error_code code;
   std::filesystem::create_directories(folder / "meshes", code);
   if (code) return Error{folder.string(), "", "cannot be made: " + code.message(), "give another folder"};
+  const std::filesystem::path scene = folder / "scene.toml";
+  const auto real = [&](const std::filesystem::path& path) {
+    const std::filesystem::path found = std::filesystem::weakly_canonical(path, code);
+    return code ? path : found;
+  };
+  std::set<std::filesystem::path> sources;
+  for (const std::filesystem::path& source : imported.sources) sources.insert(real(source));
+  const auto is_source = [&](const std::filesystem::path& path) { return sources.contains(real(path)); };
+  const auto refuse = [](const std::filesystem::path& path) {
+    return Error{path.string(), "", "is one of the files that were read, and would be replaced", "give another folder"};
+  };
+  if (is_source(scene)) return refuse(scene);
+  for (const ImportedMesh& mesh : imported.meshes) {
+    if (is_source(folder / mesh.file)) return refuse(folder / mesh.file);
+  }
   for (const ImportedMesh& mesh : imported.meshes) {
     if (auto error = mesh::write(mesh.mesh, folder / mesh.file)) return error;
   }
-  const std::filesystem::path scene = folder / "scene.toml";
-  std::ofstream file(scene, std::ios::binary);
-  file << imported.text;
-  file.flush();
-  if (file) return std::nullopt;
-  return Error{scene.string(), "", "cannot be written", "check the folder, its permissions and the free space"};
+  return mesh::write_file(scene, imported.text);
 }
 
 }  // namespace odds::scene

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "odds/mesh/read.hpp"
+#include "odds/mesh/repair.hpp"
 
 namespace odds::scene {
 namespace {
@@ -99,7 +100,18 @@ std::shared_ptr<const mesh::TriangleMesh> Resources::mesh(const std::string& uri
   }
   Result<mesh::TriangleMesh> read = mesh::read(path);
   if (!read) fail(place, read.error().message(), read.error().remedy.empty() ? "use another mesh" : "");
-  return read_[path] = std::make_shared<const mesh::TriangleMesh>(std::move(read).value());
+  // Each collision takes a copy: a million idle vertices would be a million in each.
+  Result<mesh::Repaired> lean = mesh::repair(
+      read.value(),
+      {.weld = false, .drop_degenerate = false, .drop_duplicates = false, .orient = false, .drop_unused = true});
+  if (!lean) fail(place, lean.error().message(), "use another mesh");
+  return read_[path] = std::make_shared<const mesh::TriangleMesh>(std::move(lean).value().mesh);
+}
+
+std::vector<fs::path> Resources::files() const {
+  std::vector<fs::path> files;
+  for (const auto& [path, mesh] : read_) files.push_back(path);
+  return files;
 }
 
 }  // namespace odds::scene

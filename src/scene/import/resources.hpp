@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "odds/mesh/triangle_mesh.hpp"
 #include "odds/scene/import.hpp"
@@ -21,7 +22,10 @@ class Resources {
   [[nodiscard]] const std::filesystem::path& description() const { return description_; }
   /// In the file's own units. Throws ImportFailure, which names the description, the place of the collision and every
   /// path that was tried.
+  /// Without vertices that no triangle uses.
   std::shared_ptr<const mesh::TriangleMesh> mesh(const std::string& uri, haptics::Place place);
+  /// The mesh files that were read so far.
+  [[nodiscard]] std::vector<std::filesystem::path> files() const;
 
  private:
   [[nodiscard]] std::filesystem::path locate(const std::string& uri, haptics::Place place) const;

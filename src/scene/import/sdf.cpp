@@ -36,6 +36,7 @@ class SdfReader {
         ++description_.left_out[std::string(name)];
       }
     }
+    if (world) leave_out_beside(world);
     if (description_.models.empty()) xml_.fail(sdf, "there is no model", "add a <model>");
     std::size_t link = 0;
     for (Model& model : description_.models) {
@@ -45,6 +46,13 @@ class SdfReader {
   }
 
  private:
+  // One world is read, the first; what else the file holds, other worlds and single models, is counted.
+  void leave_out_beside(pugi::xml_node world) {
+    for (const pugi::xml_node node : xml_.root().children()) {
+      if (node != world && node.type() == pugi::node_element) ++description_.left_out[node.name()];
+    }
+  }
+
   // "__model__" of a scope, or a name in it; "" where nothing is said.
   [[nodiscard]] static std::string scoped(const std::string& scope, std::string_view name) {
     return name == "world" ? std::string() : scope + std::string(name);
@@ -72,12 +80,12 @@ class SdfReader {
     const std::string_view relative_to = node.child("pose").attribute("relative_to").value();
     if (!relative_to.empty()) base = relative_to;
     const std::string frame = base.empty() ? own_model : scoped(scope, base);
-    frames_.add(scope + xml_.text(node, "name"), frame, pose_of(node), node);
+    frames_.add(xml_.name(node, scope), frame, pose_of(node), node);
   }
 
   void read_top_model(pugi::xml_node node) {
     Model model;
-    model.name = xml_.text(node, "name");
+    model.name = xml_.name(node);
     model.is_static = is_true(node.child("static").text().get());
     index_.clear();
     read_model(node, "", "", model, 0);
@@ -91,7 +99,7 @@ class SdfReader {
     if (node.attribute("placement_frame")) {
       xml_.fail(node, "a placement_frame is not understood", "give the pose of the model's own frame");
     }
-    const std::string own = scope + xml_.text(node, "name");
+    const std::string own = xml_.name(node, scope);
     const std::string inside = own + "::";
     const std::string frame = inside + "__model__";
     const std::string_view relative_to = node.child("pose").attribute("relative_to").value();
@@ -101,9 +109,9 @@ class SdfReader {
       const std::string_view name = part.name();
       if (name == "link") {
         add_frame(part, inside, frame, "");
-        index_.emplace(inside + xml_.text(part, "name"), model.links.size());
-        link_frames_.push_back(inside + xml_.text(part, "name"));
         model.links.push_back(read_link(part, inside));
+        index_.emplace(model.links.back().name, model.links.size() - 1);
+        link_frames_.push_back(model.links.back().name);
       } else if (name == "frame") {
         add_frame(part, inside, frame, part.attribute("attached_to").value());
       } else if (name == "joint") {
@@ -119,8 +127,7 @@ class SdfReader {
 
   [[nodiscard]] Link read_link(pugi::xml_node node, const std::string& scope) {
     Link link;
-    const std::string full = scope + xml_.text(node, "name");
-    link.name = full;
+    link.name = xml_.name(node, scope);
     link.place = xml_.place_of(node);
     link.mass_kg = 1.0;  // the format's default
     for (const pugi::xml_node part : node.children()) {
@@ -213,7 +220,7 @@ class SdfReader {
 
   void read_joint(pugi::xml_node node, const std::string& scope, Model& model) {
     Joint joint;
-    joint.name = scope + xml_.text(node, "name");
+    joint.name = xml_.name(node, scope);
     joint.type = xml_.text(node, "type");
     if (std::find(joint_types.begin(), joint_types.end(), joint.type) == joint_types.end()) {
       xml_.fail(node, fmt::format("the joint type '{}' is not known", joint.type),

@@ -21,6 +21,7 @@ class UrdfReader {
     const pugi::xml_node robot = xml_.root();
     model_.name = robot.attribute("name").value();
     if (model_.name.empty()) model_.name = "robot";
+    xml_.check_name(robot, model_.name);
     for (const pugi::xml_node node : robot.children()) {
       const std::string_view name = node.name();
       if (name == "link") {
@@ -52,7 +53,7 @@ class UrdfReader {
 
   void read_link(pugi::xml_node node) {
     Link link;
-    link.name = xml_.text(node, "name");
+    link.name = xml_.name(node);
     link.place = xml_.place_of(node);
     if (!index_.emplace(link.name, model_.links.size()).second) {
       xml_.fail(node, fmt::format("a second link named '{}'", link.name), "give each link a name of its own");
@@ -132,7 +133,7 @@ class UrdfReader {
 
   void read_joint(pugi::xml_node node) {
     Joint joint;
-    joint.name = xml_.text(node, "name");
+    joint.name = xml_.name(node);
     joint.type = xml_.text(node, "type");
     if (std::find(joint_types.begin(), joint_types.end(), joint.type) == joint_types.end()) {
       xml_.fail(node, fmt::format("the joint type '{}' is not known", joint.type),

@@ -14,6 +14,8 @@ namespace {
 
 constexpr std::uintmax_t largest_file = std::uintmax_t{8} << 20;
 constexpr double greatest_number = 1e12;
+// Bodies and frames are named by the models around them too: long names in great number would fill the memory.
+constexpr std::size_t longest_name = 256;
 
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& place, const std::string& what,
                          const std::string& remedy) {
@@ -77,6 +79,20 @@ std::string XmlReader::text(pugi::xml_node node, const char* attribute) const {
   return value;
 }
 
+std::string XmlReader::name(pugi::xml_node node, const std::string& scope) const {
+  const std::string full = scope + text(node, "name");
+  check_name(node, full);
+  return full;
+}
+
+void XmlReader::check_name(pugi::xml_node node, std::string_view full) const {
+  if (full.size() <= longest_name) return;
+  fail(node,
+       fmt::format("a name of {} bytes, those of the models around it included, beginning '{}'", full.size(),
+                   full.substr(0, 40)),
+       fmt::format("give at most {} bytes", longest_name));
+}
+
 pugi::xml_node XmlReader::child(pugi::xml_node node, const char* name) const {
   const pugi::xml_node found = node.child(name);
   if (!found) fail(node, fmt::format("<{}> lacks the element <{}>", node.name(), name), fmt::format("add <{}>", name));
@@ -85,6 +101,21 @@ pugi::xml_node XmlReader::child(pugi::xml_node node, const char* name) const {
 
 std::string XmlReader::child_text(pugi::xml_node node, const char* name) const {
   return child(node, name).text().get();
+}
+
+double XmlReader::number(pugi::xml_node node, std::string_view word, std::string_view what) const {
+  const std::string_view digits = word.starts_with('+') && !word.starts_with("+-") ? word.substr(1) : word;
+  const char* const end = digits.data() + digits.size();
+  double number = 0.0;
+  const auto [rest, status] = std::from_chars(digits.data(), end, number);
+  if (status == std::errc::result_out_of_range && rest == end) {
+    fail(node, fmt::format("{}: '{}' is too small or too large for a double", what, word.substr(0, 40)),
+         "give a number of at most 1e12, and 0 for one below 1e-300");
+  }
+  if (status != std::errc{} || rest != end || !std::isfinite(number)) {
+    fail(node, fmt::format("{}: '{}' is not a finite number", what, word.substr(0, 40)), "give a plain number");
+  }
+  return number;
 }
 
 std::vector<double> XmlReader::numbers(pugi::xml_node node, std::string_view text, std::size_t count,
@@ -98,14 +129,7 @@ std::vector<double> XmlReader::numbers(pugi::xml_node node, std::string_view tex
     }
     std::size_t end = at;
     while (end < text.size() && !blank(text[end])) ++end;
-    const char* begin = text.data() + at + (text[at] == '+' ? 1 : 0);
-    double number = 0.0;
-    const auto [rest, status] = std::from_chars(begin, text.data() + end, number);
-    if (status != std::errc{} || rest != text.data() + end || !std::isfinite(number)) {
-      fail(node,
-           fmt::format("{}: '{}' is not a finite number", what, text.substr(at, std::min<std::size_t>(end - at, 40))),
-           "give a plain number");
-    }
+    const double number = this->number(node, text.substr(at, end - at), what);
     if (std::abs(number) > greatest_number) {
       fail(node, fmt::format("{}: {} is beyond 1e12", what, number), "give a smaller number, in SI units");
     }

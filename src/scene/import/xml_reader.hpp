@@ -31,6 +31,10 @@ class XmlReader {
 
   /// An attribute that must be there and say something.
   [[nodiscard]] std::string text(pugi::xml_node node, const char* attribute) const;
+  /// The attribute "name" behind the names of what it stands in, "" or "outer::inner::"; 256 bytes together.
+  [[nodiscard]] std::string name(pugi::xml_node node, const std::string& scope = "") const;
+  /// Refuses more than 256 bytes.
+  void check_name(pugi::xml_node node, std::string_view full) const;
   /// The text of a child element that must be there.
   [[nodiscard]] std::string child_text(pugi::xml_node node, const char* child) const;
   [[nodiscard]] pugi::xml_node child(pugi::xml_node node, const char* name) const;
@@ -46,6 +50,8 @@ class XmlReader {
   [[nodiscard]] Vec3 positive_vector(pugi::xml_node node, std::string_view text, std::string_view what) const;
 
  private:
+  [[nodiscard]] double number(pugi::xml_node node, std::string_view word, std::string_view what) const;
+
   std::filesystem::path path_;
   std::string text_;
   std::vector<std::size_t> line_ends_;
