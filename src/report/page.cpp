@@ -1,58 +1,25 @@
-// Puts the report page together: one file, no outside reference, scripts allowed by digest only.
+// Puts the report page of a run together.
 #include <fmt/format.h>
 
-#include "report/base64.hpp"
 #include "report/page_assets.hpp"
+#include "report/page_frame.hpp"
 #include "report/page_parts.hpp"
 #include "report/run_files.hpp"
 #include "report/text.hpp"
 
 namespace odds::report {
-namespace {
-
-std::string bytes_of_hex(std::string_view hex) {
-  const auto digit = [](char c) { return c <= '9' ? c - '0' : c - 'a' + 10; };
-  std::string bytes;
-  for (std::size_t i = 0; i + 1 < hex.size(); i += 2) {
-    bytes.push_back(static_cast<char>(digit(hex[i]) * 16 + digit(hex[i + 1])));
-  }
-  return bytes;
-}
-
-std::string digest(const PageScript& script) {
-  return "'sha256-" + base64_encode(bytes_of_hex(script.sha256_hex)) + "'";
-}
-
-std::string head(const RunInfo& info, bool charts, bool replay) {
-  // No script but ours runs, and nothing is fetched, even if some text slipped through the escaping.
-  std::string scripts;
-  if (charts) scripts = fmt::format("{} {}", digest(chart_library()), digest(page_script()));
-  if (replay) scripts += fmt::format(" {} {}", digest(replay_library()), digest(replay_script()));
-  if (scripts.empty()) scripts = "'none'";
-  return fmt::format(
-      "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src {}; style-src "
-      "'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<meta name=\"color-scheme\" content=\"light dark\">\n<title>{} · odds run report</title>\n<style>\n{}</style>\n"
-      "</head>\n<body>\n",
-      scripts, html_escaped(info.scene), page_style());
-}
-
-std::string scripts(const std::string& data) {
-  // The text between the tags must be the digest's text to the byte.
-  return fmt::format(
-      "<script id=\"data\" type=\"application/json\">{}</script>\n<script>{}</script>\n<script>{}</script>\n", data,
-      chart_library().text, page_script().text);
-}
-
-}  // namespace
 
 std::string page(const RunInfo& info, const RunSummary& summary, std::span<const haptics::TickRecord> ticks,
                  const RunReplay* replay) {
   const bool charts = !chart_library_version().empty();
   const bool shows = replay != nullptr && !replay->frames.empty() && !replay_library_version().empty();
-  std::string html = head(info, charts, shows);
+  std::vector<PageScript> chart_scripts;
+  std::vector<PageScript> replay_scripts;
+  if (charts) chart_scripts = {chart_library(), page_script()};
+  if (shows) replay_scripts = {replay_library(), replay_script()};
+  std::vector<PageScript> scripts = chart_scripts;
+  scripts.insert(scripts.end(), replay_scripts.begin(), replay_scripts.end());
+  std::string html = page_head(info.scene + " · odds run report", scripts);
   html += page_head_line(info, summary);
   html += "<main>\n";
   if (!charts) {
@@ -79,12 +46,8 @@ std::string page(const RunInfo& info, const RunSummary& summary, std::span<const
       html_escaped(info.version),
       (charts ? fmt::format(" Charts: Chart.js {}, MIT licence.", chart_library_version()) : "") +
           (shows ? fmt::format(" Replay: three.js r{}, MIT licence.", replay_library_version()) : ""));
-  if (charts) html += scripts(page_data(info, summary, ticks));
-  if (shows) {
-    html += fmt::format(
-        "<script id=\"replay-data\" type=\"application/json\">{}</script>\n<script>{}</script>\n<script>{}</script>\n",
-        replay_data(info, *replay, ticks), replay_library().text, replay_script().text);
-  }
+  if (charts) html += script_elements("data", page_data(info, summary, ticks), chart_scripts);
+  if (shows) html += script_elements("replay-data", replay_data(info, *replay, ticks), replay_scripts);
   return html + "</body>\n</html>\n";
 }
 

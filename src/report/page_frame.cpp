@@ -22,13 +22,21 @@ std::string digest(const PageScript& script) {
   return "'sha256-" + base64_encode(bytes_of_hex(script.sha256_hex)) + "'";
 }
 
-bool charts() { return !chart_library_version().empty(); }
+/// The library and what draws with it; nothing where there is no library.
+std::vector<PageScript> charts_by(const PageScript& script) {
+  if (chart_library_version().empty()) return {};
+  return {chart_library(), script};
+}
 
 }  // namespace
 
-std::string page_begin(const std::string& title, const PageScript& script) {
+std::string page_head(const std::string& title, const std::vector<PageScript>& scripts) {
   // No script but ours runs, and nothing is fetched, even if some text slipped through the escaping.
-  const std::string scripts = charts() ? digest(chart_library()) + " " + digest(script) : "'none'";
+  std::string digests;
+  for (const PageScript& script : scripts) {
+    if (!digests.empty()) digests += ' ';
+    digests += digest(script);
+  }
   return fmt::format(
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src {}; style-src "
@@ -36,16 +44,24 @@ std::string page_begin(const std::string& title, const PageScript& script) {
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<meta name=\"color-scheme\" content=\"light dark\">\n<title>{}</title>\n<style>\n{}</style>\n"
       "</head>\n<body>\n",
-      scripts, html_escaped(title), page_style());
+      digests.empty() ? "'none'" : digests, html_escaped(title), page_style());
+}
+
+std::string script_elements(std::string_view id, const std::string& data, const std::vector<PageScript>& scripts) {
+  std::string elements = fmt::format("<script id=\"{}\" type=\"application/json\">{}</script>\n", id, data);
+  // The text between the tags must be the digest's text to the byte.
+  for (const PageScript& script : scripts) elements += fmt::format("<script>{}</script>\n", script.text);
+  return elements;
+}
+
+std::string page_begin(const std::string& title, const PageScript& script) {
+  return page_head(title, charts_by(script));
 }
 
 std::string page_end(const std::string& data, const PageScript& script) {
-  if (!charts()) return "</body>\n</html>\n";
-  // The text between the tags must be the digest's text to the byte.
-  return fmt::format(
-      "<script id=\"data\" type=\"application/json\">{}</script>\n<script>{}</script>\n<script>{}</script>\n</body>\n"
-      "</html>\n",
-      data, chart_library().text, script.text);
+  const std::vector<PageScript> scripts = charts_by(script);
+  const std::string end = "</body>\n</html>\n";
+  return scripts.empty() ? end : script_elements("data", data, scripts) + end;
 }
 
 }  // namespace odds::report

@@ -1,18 +1,10 @@
-// Draws the charts of a study of accuracy. Data: the JSON in #data; colours: the page's style sheet.
-// Leaves on <html>: data-charts (how many were drawn), data-points (how many points they hold), data-error (a failure).
-'use strict';
+// Draws the charts of a study of accuracy, with parts.js.
 (() => {
-  const root = document.documentElement;
-  window.addEventListener('error', (event) => { root.dataset.error = event.message; });
-  const data = JSON.parse(document.getElementById('data').textContent);
-  const charts = [];
-  const colour = (name) => getComputedStyle(root).getPropertyValue('--' + name).trim();
+  const {data, charts, colour, trim, micro, decade, axis} = page;
   const names = ['blue', 'orange', 'red', 'green', 'purple', 'sky', 'grey'];
   const dashes = [[], [6, 3], [2, 3], [9, 3, 2, 3], [4, 4], [1, 2], [8, 2]];
   const signs = ['circle', 'rect', 'triangle', 'rectRot', 'star', 'crossRot', 'cross'];
 
-  const trim = (value, digits = 3) => String(Number(value.toPrecision(digits)));
-  const micro = (us) => us >= 1e6 ? trim(us / 1e6) + ' s' : us >= 1e3 ? trim(us / 1e3) + ' ms' : trim(us) + ' µs';
   const limit = (kind) => (value) => kind === 'us' ? micro(value) : trim(value, 6);
   const percent = (value) => trim(value) + ' %';
 
@@ -42,10 +34,6 @@
     }
   };
 
-  const axis = (title, more = {}) => ({
-    title: {display: true, text: title, color: colour('quiet')}, grid: {color: colour('grid'), drawBorder: false}, ...more,
-    ticks: {color: colour('quiet'), maxRotation: 0, ...(more.ticks || {})}
-  });
   const line = (label, i, points, more = {}) => ({
     label, data: points, borderColor: colour(names[i % names.length]), backgroundColor: colour(names[i % names.length]),
     borderDash: dashes[i % dashes.length], pointStyle: signs[i % signs.length], borderWidth: 1.8, pointRadius: 4,
@@ -88,8 +76,7 @@
   // Small shares matter, so the axis is logarithmic; none at all stands on its lower end.
   const floor = 0.01;
   const logPercent = (title) => axis(title, {type: 'logarithmic', min: floor, max: 100, ticks: {
-    callback: (value) => Math.abs(Math.log10(value) - Math.round(Math.log10(value))) < 1e-9
-      ? (value === floor ? 'none' : trim(value)) : ''}});
+    callback: (value) => decade(value) ? (value === floor ? 'none' : trim(value)) : ''}});
   const logPoint = (p) => ({...p, y: Math.max(p.y, floor), share: p.y});
 
   function drawShares(kind) {
@@ -159,7 +146,7 @@
     }
     draw('tail', sets, {
       x: limitAxis(kind, amountsOf(kind)), y: axis('time of a query', {type: 'logarithmic', ticks: {
-        callback: (value) => Math.abs(Math.log10(value) % 1) < 1e-9 ? micro(value) : ''}})
+        callback: (value) => decade(value) ? micro(value) : ''}})
     }, {label: (item) => item.dataset.label + ': ' + micro(item.parsed.y)});
   }
 
@@ -177,8 +164,7 @@
     }, of('°'));
   }
 
-  function drawAll() {
-    charts.splice(0).forEach((chart) => chart.destroy());
+  page.show(() => {
     drawShares('us');
     drawShares('work');
     drawThresholds();
@@ -186,11 +172,5 @@
     drawKinds();
     drawTail();
     drawContacts();
-    root.dataset.points = charts.reduce((sum, chart) =>
-      sum + chart.data.datasets.reduce((inner, dataset) => inner + dataset.data.length, 0), 0);
-    root.dataset.charts = charts.length;
-  }
-
-  drawAll();
-  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', drawAll);
+  });
 })();

@@ -1,20 +1,8 @@
-// Draws the charts of a run report. Data: the JSON in #data; colours: the page's style sheet.
-// Leaves on <html>: data-charts (how many were drawn), data-points (how many points they hold), data-error (a failure).
-'use strict';
+// Draws the charts of a run report, with parts.js.
 (() => {
-  const root = document.documentElement;
-  window.addEventListener('error', (event) => { root.dataset.error = event.message; });
-  const data = JSON.parse(document.getElementById('data').textContent);
+  const {data, charts, colour, trim, micro, decade, axis} = page;
   const time = data.time;
-  const charts = [];
-  const colour = (name) => getComputedStyle(root).getPropertyValue('--' + name).trim();
-
-  // Text -----------------------------------------------------------------------------------------------------------
-  const trim = (value, digits) => String(Number(value.toPrecision(digits)));
-  const micro = (us, digits = 3) => us == null ? '–' : us >= 1e6 ? trim(us / 1e6, digits) + ' s'
-    : us >= 1e3 ? trim(us / 1e3, digits) + ' ms' : us >= 1 || us === 0 ? trim(us, digits) + ' µs' : trim(us * 1e3, digits) + ' ns';
   const percentile = (x) => x <= 1 ? '0 %' : String(Number((100 - 100 / x).toFixed(Math.max(0, Math.ceil(Math.log10(x)) - 2)))) + ' %';
-  const decade = (value) => Math.abs(Math.log10(value) - Math.round(Math.log10(value))) < 1e-9;
 
   // Plug-ins ---------------------------------------------------------------------------------------------------------
   /** Dashed lines at limits: [{at, label, axis}]. */
@@ -103,11 +91,6 @@
   const series = (label, name, values, more = {}) => ({
     label, data: values, borderColor: colour(name), backgroundColor: colour(name), borderWidth: 1.5, pointRadius: 0,
     pointHitRadius: 6, ...more
-  });
-  const axis = (title, more = {}) => ({
-    title: {display: true, text: title, color: colour('quiet')}, grid: {color: colour('grid'), drawBorder: false},
-    ticks: {color: colour('quiet'), maxRotation: 0, ...(more.ticks || {})},
-    ...Object.fromEntries(Object.entries(more).filter(([key]) => key !== 'ticks'))
   });
   const logMicro = (title, more = {}) => axis(title, {
     type: 'logarithmic', ticks: {callback: (value) => decade(value) ? micro(value) : ''}, ...more
@@ -242,18 +225,11 @@
       })}});
   }
 
-  function drawAll() {
-    charts.splice(0).forEach((chart) => chart.destroy());
+  page.show(() => {
     drawCurve();
     drawBars();
     drawTimes();
     drawAnswers();
     drawForces();
-    root.dataset.points = charts.reduce((sum, chart) =>
-      sum + chart.data.datasets.reduce((inner, dataset) => inner + dataset.data.length, 0), 0);
-    root.dataset.charts = charts.length;
-  }
-
-  drawAll();
-  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', drawAll);
+  });
 })();

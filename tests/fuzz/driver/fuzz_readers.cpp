@@ -1,18 +1,12 @@
 // odds_fuzz_readers: feeds random and mutated files to the mesh readers and checks memory, results and errors.
-#include <unistd.h>
-
 #include <algorithm>
-#include <charconv>
-#include <csignal>
 #include <cstdio>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <map>
 #include <string>
 
 #include "check_reading.hpp"
 #include "counted_memory.hpp"
+#include "fuzz_run.hpp"
 #include "mutator.hpp"
 
 namespace odds::fuzz {
@@ -21,28 +15,11 @@ namespace {
 constexpr unsigned hang_seconds = 60;  // no input of a few hundred bytes needs a millisecond; a machine may be busy
 constexpr std::size_t bound_constant = std::size_t{64} << 20;
 
-struct Options {
-  std::uint64_t count = 20000;
-  std::uint64_t seed = 1;
-  std::uint64_t first = 0;
-  std::string write_seeds;
-};
-
 struct Totals {
   std::uint64_t meshes = 0, errors = 0, padded = 0;
   std::size_t largest_input = 0, largest_peak = 0;
   std::map<std::string, std::uint64_t> errors_by_kind;
 };
-
-char current[128] = "";
-
-extern "C" void report_hang(int) {
-  const char text[] = "\nhang at input ";
-  (void)!write(STDERR_FILENO, text, sizeof text - 1);
-  (void)!write(STDERR_FILENO, current, std::strlen(current));
-  (void)!write(STDERR_FILENO, "\n", 1);
-  _exit(1);
-}
 
 std::optional<mesh::Format> format_named(const std::string& name) {
   if (name == "obj") return mesh::Format::obj;
@@ -120,52 +97,26 @@ std::string judge(const Input& input, std::uint64_t n, Totals& totals) {
   return "";
 }
 
-bool parse(int argc, char** argv, Options& options) {
-  for (int i = 1; i + 1 < argc; i += 2) {
-    const std::string name = argv[i];
-    const std::string value = argv[i + 1];
-    if (name == "--write-seeds") {
-      options.write_seeds = value;
-      continue;
-    }
-    std::uint64_t* const number = name == "--count"   ? &options.count
-                                  : name == "--seed"  ? &options.seed
-                                  : name == "--first" ? &options.first
-                                                      : nullptr;
-    if (number == nullptr) return false;
-    const auto [end, status] = std::from_chars(value.data(), value.data() + value.size(), *number);
-    if (status != std::errc{} || end != value.data() + value.size()) return false;
-  }
-  return argc % 2 == 1;
-}
-
-void write_seeds(const std::filesystem::path& folder) {
+void write_seeds(const std::string& folder) {
+  std::vector<SeedFile> files;
   for (const Seed& seed : seeds()) {
     for (const std::string& target : {"read_" + seed.format, std::string("read_any")}) {
-      std::filesystem::create_directories(folder / target);
-      std::ofstream(folder / target / (seed.format + "_" + seed.title), std::ios::binary) << seed.content;
+      files.push_back({target, seed.format + "_" + seed.title, seed.content});
     }
   }
+  write_seed_files(folder, files);
 }
 
-int run(const Options& options) {
+int run(const RunOptions& options) {
   Mutator mutator(options.seed);
   Totals totals;
-  std::signal(SIGALRM, report_hang);
-  for (std::uint64_t n = options.first; n < options.first + options.count; ++n) {
-    const Input input = mutator.input(n);
-    if (n % 64 == 0) alarm(hang_seconds);
-    std::snprintf(current, sizeof current, "%llu of seed %llu", static_cast<unsigned long long>(n),
-                  static_cast<unsigned long long>(options.seed));
-    const std::string wrong = judge(input, n, totals);
-    if (!wrong.empty()) {
-      std::ofstream("fuzz_failure.bin", std::ios::binary) << input.content;
-      std::fprintf(stderr, "input %s (%s, written to fuzz_failure.bin): %s\n", current, input.format.c_str(),
-                   wrong.c_str());
-      return 1;
-    }
-  }
-  alarm(0);
+  const bool good = run_inputs(options, hang_seconds, "fuzz_failure.bin", [&](std::uint64_t n) {
+    Input input = mutator.input(n);
+    std::string wrong = judge(input, n, totals);
+    if (!wrong.empty()) wrong = input.format + ": " + wrong;
+    return Judged{std::move(input.content), std::move(wrong)};
+  });
+  if (!good) return 1;
   std::printf("%llu inputs (seed %llu): %llu meshes, %llu errors of %zu kinds, %llu also read with a sliding window\n",
               static_cast<unsigned long long>(options.count), static_cast<unsigned long long>(options.seed),
               static_cast<unsigned long long>(totals.meshes), static_cast<unsigned long long>(totals.errors),
@@ -182,8 +133,8 @@ int run(const Options& options) {
 }  // namespace odds::fuzz
 
 int main(int argc, char** argv) {
-  odds::fuzz::Options options;
-  if (!odds::fuzz::parse(argc, argv, options)) {
+  odds::fuzz::RunOptions options;
+  if (!odds::fuzz::read_options(argc, argv, true, options)) {
     std::fprintf(
         stderr,
         "usage: odds_fuzz_readers [--count N] [--seed S] [--first N]\n"

@@ -1,15 +1,10 @@
 // odds_fuzz_scenes: feeds mutated scene files and device tracks to their readers, and runs what they accept for a few
 // ticks.
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -17,23 +12,16 @@
 #include <string>
 #include <vector>
 
+#include "fuzz_run.hpp"
 #include "odds/haptics/device_track.hpp"
 #include "odds/haptics/replay_device.hpp"
+#include "odds/math/random.hpp"
 #include "odds/scene/simulation.hpp"
 
 namespace odds::fuzz {
 namespace {
 
 constexpr unsigned hang_seconds = 120;
-char current[64] = "";
-
-extern "C" void report_hang(int) {
-  const char text[] = "\nhang at input ";
-  (void)!write(STDERR_FILENO, text, sizeof text - 1);
-  (void)!write(STDERR_FILENO, current, std::strlen(current));
-  (void)!write(STDERR_FILENO, "\n", 1);
-  _exit(1);
-}
 
 constexpr std::array<std::string_view, 22> numbers = {
     "0",   "-1",   "1e-12", "1e-300", "1e12", "1.0001e12", "1e308", "-1e6",  "nan", "inf", "-inf",
@@ -49,40 +37,31 @@ class Mutator {
     }
   }
   std::string input(std::uint64_t n) {
-    state_ = seed_ * 0x9E3779B97F4A7C15ULL + n * 0xD1B54A32D192ED03ULL + 1;
-    std::string text = texts_[below(texts_.size())];
-    for (std::uint64_t i = 1 + below(3); i > 0; --i) mutate(text);
+    random_ = math::Random(seed_, n);
+    std::string text = texts_[random_.below(texts_.size())];
+    for (std::uint64_t i = 1 + random_.below(3); i > 0; --i) mutate(text);
     return text;
   }
 
  private:
-  std::uint64_t random() {
-    state_ += 0x9E3779B97F4A7C15ULL;
-    std::uint64_t x = state_;
-    x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9ULL;
-    x = (x ^ (x >> 27U)) * 0x94D049BB133111EBULL;
-    return x ^ (x >> 31U);
-  }
-  std::uint64_t below(std::uint64_t bound) { return bound == 0 ? 0 : random() % bound; }
-
   void mutate(std::string& text) {
     std::vector<std::string> lines;
     std::istringstream stream(text);
     for (std::string line; std::getline(stream, line);) lines.push_back(line);
     if (lines.empty()) return;
-    const std::size_t at = below(lines.size());
-    switch (below(8)) {
+    const std::size_t at = random_.below(lines.size());
+    switch (random_.below(8)) {
       case 0:
         lines.erase(lines.begin() + static_cast<std::ptrdiff_t>(at));
         break;
       case 1:
-        lines.insert(lines.begin() + static_cast<std::ptrdiff_t>(at), pool_[below(pool_.size())]);
+        lines.insert(lines.begin() + static_cast<std::ptrdiff_t>(at), pool_[random_.below(pool_.size())]);
         break;
       case 2:
-        std::swap(lines[at], lines[below(lines.size())]);
+        std::swap(lines[at], lines[random_.below(lines.size())]);
         break;
       case 3:
-        if (!lines[at].empty()) lines[at][below(lines[at].size())] = static_cast<char>(below(256));
+        if (!lines[at].empty()) lines[at][random_.below(lines[at].size())] = static_cast<char>(random_.below(256));
         break;
       default:
         change_number(lines[at]);
@@ -100,13 +79,13 @@ class Mutator {
       i = end;
     }
     if (found.empty()) return;
-    const auto [begin, length] = found[below(found.size())];
-    line.replace(begin, length, numbers[below(numbers.size())]);
+    const auto [begin, length] = found[random_.below(found.size())];
+    line.replace(begin, length, numbers[random_.below(numbers.size())]);
   }
   std::uint64_t seed_;
   std::vector<std::string> texts_;
   std::vector<std::string> pool_;
-  std::uint64_t state_ = 0;
+  math::Random random_{0};
 };
 
 std::string read_whole(const std::filesystem::path& path) {
@@ -223,61 +202,38 @@ std::string judge_track(const std::string& text, Totals& totals) {
   return "";
 }
 
-int run_all(std::uint64_t count, std::uint64_t seed, std::uint64_t first) {
-  Mutator scenes(seed, scene_texts());
-  Mutator tracks(seed + 1, {track});
+int run_all(const RunOptions& options) {
+  Mutator scenes(options.seed, scene_texts());
+  Mutator tracks(options.seed + 1, {track});
   Totals totals;
-  std::signal(SIGALRM, &report_hang);
-  for (std::uint64_t n = first; n < first + count; ++n) {
-    std::snprintf(current, sizeof current, "%llu", static_cast<unsigned long long>(n));
-    alarm(hang_seconds);
+  const bool good = run_inputs(options, hang_seconds, "fuzz_failure.toml", [&](std::uint64_t n) {
     const bool is_track = n % 4 == 3;
-    const std::string text = is_track ? tracks.input(n) : scenes.input(n);
-    const std::string wrong = is_track ? judge_track(text, totals) : judge_scene(text, totals);
-    if (wrong.empty()) continue;
-    std::ofstream("fuzz_failure.toml", std::ios::binary) << text;
-    std::fprintf(stderr, "input %s (seed %llu, written to fuzz_failure.toml): %s\n", current,
-                 static_cast<unsigned long long>(seed), wrong.c_str());
-    return 1;
-  }
-  alarm(0);
+    std::string text = is_track ? tracks.input(n) : scenes.input(n);
+    std::string wrong = is_track ? judge_track(text, totals) : judge_scene(text, totals);
+    return Judged{std::move(text), std::move(wrong)};
+  });
+  if (!good) return 1;
   std::printf(
       "%llu inputs (seed %llu): %llu scenes accepted, %llu refused with %zu kinds of remedies, %llu ran for 5 ticks, "
       "%llu could not be built, %llu tracks accepted\n",
-      static_cast<unsigned long long>(count), static_cast<unsigned long long>(seed),
+      static_cast<unsigned long long>(options.count), static_cast<unsigned long long>(options.seed),
       static_cast<unsigned long long>(totals.accepted), static_cast<unsigned long long>(totals.refused),
       totals.remedies.size(), static_cast<unsigned long long>(totals.ran),
       static_cast<unsigned long long>(totals.not_built), static_cast<unsigned long long>(totals.tracks));
   return 0;
 }
 
-bool number(const char* text, std::uint64_t& value) {
-  const auto [end, status] = std::from_chars(text, text + std::strlen(text), value);
-  return status == std::errc{} && *end == '\0';
-}
-
 }  // namespace
 }  // namespace odds::fuzz
 
 int main(int argc, char** argv) {
-  std::uint64_t count = 2000;
-  std::uint64_t seed = 1;
-  std::uint64_t first = 0;
-  bool good = argc % 2 == 1;
-  for (int i = 1; i + 1 < argc; i += 2) {
-    const std::string name = argv[i];
-    std::uint64_t* target = name == "--count"   ? &count
-                            : name == "--seed"  ? &seed
-                            : name == "--first" ? &first
-                                                : nullptr;
-    good = good && target != nullptr && odds::fuzz::number(argv[i + 1], *target);
-  }
-  if (!good) {
+  odds::fuzz::RunOptions options;
+  if (!odds::fuzz::read_options(argc, argv, false, options)) {
     std::fprintf(stderr,
                  "usage: odds_fuzz_scenes [--count N] [--seed S] [--first N]\n"
                  "Three of four inputs are scenes, the others device tracks. Exit status 1 and fuzz_failure.toml if "
                  "one fails.\n");
     return 2;
   }
-  return odds::fuzz::run_all(count, seed, first);
+  return odds::fuzz::run_all(options);
 }

@@ -124,17 +124,8 @@ void put(std::string& text, std::size_t at, T value, bool swapped) {
 
 Mutator::Mutator(std::uint64_t seed) : seeds_(seeds()), seed_(seed) {}
 
-std::uint64_t Mutator::random() {  // SplitMix64 (Steele, Lea, Flood 2014)
-  std::uint64_t z = (state_ += 0x9e3779b97f4a7c15u);
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  return z ^ (z >> 31);
-}
-
 Input Mutator::input(std::uint64_t n) {
-  state_ = seed_;
-  state_ = random() ^ n;
-  random();
+  random_ = math::Random(seed_, n);
   Input input;
   if (one_in(20)) {
     input.content = from_nothing();

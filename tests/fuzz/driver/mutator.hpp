@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "odds/math/random.hpp"
 #include "seeds.hpp"
 
 namespace odds::fuzz {
@@ -22,8 +23,7 @@ class Mutator {
   [[nodiscard]] Input input(std::uint64_t n);
 
  private:
-  std::uint64_t random();
-  std::uint64_t below(std::uint64_t bound) { return bound == 0 ? 0 : random() % bound; }
+  std::uint64_t below(std::uint64_t bound) { return bound == 0 ? 0 : random_.below(bound); }
   bool one_in(std::uint64_t n) { return below(n) == 0; }
   void mutate(std::string& text);
   void change_bytes(std::string& text);
@@ -38,7 +38,7 @@ class Mutator {
 
   std::vector<Seed> seeds_;
   std::uint64_t seed_;
-  std::uint64_t state_ = 0;
+  math::Random random_{0};
 };
 
 }  // namespace odds::fuzz
