@@ -54,6 +54,18 @@ class BucketQueue {
   /// The newest pair of the highest bucket. Precondition: !empty().
   [[nodiscard]] const NodePair& top() const noexcept { return entries_[heads_[highest()]].pair; }
 
+  /// Gives `take` up to `most` pairs, in the order in which pop() would.
+  template <class Take>
+  void show_first(std::uint32_t most, const Take& take) const noexcept {
+    for (std::uint64_t mask = mask_; mask != 0 && most != 0;) {
+      const std::uint32_t bucket = 63U - static_cast<std::uint32_t>(std::countl_zero(mask));
+      mask &= ~(std::uint64_t{1} << bucket);
+      for (std::uint32_t slot = heads_[bucket]; slot != none && most != 0; slot = entries_[slot].next, --most) {
+        take(entries_[slot].pair);
+      }
+    }
+  }
+
   /// Removes top(). Precondition: !empty().
   NodePair pop() noexcept {
     const std::uint32_t bucket = highest();

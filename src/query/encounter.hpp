@@ -46,6 +46,8 @@ enum class Progressed : std::uint8_t {
 template <volume::BoundingVolume V>
 class Encounter {
  public:
+  static constexpr Engine engine = Engine::binary;
+
   /// `b_in_a`: of B's hierarchy frame in A's.
   Encounter(const tree::Hierarchy<V>& a, const tree::Hierarchy<V>& b, const math::Pose& b_in_a,
             const Request& request) noexcept
@@ -140,6 +142,15 @@ class Encounter {
   [[nodiscard]] Contact cell_contact(std::uint32_t i, std::uint32_t j, double met_with) const noexcept {
     return met_contact(a_.statistics()[i], b_.statistics()[j], a_.nodes()[i].radius, b_.nodes()[j].radius, b_in_a_,
                        a_.origin(), met_with);
+  }
+
+  /// Cosine between the mean normals of both nodes, times how flat they are: -1 face to face, 1 one behind the other.
+  [[nodiscard]] float facing(std::uint32_t i, std::uint32_t j) const noexcept {
+    return a_.statistics()[i].mean_normal.dot(relative_.rotation * b_.statistics()[j].mean_normal);
+  }
+  /// Sum of the radii of both bounding volumes, metres.
+  [[nodiscard]] double size(std::uint32_t i, std::uint32_t j) const noexcept {
+    return static_cast<double>(a_.nodes()[i].radius) + static_cast<double>(b_.nodes()[j].radius);
   }
 
   [[nodiscard]] const tree::Hierarchy<V>& a() const noexcept { return a_; }

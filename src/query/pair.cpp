@@ -7,6 +7,8 @@
 
 #include "odds/math/tolerances.hpp"
 #include "odds/query/ray.hpp"
+#include "query/answer_odds_table.hpp"
+#include "query/likeliest_place.hpp"
 #include "query/pair_memory.hpp"
 #include "query/rough_contacts.hpp"
 #include "query/search.hpp"
@@ -102,8 +104,9 @@ SearchResult search(const wide::Encounter& encounter, const PosedMeshes& meshes,
   return result;
 }
 
-/// Verdict, basis and probability from what the search found.
-void judge(const SearchResult& result, double candidate_probability, const Request& request, bool any_hit,
+/// Verdict, basis and probability from what the search found; `undecided_probability` is that of a hit if the budget
+/// ended it.
+void judge(const SearchResult& result, double undecided_probability, const Request& request, bool any_hit,
            Answer& answer) noexcept {
   if (any_hit) {
     answer.verdict = Verdict::hit;
@@ -114,7 +117,7 @@ void judge(const SearchResult& result, double candidate_probability, const Reque
     answer.probability = static_cast<double>(result.estimate);
   } else if (result.ended == Progressed::spent) {
     answer.basis = Basis::budget;
-    answer.probability = candidate_probability;
+    answer.probability = undecided_probability;
   } else {
     answer.basis = Basis::proved;
     answer.probability = 0.0;
@@ -247,6 +250,28 @@ wide::Encounter encounter_of(const tree::WideTree& a, const tree::WideTree& b, c
   return wide::Encounter(a, b, meshes, request.estimator);
 }
 
+/// Verdict, probability and place from what the search left undecided, if it did.
+template <class Met>
+void forecast(const Met& met, const SearchResult& result, const Request& request, const Spending& spending,
+              Pair::Implementation& pair) noexcept {
+  Answer& answer = pair.answer;
+  for (const NodePair& open : result.shortlist) met.prefetch(open);
+  double undecided = 0.5;  // of a hit; even odds if nothing is known of what is open
+  float cell_probability = 0.0F;
+  if (!result.shortlist.empty() && pair.hits.empty()) {
+    const NodePair& likeliest = result.shortlist.highest();
+    const AnswerOdds& odds = answer_odds[odds_index(Met::engine, request.estimator, request.method)];
+    cell_probability = met.probability(likeliest.a, likeliest.b);
+    undecided =
+        pair.recalibration(probability_of_hit(odds, remains_of(met, result, spending.so_far(), cell_probability)));
+  }
+  judge(result, undecided, request, !pair.hits.empty(), answer);
+  if (answer.basis == Basis::proved || result.shortlist.empty()) return;
+  answer.has_cell_pair = true;
+  answer.cell_pair = likeliest_place(met, result.shortlist, answer.probability);
+  answer.cell_pair_probability = static_cast<double>(cell_probability);
+}
+
 template <class Tree>
 void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const Request& request,
             Pair::Implementation& pair) noexcept {
@@ -257,16 +282,7 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
   const PosedMeshes meshes(pair.a->mesh(), pair.b->mesh(), a.origin(), b.origin(), pose_b_in_a);
   const auto encounter = encounter_of(a, b, meshes, request);
   const SearchResult result = search(encounter, meshes, request, pair, spending);
-  const double candidate_probability =
-      result.has_candidate && pair.hits.empty()
-          ? static_cast<double>(encounter.probability(result.candidate.a, result.candidate.b))
-          : 0.0;
-  judge(result, candidate_probability, request, !pair.hits.empty(), answer);
-  if (result.has_candidate && answer.basis != Basis::proved) {
-    answer.has_cell_pair = true;
-    answer.cell_pair = encounter.cell_contact(result.candidate.a, result.candidate.b, candidate_probability);
-    answer.cell_pair_probability = candidate_probability;
-  }
+  forecast(encounter, result, request, spending, pair);
   if (!pair.hits.empty() && request.max_contacts > 0) {
     const double most_depth = pair.known_depth.most(meshes.pose(), b.reach());
     make_contacts(meshes, pose_b_in_a, result.ended, most_depth, request, pair, spending);
@@ -302,6 +318,9 @@ Result<Pair> Pair::make(std::shared_ptr<const Shape> a, std::shared_ptr<const Sh
   if (options.slice_capacity < 64 || options.slice_capacity > (1U << 24U)) {
     return Error{"", "", "slice_capacity is " + std::to_string(options.slice_capacity), "choose 64 to 16777216"};
   }
+  if (options.calibration_poses > 1'000'000) {
+    return Error{"", "", "calibration_poses is " + std::to_string(options.calibration_poses), "choose 0 to 1000000"};
+  }
   if (wide::searches_for(options.instruction_set) == nullptr) {
     return Error{"", "", "this processor, or this build, lacks the instructions asked for",
                  "choose InstructionSet::best"};
@@ -314,6 +333,10 @@ Result<Pair> Pair::make(std::shared_ptr<const Shape> a, std::shared_ptr<const Sh
   first.max_contacts = 0;
   static_cast<void>(pair.run({}, first));
   pair.reset();
+  if (options.calibration_poses > 0) {
+    pair.implementation_->recalibration = learn_recalibration(pair, options.calibration_poses);
+    pair.reset();
+  }
   return pair;
 }
 

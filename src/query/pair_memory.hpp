@@ -7,6 +7,7 @@
 #include "odds/query/pair.hpp"
 #include "query/bottom_slice.hpp"
 #include "query/known_depth.hpp"
+#include "query/recalibration.hpp"
 #include "query/wide/searches.hpp"
 
 namespace odds::query {
@@ -35,6 +36,7 @@ struct Pair::Implementation {
   PatchBuilder patches;
   const wide::Searches* wide;
   bool polygon_free;                      ///< every query has to be
+  Recalibration recalibration;            ///< of stated probabilities
   Vec3 previous_normal = Vec3::Zero();    ///< of the last run's first contact, in A's frame; zero: none
   Vec3 previous_position = Vec3::Zero();  ///< of that contact
   KnownDepth known_depth;

@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "query/encounter.hpp"
+#include "query/shortlist.hpp"
 
 namespace odds::query {
 
@@ -15,15 +16,20 @@ struct SearchResult {
   Progressed ended = Progressed::finished;
   bool estimated_hit = false;  ///< k_min pairs reached p_min, or a polygon-free leaf pair was judged a hit
   float estimate = 0.0F;       ///< the greatest probability that such a pair had
-  bool has_candidate = false;  ///< pairs were left undecided; the likeliest of them:
-  NodePair candidate;
+  std::uint32_t open = 0;      ///< pairs of nodes that were left undecided
+  Shortlist shortlist;         ///< the likeliest of them
 };
 
-/// The likeliest undecided pair seen.
+/// Notes a pair that is left undecided. The likeliest come first; what finds no room is only counted.
 inline void consider(SearchResult& result, const NodePair& pair) noexcept {
-  if (result.has_candidate && result.candidate.rank >= pair.rank) return;
-  result.has_candidate = true;
-  result.candidate = pair;
+  ++result.open;
+  result.shortlist.add(pair);
+}
+
+/// Notes all pairs that wait in the queue.
+inline void consider(SearchResult& result, const BucketQueue& queue) noexcept {
+  result.open += queue.size();
+  queue.show_first(Shortlist::capacity, [&](const NodePair& pair) { result.shortlist.add(pair); });
 }
 
 /// Depth-first from `start` until done, `wanted` hits or the budget's end. Without estimates, so the fastest way to a
@@ -38,10 +44,11 @@ void search_depth_first(const Encounter<V>& encounter, NodePair start, std::uint
     result.ended = how;
     if (how != Progressed::spent) return;
     constexpr std::size_t estimated_at_most = 4;  // each estimate costs about as much as a node pair
+    result.open += static_cast<std::uint32_t>(size);
     for (std::size_t n = 0; n < estimated_at_most && n < size; ++n) {
       NodePair& pair = stack[size - 1 - n];
       pair.rank = encounter.rank(pair.a, pair.b);
-      consider(result, pair);
+      result.shortlist.add(pair);
     }
   };
   while (size != 0) {
@@ -94,7 +101,7 @@ class TimeCriticalSearch {
       }
       visit(queue_.pop());
     }
-    if (result_.ended != Progressed::finished && !queue_.empty()) consider(result_, queue_.top());
+    if (result_.ended != Progressed::finished) consider(result_, queue_);
     return result_;
   }
 

@@ -40,6 +40,8 @@ class Spending {
     cost_.triangle_pairs += n;
     note(n);
   }
+  /// What was spent so far; times are filled in by `close`.
+  [[nodiscard]] const Cost& so_far() const noexcept { return cost_; }
   void note_full_queue() noexcept { ++cost_.queue_full; }
 
   /// From now on the search ends early enough for contacts to be made from what it found.
@@ -88,7 +90,7 @@ class Spending {
   }
 
   /// What the writing of the answer takes at most, after the search has stopped.
-  static constexpr std::int64_t writing_reserve_ns = 400;
+  static constexpr std::int64_t writing_reserve_ns = 600;
   /// Of the time, for the search, once a hit was found and contacts are wanted.
   static constexpr double search_share = 0.5;
 

@@ -43,6 +43,7 @@ struct AccuracyOptions {
   std::uint32_t k_min = 10;
   int contacts = 1;
   std::uint64_t poses = 500;
+  std::uint32_t calibration_poses = 0;
   std::uint64_t seed = 1;
   std::string shard = "0/1";
   std::vector<std::string> merge;
@@ -160,6 +161,7 @@ Result<report::Study> measure(const AccuracyOptions& options) {
   s.procedure = options.procedure;
   s.seed = options.seed;
   s.poses_per_band = options.poses;
+  s.calibration_poses = options.calibration_poses;
   s.trials = trials_of(options);
   const realtime::Fitness fitness = realtime::probe_fitness();
   study.machine_fit = fitness.fit;
@@ -226,6 +228,7 @@ void add_limits(CLI::App& command, AccuracyOptions& options) {
   command.add_option("--k-min", options.k_min, "pairs of nodes with such a probability that stop a query, >= 1")
       ->capture_default_str()
       ->check(whole_number(1, std::numeric_limits<std::uint32_t>::max()));
+  add_calibration_option(command, options.calibration_poses);
   command.add_option("--contacts", options.contacts, "most contacts of an answer, 0 .. 8")
       ->capture_default_str()
       ->check(whole_number(0, 8));
@@ -235,10 +238,10 @@ void add_poses(CLI::App& command, AccuracyOptions& options) {
   command.add_option("--poses", options.poses, "poses for each distance, 1 .. 10000000")
       ->capture_default_str()
       ->check(whole_number(1, report::most_poses_per_band));
-  const std::map<std::string, report::Procedure> procedures = {{"distance", report::Procedure::distance},
-                                                               {"tumbling", report::Procedure::tumbling}};
+  std::map<std::string, report::Procedure> procedures;
+  for (const report::Procedure procedure : report::procedures) procedures.emplace(name(procedure), procedure);
   add_choice(command, "--procedure", options.procedure, procedures,
-             "distance (default): any direction, fixed surface distances; tumbling: about z, along x");
+             "distance (default): any direction, fixed surface distances; tumbling: about z, along x; nested: B in A");
   command.add_option("--seed", options.seed, "of the poses' random numbers")
       ->capture_default_str()
       ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()));

@@ -72,9 +72,9 @@ query::Request request_of(const Trial& trial, const report::StudySettings& setti
   return request;
 }
 
-/// What a caller would push with: the first contact, or the place where the surfaces most probably meet.
+/// What a caller would push with: the first contact, or the place where the surfaces most probably meet, whose depth is
+/// an expectation, so that the verdict does not matter.
 const Contact* contact_of(const query::Answer& answer) {
-  if (answer.verdict != Verdict::hit) return nullptr;
   if (!answer.contacts.empty()) return &answer.contacts.front();
   return answer.has_cell_pair ? &answer.cell_pair : nullptr;
 }
@@ -90,6 +90,7 @@ Sample sample_of(const query::Answer& answer, double wall_us, const std::vector<
   sample.stall_us = answer.cost.stall_us;
   sample.net_overshoot_us = answer.cost.net_overshoot_us;
   const Contact* given = contact_of(answer);
+  if (given != nullptr) sample.push = given->depth * given->normal;
   if (given != nullptr && !truth.empty()) sample.contact = report::contact_error(*given, truth, size);
   return sample;
 }
@@ -100,7 +101,9 @@ std::optional<Error> carry_out(const StudyShapes& shapes, query::EstimatorKind e
   if (auto error = make_poses(shapes, study)) return error;
   ContactSets truth;
   if (auto error = find_truth(shapes, study, truth)) return error;
-  auto made = query::Pair::make(shapes.a, shapes.b);
+  query::PairOptions pair_options;
+  pair_options.calibration_poses = study.settings.calibration_poses;
+  auto made = query::Pair::make(shapes.a, shapes.b, pair_options);
   if (!made.ok()) return made.error();
   query::Pair& pair = made.value();
   const realtime::Clock clock = realtime::fastest_clock();

@@ -37,6 +37,30 @@ std::string line(const Trial& trial, const AccuracyRow& r) {
                                                  : fmt::format("{:>8}", "-"));
 }
 
+/// Where contacts were said to be, of the proved and the unproved answers, in the band that forces are judged by.
+std::string places(const report::Study& study, const std::vector<AccuracyRow>& rows) {
+  constexpr std::string_view band = "shallow 1 %";
+  std::string text;
+  for (const AccuracyRow& r : rows) {
+    if (r.scope != "band" || r.band != band || r.contact.count == 0) continue;
+    if (text.empty())
+      text = fmt::format("\nplaces of contact at {}, medians: off by, normal off by; without proof\n", band);
+    text += fmt::format("{:<22}{:>8}{:>8.2f}%{:>7.1f} deg", study.settings.trials[r.trial].label(), r.contact.count,
+                        100.0 * r.contact.p50.position, r.contact.p50.normal_deg);
+    if (r.fallback.count > 0) {
+      text += fmt::format("{:>8}{:>8.2f}%{:>7.1f} deg", r.fallback.count, 100.0 * r.fallback.p50.position,
+                          r.fallback.p50.normal_deg);
+    }
+    text += "\n";
+  }
+  for (const report::PushSweep& s : push_sweeps(study)) {
+    if (s.band != band) continue;
+    text += fmt::format("way of the push over all {} to the truth, of its length: {:.2f} (p90 {:.2f}), {} poses\n",
+                        s.kind == Trial::Kind::time ? "times" : "work units", s.p50, s.p90, s.count);
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string accuracy_table(const report::Study& study, const std::vector<AccuracyRow>& rows) {
@@ -51,6 +75,7 @@ std::string accuracy_table(const report::Study& study, const std::vector<Accurac
     const bool last = &row == &rows.back() || (&row + 1)->scope == "all" || (&row + 1)->trial != row.trial;
     if (last) text += "\n";
   }
+  text += places(study, rows);
   text +=
       "wrong: verdicts against the truth, f.hit and f.miss their two kinds (counts); P said and hits: of the answers "
       "without proof;\nover: net overshoot in us, p99; last columns: share wrong by distance\n";

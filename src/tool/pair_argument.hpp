@@ -15,6 +15,7 @@ struct PairArgument {
   double scale_a = 1.0;  ///< metres per unit of the file
   double scale_b = 1.0;
   ShapeWish shape;
+  query::PairOptions options;
 };
 
 /// Reads and builds both, with progress, or loads what was saved; one shape for a mesh that is given twice.

@@ -119,6 +119,7 @@ void add_query(CLI::App& app, Action& action) {
   command->add_option("--k-min", options->request.k_min, "such pairs that end the query with an estimated hit, >= 1")
       ->check(whole_number(1, std::numeric_limits<std::uint32_t>::max()));
   command->add_option("--contacts", options->request.max_contacts, "most contacts, 0 .. 8")->check(whole_number(0, 8));
+  add_calibration_option(*command, options->run.pair.options.calibration_poses);
   command->add_flag("--polygon-free", options->request.polygon_free,
                     "judge leaves by probability, not by their triangles");
   command->add_flag("!--no-leaf-test", options->request.leaf_test,

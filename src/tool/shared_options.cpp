@@ -19,6 +19,13 @@ std::optional<Number> number_in(const std::string& text) {
 
 }  // namespace
 
+void add_calibration_option(CLI::App& command, std::uint32_t& poses) {
+  command
+      .add_option("--calibrate", poses,
+                  "poses on which the pair first learns how true its odds are; 0 (default): the general odds")
+      ->check(whole_number(0, 1'000'000));
+}
+
 CLI::Validator positive_and_finite() {
   return CLI::Validator(
       [](const std::string& text) {

@@ -10,6 +10,9 @@
 
 namespace odds::tool {
 
+/// Adds --calibrate: see query::PairOptions::calibration_poses.
+void add_calibration_option(CLI::App& command, std::uint32_t& poses);
+
 /// Accepts finite numbers > 0.
 CLI::Validator positive_and_finite();
 /// Accepts numbers in (0, 1].

@@ -160,6 +160,43 @@ TEST(AccuracyPoses, TumblingTurnsAboutZAndMovesAlongX) {
   }
 }
 
+TEST(AccuracyFigures, APushThatGrowsStraightGoesNoDetour) {
+  Study study;
+  study.settings.trials = {{Trial::Kind::work, 64, 1.0}, {Trial::Kind::work, 64, 0.9}, {Trial::Kind::work, 128, 1.0}};
+  PoseTruth hit;
+  hit.hit = true;
+  hit.contacts = 1;
+  hit.deepest_contact.normal = Vec3::UnitX();
+  hit.deepest_contact.depth = 2.0;
+  study.poses = {hit, hit};
+  study.samples.assign(3, std::vector<Sample>(2));
+  study.samples[0][0].push = Vec3(0.5, 0, 0);
+  study.samples[1][0].push = Vec3(0, 99, 0);  // with a threshold: another question
+  study.samples[2][0].push = Vec3(1.5, 0, 0);
+  study.samples[0][1].push = Vec3(0, 1, 0);  // aside, back, and to the truth: 1 + 1 + 2
+  const std::vector<PushSweep> sweeps = push_sweeps(study);
+  ASSERT_EQ(sweeps.size(), 1U);
+  EXPECT_EQ(sweeps[0].kind, Trial::Kind::work);
+  EXPECT_EQ(sweeps[0].count, 2U);
+  EXPECT_DOUBLE_EQ(sweeps[0].p50, 1.0);
+  EXPECT_DOUBLE_EQ(sweeps[0].p90, 2.0);
+}
+
+TEST(AccuracyPoses, NestedBeginInsideAndMoveOutwards) {
+  const auto a = shape_of("made:bumpy_sphere:frequency=10");
+  const auto b = shape_of("made:bumpy_sphere:frequency=10,scale=0.985");
+  PoseMaker maker = PoseMaker::make(a, b, Procedure::nested, 5).value();
+  query::Pair pair = query::Pair::make(a, b).value();
+  const auto bands = pose_bands(Procedure::nested);
+  for (std::uint64_t i = 0; i < 5 * bands.size(); ++i) {
+    const MadePose made = maker.pose(i).value();
+    EXPECT_LT(made.translation.norm(), 0.1 * maker.size());
+    EXPECT_GT(made.rotation.w(), 1.0 - 1e-5);
+    EXPECT_EQ(pair.run(made.pose(), {}).verdict == query::Verdict::hit, made.offset < 0.0) << bands[made.band].name;
+  }
+  EXPECT_FALSE(PoseMaker::make(a, a, Procedure::nested, 5).value().pose(0).ok());  // as large as its room
+}
+
 TEST(AccuracyPoses, RefuseOtherEnginesAndBodiesThatNeverMeet) {
   const auto boxes = shape_of("made:box", volume::Kind::obb);
   EXPECT_FALSE(PoseMaker::make(boxes, boxes, Procedure::distance, 1).ok());

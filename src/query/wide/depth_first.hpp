@@ -95,7 +95,8 @@ class DepthFirst {
       const SlotPair pair = leaf_pairs_.take();
       if (visit_leaves<L>(task_, pair.of[0], pair.of[1])) continue;
       if (task_.result.ended == Progressed::spent) {
-        consider(task_.result, {pair.of[0], pair.of[1], 0.0F});
+        leave_open<L>(task_, {pair.of[0], pair.of[1], unranked});
+        leave_rest_open();
       }
       return false;
     }
@@ -104,13 +105,20 @@ class DepthFirst {
 
   void stop() noexcept {
     task_.result.ended = Progressed::spent;
-    consider_newest(leaf_pairs_);
-    consider_newest(open_);
+    leave_rest_open();
   }
 
   /// Of what is open the newest lies deepest, in trees and in the other body.
-  void consider_newest(const SlotPairs& pairs) noexcept {
-    if (pairs.size != 0) consider(task_.result, {pairs.of[0][pairs.size - 1], pairs.of[1][pairs.size - 1], 0.0F});
+  void leave_rest_open() noexcept {
+    constexpr std::size_t most_ranked = 4;  // each costs as much as opening a pair
+    const std::uint32_t open = task_.result.open + static_cast<std::uint32_t>(leaf_pairs_.size + open_.size);
+    for (const SlotPairs* pairs : {&leaf_pairs_, &open_}) {
+      for (std::size_t i = pairs->size; i-- != 0 && pairs->size - i <= most_ranked;) {
+        const float rank = ranked && pairs == &open_ ? pairs->ranks[i] : unranked;
+        leave_open<L>(task_, {pairs->of[0][i], pairs->of[1][i], rank});
+      }
+    }
+    task_.result.open = open;
   }
 
   static constexpr std::size_t leaf_batch = 1;

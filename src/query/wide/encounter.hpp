@@ -7,6 +7,7 @@
 #include "odds/query/request.hpp"
 #include "odds/tree/wide_tree.hpp"
 #include "odds/volume/aabb.hpp"
+#include "query/bucket_queue.hpp"
 #include "query/node_odds.hpp"
 #include "query/posed_meshes.hpp"
 #include "query/wide/triangle_kernel.hpp"
@@ -18,6 +19,8 @@ struct NearestTask;
 /// Made once per query. Both trees and the posed meshes must outlive it.
 class Encounter {
  public:
+  static constexpr Engine engine = Engine::wide;
+
   Encounter(const tree::WideTree& a, const tree::WideTree& b, const PosedMeshes& meshes,
             EstimatorKind estimator) noexcept;
 
@@ -55,6 +58,15 @@ class Encounter {
   /// See query::Encounter.
   [[nodiscard]] float rank(Slot slot_a, Slot slot_b) const noexcept;
   [[nodiscard]] float probability(Slot slot_a, Slot slot_b) const noexcept;
+  /// Asks the caches for the statistics of both slots.
+  void prefetch(const NodePair& pair) const noexcept {
+    for (const auto* at : {&a_.statistics(pair.a), &b_.statistics(pair.b)}) {
+      __builtin_prefetch(at);
+      __builtin_prefetch(reinterpret_cast<const char*>(at) + 64);
+    }
+  }
+  [[nodiscard]] float facing(Slot slot_a, Slot slot_b) const noexcept;
+  [[nodiscard]] double size(Slot slot_a, Slot slot_b) const noexcept;
   [[nodiscard]] Contact cell_contact(Slot slot_a, Slot slot_b, double probability) const noexcept;
 
  private:

@@ -28,21 +28,30 @@ class Incremental {
       if (!front_.expired(i)) {
         if (i % entries_between_polls == entries_between_polls - 1 && !task_.spending.may_go_on()) {
           task_.result.ended = Progressed::spent;
-          return weigh_rest(i);
+          return leave_rest_open(i + 1, kept);
         }
         continue;
       }
-      if (!may_go_on()) return weigh_rest(i);
+      if (!may_go_on()) return leave_rest_open(i, kept);
       KineticFront::Entry& entry = front_.entry(i);
       if (met_.are_leaves(entry.a, entry.b)) {
         front_.set_expiry(i, KineticFront::at_once);
         double expiry = KineticFront::at_once;
-        if (!test_leaves(entry.a, entry.b, expiry)) return;
+        if (!test_leaves(entry.a, entry.b, expiry)) return leave_rest_open(i + 1, kept);
         front_.set_expiry(i, expiry);
       } else {
         front_.set_expiry(i, open(entry));
       }
-      if (!go_down()) return;
+      if (!go_down()) return leave_rest_open(i + 1, kept);
+    }
+  }
+
+  /// Notes what has expired and was not looked at, among the next of the `kept` ones.
+  void leave_rest_open(std::uint32_t from, std::uint32_t kept) noexcept {
+    if (task_.result.ended != Progressed::spent) return;
+    const std::uint32_t end = std::min(kept, from + entries_between_polls);
+    for (std::uint32_t i = from; i < end && !task_.result.shortlist.full(); ++i) {
+      if (front_.expired(i)) leave_open<L>(task_, {front_.entry(i).a, front_.entry(i).b, unranked});
     }
   }
 
@@ -52,16 +61,6 @@ class Incremental {
     }
     task_.result.ended = Progressed::spent;
     return false;
-  }
-
-  /// The budget has ended in the scan: the first of the next few that would have been looked at is the candidate.
-  void weigh_rest(std::uint32_t from) noexcept {
-    const std::uint32_t end = std::min(front_.size(), from + entries_between_polls);
-    for (std::uint32_t i = from; i < end; ++i) {
-      if (!front_.expired(i)) continue;
-      consider(task_.result, {front_.entry(i).a, front_.entry(i).b, 0.0F});
-      return;
-    }
   }
 
   /// Puts the lanes that overlap and were not open on the stack; returns when the others must be looked at again.
@@ -100,9 +99,12 @@ class Incremental {
 
   bool leave() noexcept {
     if (task_.result.ended == Progressed::spent) {
-      if (stack_.size != 0) {
-        consider(task_.result, {stack_.of[0][stack_.size - 1], stack_.of[1][stack_.size - 1], 0.0F});
+      constexpr std::size_t most_ranked = 4;  // each costs as much as opening a pair
+      const std::uint32_t open = task_.result.open + static_cast<std::uint32_t>(stack_.size);
+      for (std::size_t i = stack_.size; i-- != 0 && stack_.size - i <= most_ranked;) {
+        leave_open<L>(task_, {stack_.of[0][i], stack_.of[1][i], unranked});
       }
+      task_.result.open = open;
     }
     while (stack_.size != 0) {
       const SlotPair pair = stack_.take();
@@ -114,7 +116,7 @@ class Incremental {
   bool test_leaves(Slot a, Slot b, double& expiry) noexcept {
     const std::size_t hits = task_.hits.size();
     if (!visit_leaves<L>(task_, a, b)) {
-      if (task_.result.ended == Progressed::spent) consider(task_.result, {a, b, 0.0F});
+      if (task_.result.ended == Progressed::spent) leave_open<L>(task_, {a, b, unranked});
       return false;
     }
     if (task_.hits.size() == hits) {

@@ -93,6 +93,27 @@ ODDS_LANES_INLINE Expanded<L> expand(const Encounter& met, const SlotPair& pair)
   return expanded;
 }
 
+/// Stands for a rank that nobody has computed: above all others.
+inline constexpr float unranked = 1e30F;
+
+/// The rank of one pair, as `expand` gives it to lanes.
+template <class L>
+float rank_of(const Encounter& met, Slot slot_a, Slot slot_b) noexcept {
+  const WideNode& node = met.nodes(0)[slot_a / wide_lanes];
+  const TurnedBox box = turn(met.nodes(1)[slot_b / wide_lanes], slot_b % wide_lanes, met.turn_into(0));
+  alignas(64) float rank[wide_lanes];
+  L::store(rank, ranks<L>(node, box, gaps<L>(node, box, met.turn_into(0))));
+  return rank[slot_a % wide_lanes];
+}
+
+/// Notes a pair that the search leaves undecided, with its rank.
+template <class L>
+void leave_open(Task& task, NodePair pair) noexcept {
+  const bool by_depth = pair.rank < unranked && task.request.estimator == EstimatorKind::kinematic;
+  if (!by_depth && !task.result.shortlist.full()) pair.rank = rank_of<L>(task.encounter, pair.a, pair.b);
+  consider(task.result, pair);
+}
+
 /// Open pairs, newest last, each side's slots in one array.
 struct SlotPairs {
   Slot* of[2];

@@ -35,8 +35,14 @@ class TimeCritical {
       }
       visit(task_.queue.pop());
     }
-    if (task_.result.ended != Progressed::spent) return;
-    if (!task_.queue.empty()) consider(task_.result, task_.queue.top());
+    if (task_.result.ended != Progressed::finished && task_.hits.empty()) consider_queue();
+  }
+
+  void consider_queue() noexcept {
+    SearchResult& result = task_.result;
+    const std::uint32_t open = result.open + task_.queue.size();
+    task_.queue.show_first(Shortlist::capacity, [&](const NodePair& pair) { leave_open<L>(task_, pair); });
+    result.open = open;
   }
 
   /// False: the search has ended.
@@ -54,7 +60,7 @@ class TimeCritical {
 
   void keep(const SlotPairs& pairs) noexcept {
     for (std::size_t i = 0; i < pairs.size; ++i) {
-      const NodePair pair{pairs.of[0][i], pairs.of[1][i], pairs.ranks == nullptr ? highest_rank : pairs.ranks[i]};
+      const NodePair pair{pairs.of[0][i], pairs.of[1][i], pairs.ranks == nullptr ? unranked : pairs.ranks[i]};
       add(pair, log_cost.of[std::min<std::uint32_t>(levels_left(pair), log_cost.most)]);
       if (finished_) return;
     }
@@ -73,7 +79,7 @@ class TimeCritical {
     const std::uint32_t levels = levels_left(pair);
     if (levels == 0) return visit_leaf_pair(pair);
     if (!task_.spending.allows(wide_lanes)) {
-      consider(task_.result, pair);
+      leave_open<L>(task_, pair);
       return finish(Progressed::spent);
     }
     const Expanded<L> expanded = expand<L, true>(met_, {{pair.a, pair.b}});
@@ -123,17 +129,17 @@ class TimeCritical {
       task_.result.estimate = std::max(task_.result.estimate, p);
       if (p >= 0.5F) {
         task_.result.estimated_hit = true;
-        consider(task_.result, pair);
+        leave_open<L>(task_, pair);
         finish(Progressed::enough);
       }
       return;
     }
     if (!task_.spending.allows(wide_lanes)) {
-      consider(task_.result, pair);
+      leave_open<L>(task_, pair);
       return finish(Progressed::spent);
     }
     if (visit_leaves<L>(task_, pair.a, pair.b)) return;
-    if (task_.result.ended == Progressed::spent) consider(task_.result, pair);
+    if (task_.result.ended == Progressed::spent) leave_open<L>(task_, pair);
     finished_ = true;
   }
 
@@ -144,7 +150,7 @@ class TimeCritical {
         task_.result.estimate = std::max(task_.result.estimate, p);
         if (++sure_pairs_ >= task_.request.k_min) {
           task_.result.estimated_hit = true;
-          consider(task_.result, pair);
+          leave_open<L>(task_, pair);
           return finish(Progressed::enough);
         }
       }
@@ -158,7 +164,7 @@ class TimeCritical {
     task_.spending.note_full_queue();
     if (task_.request.polygon_free) {
       task_.result.estimate = std::max(task_.result.estimate, met_.probability(pair.a, pair.b));
-      consider(task_.result, pair);
+      leave_open<L>(task_, pair);
       return;
     }
     DepthFirst<L>::run(task_, pair.a, pair.b);

@@ -125,11 +125,15 @@ Sample read_sample(Fields& fields) {
   sample.wall_us = fields.number<double>();
   sample.stall_us = fields.number<double>();
   sample.net_overshoot_us = fields.number<double>();
-  if (fields.next_is_empty()) return sample;
-  sample.contact.emplace();
-  sample.contact->position = fields.number<double>();
-  sample.contact->normal_deg = fields.number<double>();
-  sample.contact->depth = fields.number<double>();
+  if (fields.next_is_empty()) {
+    for (int i = 0; i < 3; ++i) (void)fields.word();
+  } else {
+    sample.contact.emplace();
+    sample.contact->position = fields.number<double>();
+    sample.contact->normal_deg = fields.number<double>();
+    sample.contact->depth = fields.number<double>();
+  }
+  sample.push = fields.vector();
   return sample;
 }
 

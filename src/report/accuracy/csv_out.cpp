@@ -39,7 +39,7 @@ std::string answers_csv(const Study& study) {
   const auto out = std::back_inserter(text);
   fmt::format_to(out,
                  "pose,limit,amount,p_min,verdict,basis,probability,node_pairs,triangle_pairs,wall_us,stall_us,"
-                 "net_overshoot_us,position_error,normal_error_deg,depth_error\n");
+                 "net_overshoot_us,position_error,normal_error_deg,depth_error,push_x,push_y,push_z\n");
   for (std::size_t t = 0; t < study.settings.trials.size(); ++t) {
     const Trial& trial = study.settings.trials[t];
     for (std::size_t i = 0; i < study.poses.size(); ++i) {
@@ -48,10 +48,11 @@ std::string answers_csv(const Study& study) {
                      trial.amount, trial.p_min, name(s.verdict), name(s.basis), s.probability, s.node_pairs,
                      s.triangle_pairs, s.wall_us, s.stall_us, s.net_overshoot_us);
       if (s.contact) {
-        fmt::format_to(out, ",{},{},{}\n", s.contact->position, s.contact->normal_deg, s.contact->depth);
+        fmt::format_to(out, ",{},{},{}", s.contact->position, s.contact->normal_deg, s.contact->depth);
       } else {
-        fmt::format_to(out, ",,,\n");
+        fmt::format_to(out, ",,,");
       }
+      fmt::format_to(out, ",{},{},{}\n", s.push.x(), s.push.y(), s.push.z());
     }
   }
   return fmt::to_string(text);
@@ -66,7 +67,9 @@ std::string rows_csv(const Study& study, const std::vector<AccuracyRow>& rows) {
       "wrong_low,wrong_high,false_hits,false_hits_low,false_hits_high,false_misses,false_misses_low,"
       "false_misses_high,unproved,mean_probability,observed,observed_low,observed_high,calibration_error,brier,"
       "brier_reliability,brier_resolution,brier_uncertainty,brier_within_bins,brier_all,contacts,position_error_p50,"
-      "position_error_p90,normal_error_deg_p50,normal_error_deg_p90,depth_error_p50,depth_error_p90,wall_us_p50,"
+      "position_error_p90,normal_error_deg_p50,normal_error_deg_p90,depth_error_p50,depth_error_p90,fallbacks,"
+      "fallback_position_error_p50,fallback_position_error_p90,fallback_normal_error_deg_p50,"
+      "fallback_normal_error_deg_p90,fallback_depth_error_p50,fallback_depth_error_p90,wall_us_p50,"
       "wall_us_p99,wall_us_p999,wall_us_max,net_overshoot_us_p50,net_overshoot_us_p99,net_overshoot_us_p999,"
       "net_overshoot_us_max\n");
   const auto write = [&](auto... values) { ((fmt::format_to(out, ",{}", values)), ...); };
@@ -84,6 +87,8 @@ std::string rows_csv(const Study& study, const std::vector<AccuracyRow>& rows) {
           q.reliability, q.resolution, q.uncertainty, q.within_bins, r.brier_all);
     write(r.contact.count, r.contact.p50.position, r.contact.p90.position, r.contact.p50.normal_deg,
           r.contact.p90.normal_deg, r.contact.p50.depth, r.contact.p90.depth);
+    write(r.fallback.count, r.fallback.p50.position, r.fallback.p90.position, r.fallback.p50.normal_deg,
+          r.fallback.p90.normal_deg, r.fallback.p50.depth, r.fallback.p90.depth);
     write(r.wall_us.p50, r.wall_us.p99, r.wall_us.p999, r.wall_us.max, r.net_overshoot_us.p50, r.net_overshoot_us.p99,
           r.net_overshoot_us.p999, r.net_overshoot_us.max);
     text.push_back('\n');

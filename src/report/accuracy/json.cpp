@@ -35,6 +35,7 @@ Json settings_json(const StudySettings& s) {
           {"procedure", name(s.procedure)},
           {"seed", s.seed},
           {"poses_per_band", s.poses_per_band},
+          {"calibration_poses", s.calibration_poses},
           {"trials", trials}};
 }
 
@@ -59,7 +60,7 @@ Trial::Kind kind_from(const std::string& limit) {
 }
 
 Procedure procedure_from(const std::string& text) {
-  for (const Procedure procedure : {Procedure::distance, Procedure::tumbling}) {
+  for (const Procedure procedure : procedures) {
     if (text == name(procedure)) return procedure;
   }
   throw std::invalid_argument("procedure");
@@ -83,6 +84,7 @@ StudySettings settings_from(const Json& json) {
   s.procedure = procedure_from(json.at("procedure").get<std::string>());
   json.at("seed").get_to(s.seed);
   json.at("poses_per_band").get_to(s.poses_per_band);
+  s.calibration_poses = json.value("calibration_poses", 0U);  // older studies have none
   for (const Json& trial : json.at("trials")) {
     s.trials.push_back({kind_from(trial.at("limit").get<std::string>()), trial.at("amount").get<double>(),
                         trial.at("p_min").get<double>()});
@@ -142,6 +144,8 @@ Json row_json(const Study& study, const AccuracyRow& r) {
           {"brier_all", r.brier_all},
           {"contact_errors",
            {{"count", r.contact.count}, {"p50", contact_json(r.contact.p50)}, {"p90", contact_json(r.contact.p90)}}},
+          {"fallback_errors",
+           {{"count", r.fallback.count}, {"p50", contact_json(r.fallback.p50)}, {"p90", contact_json(r.fallback.p90)}}},
           {"wall_us", tail_json(r.wall_us)},
           {"net_overshoot_us", tail_json(r.net_overshoot_us)}};
 }
@@ -151,6 +155,10 @@ Json row_json(const Study& study, const AccuracyRow& r) {
 std::string study_json(const Study& study, const std::vector<AccuracyRow>& rows) {
   Json figures = Json::array();
   for (const AccuracyRow& row : rows) figures.push_back(row_json(study, row));
+  Json sweeps = Json::array();
+  for (const PushSweep& s : push_sweeps(study)) {
+    sweeps.push_back({{"limit", name(s.kind)}, {"band", s.band}, {"count", s.count}, {"p50", s.p50}, {"p90", s.p90}});
+  }
   const Json json{{"format", format},
                   {"headline", headline(study, rows)},
                   {"version", study.version},
@@ -159,7 +167,8 @@ std::string study_json(const Study& study, const std::vector<AccuracyRow>& rows)
                   {"settings", settings_json(study.settings)},
                   {"shard", {{"number", study.shard.number}, {"of", study.shard.of}}},
                   {"machine", {{"fit", study.machine_fit}, {"note", study.machine_note}}},
-                  {"rows", figures}};
+                  {"rows", figures},
+                  {"push_sweeps", sweeps}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";  // a file's name may not be UTF-8
 }
 

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-#include "odds/math/random.hpp"
+#include "query/first_touch.hpp"
 
 namespace odds::report {
 namespace {
@@ -34,7 +34,18 @@ constexpr std::array<PoseBand, 7> tumbling_bands{{{"overlap 0-10 %", "overlap", 
                                                   {"apart 20-40 %", "apart", 0.2, 0.4},
                                                   {"apart 40-100 %", "apart", 0.4, 1.0}}};
 
+constexpr std::array<PoseBand, 8> nested_bands{{{"near 0.2 %", "near", 0.002, 0.002},
+                                                {"near 0.1 %", "near", 1e-3, 1e-3},
+                                                {"touch +1e-4", "touch", 1e-4, 1e-4},
+                                                {"touch +1e-6", "touch", 1e-6, 1e-6},
+                                                {"touch -1e-6", "touch", -1e-6, -1e-6},
+                                                {"touch -1e-4", "touch", -1e-4, -1e-4},
+                                                {"shallow 0.1 %", "shallow", -1e-3, -1e-3},
+                                                {"shallow 0.2 %", "shallow", -0.002, -0.002}}};
+
 constexpr double step_share = 1.0 / 64.0;
+constexpr double nested_step_share = 1.0 / 4096.0;
+constexpr double greatest_nested_turn = 0.2 * std::numbers::pi / 180.0;
 constexpr double most_steps = 4096.0;
 constexpr double touch_precision = 1e-12;    ///< of the size
 constexpr double distance_precision = 1e-3;  ///< of the distance
@@ -45,12 +56,21 @@ Vec3 center_of(const mesh::TriangleMesh& mesh) { return 0.5 * (mesh.lower() + me
 }  // namespace
 
 std::string_view name(Procedure procedure) noexcept {
-  return procedure == Procedure::distance ? "distance" : "tumbling";
+  switch (procedure) {
+    case Procedure::distance:
+      return "distance";
+    case Procedure::tumbling:
+      return "tumbling";
+    case Procedure::nested:
+      break;
+  }
+  return "nested";
 }
 
 std::span<const PoseBand> pose_bands(Procedure procedure) noexcept {
   if (procedure == Procedure::distance) return distance_bands;
-  return tumbling_bands;
+  if (procedure == Procedure::tumbling) return tumbling_bands;
+  return nested_bands;
 }
 
 math::Pose MadePose::pose() const {
@@ -101,22 +121,33 @@ bool PoseMaker::collides(const Line& line, double distance) {
   return pair_.run(at(line, distance - line.touch).pose(), request).verdict == query::Verdict::hit;
 }
 
+PoseMaker::Line PoseMaker::draw_line(math::Random& random) const {
+  Line line;
+  if (procedure_ == Procedure::tumbling) {
+    const double half_angle = std::numbers::pi * random.uniform();
+    line.rotation = Quat(std::cos(half_angle), 0.0, 0.0, std::sin(half_angle));
+    return line;
+  }
+  if (procedure_ == Procedure::nested) {
+    const double angle = greatest_nested_turn * random.uniform();
+    line.rotation = Quat(Eigen::AngleAxisd(angle, random.direction()));
+  } else {
+    line.rotation = random.rotation();
+  }
+  line.direction = random.direction();
+  return line;
+}
+
 bool PoseMaker::find_touch(Line& line) {
   const double far = 1.01 * reach_;
-  const double step = std::max(step_share * size_, far / most_steps);
-  double clear = far;
-  double hit = far;
-  while (hit > 0.0 && !collides(line, hit)) {
-    clear = hit;
-    hit -= step;
-  }
-  if (hit <= 0.0) return false;  // passed through a hole
-  while (clear - hit > touch_precision * size_) {
-    const double middle = 0.5 * (clear + hit);
-    if (middle <= hit || middle >= clear) break;  // neighbouring doubles
-    (collides(line, middle) ? hit : clear) = middle;
-  }
-  line.touch = clear;
+  const bool nested = procedure_ == Procedure::nested;
+  const double step = nested ? nested_step_share * size_ : std::max(step_share * size_, far / most_steps);
+  const double begin = nested ? 0.0 : far;
+  const double end = nested ? -far : 0.0;
+  const auto touch = query::first_touch(begin, end, step, touch_precision * size_,
+                                        [&](double distance) { return collides(line, distance); });
+  if (!touch) return false;  // passed through a hole, or there was no room to begin in
+  line.touch = *touch;
   return true;
 }
 
@@ -124,14 +155,7 @@ Result<PoseMaker::Line> PoseMaker::line(std::uint64_t number) {
   if (number == line_number_) return line_;
   math::Random random(seed_, number);
   for (int tried = 0; tried < most_lines_tried; ++tried) {
-    Line line;
-    if (procedure_ == Procedure::distance) {
-      line.rotation = random.rotation();
-      line.direction = random.direction();
-    } else {
-      const double half_angle = std::numbers::pi * random.uniform();
-      line.rotation = Quat(std::cos(half_angle), 0.0, 0.0, std::sin(half_angle));
-    }
+    Line line = draw_line(random);
     if (!find_touch(line)) continue;
     line_number_ = number;
     line_ = line;
@@ -140,7 +164,9 @@ Result<PoseMaker::Line> PoseMaker::line(std::uint64_t number) {
   return Error{pair_.b().mesh().name(), "",
                "never touched " + pair_.a().mesh().name() + " on " + std::to_string(most_lines_tried) +
                    " random lines through both centres",
-               "give meshes that can meet, in the same unit (see --scale-a, --scale-b)"};
+               procedure_ == Procedure::nested
+                   ? "give a B that fits into A about A's centre, such as a copy in which it is a little smaller"
+                   : "give meshes that can meet, in the same unit (see --scale-a, --scale-b)"};
 }
 
 double PoseMaker::travel_to_distance(const Line& line, double distance) const {

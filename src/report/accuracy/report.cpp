@@ -81,6 +81,7 @@ std::string replay_command(const StudySettings& s, const Trial& trial, const std
   if (s.scale_b != 1.0) text += fmt::format(" --scale-b {}", s.scale_b);
   if (trial.kind == Trial::Kind::exact) return text + " --method exact";
   text += fmt::format(" {} {}", trial.kind == Trial::Kind::time ? "--budget-us" : "--work", trial.amount);
+  if (s.calibration_poses > 0) text += fmt::format(" --calibrate {}", s.calibration_poses);
   if (trial.p_min < 1.0) text += fmt::format(" --p-min {} --k-min {}", trial.p_min, s.k_min);
   return text;
 }

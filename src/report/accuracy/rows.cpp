@@ -36,6 +36,20 @@ ContactFigures figures_of(const std::vector<ContactError>& errors) {
   return figures;
 }
 
+/// Length of the way that a pose's push takes from nothing over all limits of one kind to the truth.
+double way_of_push(const Study& study, Trial::Kind kind, std::size_t pose) {
+  Vec3 last = Vec3::Zero();
+  double way = 0.0;
+  for (std::size_t t = 0; t < study.settings.trials.size(); ++t) {
+    const Trial& trial = study.settings.trials[t];
+    if (trial.kind != kind || trial.p_min < 1.0) continue;
+    way += (study.samples[t][pose].push - last).norm();
+    last = study.samples[t][pose].push;
+  }
+  const query::Contact& truth = study.poses[pose].deepest_contact;
+  return way + (truth.depth * truth.normal - last).norm();
+}
+
 template <class Chosen>
 AccuracyRow row_of(const Study& study, std::size_t trial, const Chosen& chosen) {
   AccuracyRow row;
@@ -44,6 +58,7 @@ AccuracyRow row_of(const Study& study, std::size_t trial, const Chosen& chosen) 
   std::vector<double> wall;
   std::vector<double> overshoot;
   std::vector<ContactError> contacts;
+  std::vector<ContactError> fallbacks;
   double squares = 0.0;
   for (std::size_t i = 0; i < study.poses.size(); ++i) {
     if (!chosen(study.poses[i].pose.band)) continue;
@@ -62,13 +77,16 @@ AccuracyRow row_of(const Study& study, std::size_t trial, const Chosen& chosen) 
     if (sample.basis != query::Basis::proved) unproved.push_back({sample.probability, truth});
     wall.push_back(sample.wall_us);
     overshoot.push_back(sample.net_overshoot_us);
-    if (sample.contact) contacts.push_back(*sample.contact);
+    if (!sample.contact) continue;
+    contacts.push_back(*sample.contact);
+    if (sample.basis != query::Basis::proved) fallbacks.push_back(*sample.contact);
   }
   row.unproved = judge_forecasts(unproved);
   if (row.poses > 0) row.brier_all = squares / static_cast<double>(row.poses);
   row.wall_us = tail_of(std::move(wall));
   if (study.settings.trials[trial].kind == Trial::Kind::time) row.net_overshoot_us = tail_of(std::move(overshoot));
   row.contact = figures_of(contacts);
+  row.fallback = figures_of(fallbacks);
   return row;
 }
 
@@ -105,6 +123,27 @@ std::vector<AccuracyRow> accuracy_rows(const Study& study) {
     }
   }
   return rows;
+}
+
+std::vector<PushSweep> push_sweeps(const Study& study) {
+  const auto bands = pose_bands(study.settings.procedure);
+  std::vector<PushSweep> sweeps;
+  for (const Trial::Kind kind : {Trial::Kind::time, Trial::Kind::work}) {
+    const auto& trials = study.settings.trials;
+    if (std::none_of(trials.begin(), trials.end(), [&](const Trial& one) { return one.kind == kind; })) continue;
+    for (std::uint32_t band = 0; band < bands.size(); ++band) {
+      std::vector<double> sums;
+      for (std::size_t i = 0; i < study.poses.size(); ++i) {
+        const PoseTruth& truth = study.poses[i];
+        const double length = truth.contacts > 0 ? truth.deepest_contact.depth : 0.0;
+        if (truth.pose.band == band && length > 0.0) sums.push_back(way_of_push(study, kind, i) / length);
+      }
+      if (sums.empty()) continue;
+      std::sort(sums.begin(), sums.end());
+      sweeps.push_back({kind, std::string(bands[band].name), sums.size(), at_share(sums, 0.5), at_share(sums, 0.9)});
+    }
+  }
+  return sweeps;
 }
 
 ContactError contact_error(const query::Contact& given, std::span<const query::Contact> found, double size) {

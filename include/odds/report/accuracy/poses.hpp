@@ -1,6 +1,7 @@
 // Poses of B in A at chosen distances from first touch, for studies of accuracy.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -8,6 +9,7 @@
 
 #include "odds/math/error.hpp"
 #include "odds/math/pose.hpp"
+#include "odds/math/random.hpp"
 #include "odds/query/pair.hpp"
 #include "odds/query/shape.hpp"
 
@@ -16,8 +18,10 @@ namespace odds::report {
 enum class Procedure : std::uint8_t {
   distance,  ///< random rotation and direction, then a fixed distance (Trenkel, Weller and Zachmann 2007)
   tumbling,  ///< A fixed, B rotated about z at random, moved along x (Klein and Zachmann 2003)
+  nested,    ///< B inside A, both centres in one place, turned by up to 0.2 degrees, then moved outwards to first touch
 };
 
+inline constexpr std::array<Procedure, 3> procedures = {Procedure::distance, Procedure::tumbling, Procedure::nested};
 [[nodiscard]] std::string_view name(Procedure procedure) noexcept;
 
 /// Poses that are judged together. Numbers are parts of the size, see PoseMaker::size. Above 0 B is clear of its first
@@ -44,8 +48,8 @@ struct MadePose {
 
 /// Makes pose number i from (seed, i) alone: index % bands is its band, index / bands numbers the random line along
 /// which B comes. Bodies come towards each other's centres (of their bounding boxes); the first touch is found by steps
-/// of 1/64 of the size and bisection with the exact search, so a feature thinner than a step may be passed over. One
-/// maker per thread.
+/// of 1/64 of the size (nested: 1/4096) and bisection with the exact search, so a feature thinner than a step may be
+/// passed over. One maker per thread.
 class PoseMaker {
  public:
   /// Both shapes must be of the wide engine; anything else is refused.
@@ -62,10 +66,11 @@ class PoseMaker {
   struct Line {  ///< B's path: rotation, unit direction away from A, distance of the centres at the last clear place
     Quat rotation = Quat::Identity();
     Vec3 direction = Vec3::UnitX();
-    double touch = 0.0;
+    double touch = 0.0;  ///< nested: minus that distance, and the direction is that back to A's centre
   };
   PoseMaker(query::Pair pair, Procedure procedure, std::uint64_t seed);
   [[nodiscard]] Result<Line> line(std::uint64_t number);
+  [[nodiscard]] Line draw_line(math::Random& random) const;
   [[nodiscard]] bool find_touch(Line& line);
   [[nodiscard]] double travel_to_distance(const Line& line, double distance) const;
   [[nodiscard]] MadePose at(const Line& line, double travel) const;

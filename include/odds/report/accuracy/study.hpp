@@ -51,6 +51,7 @@ struct StudySettings {
   Procedure procedure = Procedure::distance;
   std::uint64_t seed = 0;
   std::uint64_t poses_per_band = 0;
+  std::uint32_t calibration_poses = 0;  ///< see query::PairOptions
   std::vector<Trial> trials;
 
   friend bool operator==(const StudySettings&, const StudySettings&) = default;
@@ -91,7 +92,9 @@ struct Sample {
   double wall_us = 0.0;
   double stall_us = 0.0;
   double net_overshoot_us = 0.0;
-  std::optional<ContactError> contact;  ///< if the answer and the truth are hits with a contact
+  std::optional<ContactError>
+      contact;               ///< if it gives a place, be it of a proof or the likeliest, and the truth has one
+  Vec3 push = Vec3::Zero();  ///< depth times normal of that place, metres; zero if there is none
 };
 
 /// Poses in ascending index; samples[t][i] answers poses[i] under settings.trials[t].
@@ -131,6 +134,7 @@ struct AccuracyRow {
   double brier_all = 0.0;          ///< mean squared error of the probability over all answers, proofs included
   Tail wall_us, net_overshoot_us;
   ContactFigures contact;
+  ContactFigures fallback;  ///< the same of the answers without proof alone
 
   [[nodiscard]] std::uint64_t wrong() const noexcept { return false_hits + false_misses; }
   [[nodiscard]] Interval wrong_interval() const noexcept { return wilson(wrong(), poses); }
@@ -144,6 +148,19 @@ struct AccuracyRow {
     return poses > 0 ? static_cast<double>(n) / static_cast<double>(poses) : 0.0;
   }
 };
+
+/// How an answer's push (depth times normal) changes while its limit grows: the sum of the lengths of all changes, from
+/// nothing over every limit of one kind without a threshold to the deepest contact of the exact set, over the length of
+/// that. 1: it grew without a detour. Of the poses of one band that are hits with a depth.
+struct PushSweep {
+  Trial::Kind kind = Trial::Kind::time;
+  std::string band;
+  std::uint64_t count = 0;
+  double p50 = 0.0, p90 = 0.0;
+};
+
+/// For both kinds of limits and each band; bands without a hit are left out.
+[[nodiscard]] std::vector<PushSweep> push_sweeps(const Study& study);
 
 /// Rows for each trial: all poses, each group, each band. A set without poses has no row.
 [[nodiscard]] std::vector<AccuracyRow> accuracy_rows(const Study& study);

@@ -1,0 +1,53 @@
+// The probability that an answer states when its search ended without a proof.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+#include "odds/math/elementary.hpp"
+#include "odds/query/request.hpp"
+#include "query/remains.hpp"
+
+namespace odds::query {
+
+/// Ten numbers in, a probability out: a logistic regression, and a monotone line of ten pieces that bends what it says
+/// to what was seen.
+struct AnswerOdds {
+  static constexpr std::size_t count = 10;
+  static constexpr std::size_t knots = 11;
+  std::array<float, count> weights{};
+  std::array<float, knots> seen{};  ///< shares of hits where the regression says 0, 0.1, ... 1; ascending
+};
+
+/// Surfaces that face the same way, as of nested shells, follow a law of their own: all numbers count once as they are
+/// and once times `facing`.
+[[nodiscard]] constexpr std::array<float, AnswerOdds::count> numbers_of(const Remains& r) noexcept {
+  const float f = r.facing;
+  return {1.0F, r.spent, r.open, r.logit, r.rank, f, f * r.spent, f * r.open, f * r.logit, f * r.rank};
+}
+
+/// What the regression says, in [0, 1].
+[[nodiscard]] inline float regression(const AnswerOdds& odds, const Remains& remains) noexcept {
+  const auto numbers = numbers_of(remains);
+  float z = 0.0F;
+  for (std::size_t i = 0; i < AnswerOdds::count; ++i) z += odds.weights[i] * numbers[i];
+  const float upper = 1.0F / (2.0F - math::probability_of_rate(z < 0.0F ? -z : z));  // 1 / (1 + exp(-|z|))
+  return z < 0.0F ? 1.0F - upper : upper;
+}
+
+/// Which table an answer's odds come from.
+[[nodiscard]] constexpr std::size_t odds_index(Engine engine, EstimatorKind estimator, Method method) noexcept {
+  return (engine == Engine::wide ? 4U : 0U) + (estimator == EstimatorKind::kinematic ? 2U : 0U) +
+         (method == Method::time_critical ? 1U : 0U);
+}
+
+/// Probability of a hit, in (0, 1): among searches that left this undecided, such a share met a hit.
+[[nodiscard]] inline double probability_of_hit(const AnswerOdds& odds, const Remains& remains) noexcept {
+  const float at = 10.0F * std::clamp(regression(odds, remains), 0.0F, 1.0F);
+  const auto knot = std::min(static_cast<std::size_t>(at), AnswerOdds::knots - 2);
+  const float part = at - static_cast<float>(knot);
+  return static_cast<double>(odds.seen[knot] + part * (odds.seen[knot + 1] - odds.seen[knot]));
+}
+
+}  // namespace odds::query

@@ -1,0 +1,220 @@
+// odds_calibration: fits what an answer without a proof states as its probability, and says how true that is on meshes
+// and poses that it was not fitted on. Prints the tables of src/query/answer_odds_table.hpp.
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "calibration/ascending.hpp"
+#include "calibration/logistic_fit.hpp"
+#include "calibration/unproved.hpp"
+#include "odds/report/accuracy/forecast.hpp"
+#include "query/answer_odds.hpp"
+
+namespace odds::calibration {
+namespace {
+
+using report::Procedure;
+
+struct Options {
+  std::uint64_t poses = 30;
+  std::uint64_t seed = 1;
+  std::vector<std::string> held_out;
+};
+
+/// Meshes of Debian's package openfoam-examples, which are left out if it is not installed.
+std::string example(const std::string& file) {
+  return "/usr/share/doc/openfoam-examples/examples/resources/geometry/" + file;
+}
+
+std::vector<Meeting> present(std::vector<Meeting> meetings) {
+  const auto is_there = [](const std::string& mesh) {
+    return mesh.starts_with("made:") || std::filesystem::exists(mesh);
+  };
+  std::erase_if(meetings, [&](const Meeting& m) { return !is_there(m.a) || !is_there(m.b); });
+  return meetings;
+}
+
+std::vector<Meeting> training_meetings() {
+  const std::string car = "made:car_body:triangles=60000";
+  const std::string knot = "made:torus_knot:along=600,across=20";
+  const std::string bumpy = "made:bumpy_sphere:frequency=40";
+  const std::string dense = "made:bumpy_sphere:frequency=60,bumps=80,width=0.15,seed=9";
+  return present(
+      {{car, car},
+       {knot, knot},
+       {bumpy, bumpy},
+       {"made:gear:teeth=40,flank=8", "made:peg:radius=0.004,around=96"},
+       {"made:gear:teeth=17,flank=20", "made:gear:teeth=61,flank=5"},
+       {"made:terrain:cells=120,side=0.3,height=0.03", "made:icosphere:frequency=30"},
+       {"made:uv_sphere:around=300,down=150", "made:box:cells=20"},
+       {"made:plates:count=6,cells=60,wave=0.004", "made:peg:around=128,along=64"},
+       {example("motorBike.obj.gz"), example("motorBike-passenger-helmet.obj.gz")},
+       {example("propellerTip.obj.gz"), example("propellerTip.obj.gz")},
+       {example("flange.stl.gz"), example("flange.stl.gz")},
+       {example("cyclone.stl.gz"), example("blob.stl.gz")},
+       {example("DTC-scaled.stl.gz"), example("DTC-scaled.stl.gz")},
+       {bumpy, bumpy + ",scale=0.985", Procedure::nested},
+       {dense, dense + ",scale=0.99", Procedure::nested},
+       {"made:torus:around=160,across=80", "made:torus:tube=0.0294,around=150,across=70", Procedure::nested}});
+}
+
+std::vector<Meeting> held_out_meetings(const std::vector<std::string>& more) {
+  const std::string waved = "made:bumpy_sphere:frequency=50,bumps=12,width=0.6,height=0.2,seed=4";
+  std::vector<Meeting> meetings = {
+      {"made:car_body:triangles=250000,seed=7",
+       "made:torus_knot:p=3,q=5,along=900,across=24,ring=0.6,winding=0.25,tube=0.06"},
+      {"made:nested_shells:frequency=30,seed=5", "made:torus:around=120,across=60,ring=0.03,tube=0.01"},
+      {"made:car_body:triangles=20000,seed=3", "made:terrain:cells=150,side=6,height=0.5,seed=8"},
+      {"made:bumpy_sphere:frequency=80,bumps=200,width=0.1,seed=2", "made:gear:teeth=25,flank=6,module=0.004"},
+      {example("motorBike.obj.gz"), example("motorBike.obj.gz")},
+      {example("building_wtc2.obj.gz"), example("building_wtc2.obj.gz")},
+      {example("bullet.stl.gz"), example("wigley.stl.gz")},
+      {waved, waved + ",scale=0.99", Procedure::nested},
+      {"made:uv_sphere:around=200,down=100", "made:uv_sphere:around=180,down=90,radius=0.0494", Procedure::nested},
+      {"made:torus:ring=0.1,tube=0.05,around=200,across=100", "made:torus:ring=0.1,tube=0.0485,around=190,across=90",
+       Procedure::nested}};
+  for (const std::string& mesh : more) meetings.push_back({mesh, mesh});
+  return present(std::move(meetings));
+}
+
+struct Kept {
+  Meeting meeting;
+  std::vector<Unproved> answers;
+};
+
+/// The binary trees are tried with all volumes in turn, so that their odds are those of none.
+volume::Kind volume_for(query::Engine engine, std::size_t meeting) {
+  constexpr std::array<volume::Kind, 4> binary = {volume::Kind::obb, volume::Kind::kdop18, volume::Kind::aabb,
+                                                  volume::Kind::sphere};
+  return engine == query::Engine::wide ? volume::Kind::wide : binary[meeting % binary.size()];
+}
+
+/// What tables of odds are for, in the order of odds_index: incremental answers count with the exact ones.
+using Tables = std::array<std::vector<Kept>, 4>;
+
+Tables gather(const std::vector<Meeting>& meetings, query::Engine engine, const Options& options, std::uint64_t seed) {
+  using query::EstimatorKind;
+  using query::Method;
+  Asked asked;
+  for (const EstimatorKind estimator : {EstimatorKind::cells, EstimatorKind::kinematic}) {
+    for (const Method method : {Method::exact, Method::incremental, Method::time_critical}) {
+      asked.ways.push_back({estimator, method});
+    }
+  }
+  asked.units = {64, 128, 256, 512, 1024, 2048};
+  asked.poses_per_band = options.poses;
+  asked.seed = seed;
+  Tables tables;
+  for (std::size_t i = 0; i < meetings.size(); ++i) {
+    asked.volume = volume_for(engine, i);
+    const auto answers = unproved_answers(meetings[i], asked);
+    if (!answers.ok()) fmt::print(stderr, "left out: {}\n", answers.error().message());
+    for (auto& table : tables) table.push_back({meetings[i], {}});
+    for (std::size_t way = 0; answers.ok() && way < asked.ways.size(); ++way) {
+      const std::vector<Unproved>& found = answers.value()[way];
+      const std::size_t index = query::odds_index(engine, asked.ways[way].estimator, asked.ways[way].method) % 4;
+      auto& all = tables[index].back().answers;
+      all.insert(all.end(), found.begin(), found.end());
+    }
+  }
+  for (auto& table : tables) std::erase_if(table, [](const Kept& kept) { return kept.answers.empty(); });
+  return tables;
+}
+
+/// Each meeting counts the same, however many of its answers have no proof; but a handful does not outweigh a thousand.
+double weight_in(const Kept& kept) { return 1000.0 / std::max(300.0, static_cast<double>(kept.answers.size())); }
+
+/// Shares of hits by what the regression says: pooled until they ascend (isotonic regression), read at every tenth.
+void bend(const std::vector<Kept>& all, query::AnswerOdds& odds) {
+  std::vector<Case> cases;
+  for (const Kept& kept : all) {
+    for (const Unproved& one : kept.answers) {
+      cases.push_back({{static_cast<double>(query::regression(odds, one.remains))}, one.hit, weight_in(kept)});
+    }
+  }
+  const std::vector<Level> levels = ascending_levels(std::move(cases), 40);
+  for (std::size_t k = 0; k < query::AnswerOdds::knots; ++k) {
+    odds.seen[k] = static_cast<float>(level_at(levels, 0.1 * static_cast<double>(k)));
+  }
+}
+
+query::AnswerOdds fit(const std::vector<Kept>& all) {
+  std::vector<Case> cases;
+  for (const Kept& kept : all) {
+    for (const Unproved& one : kept.answers) {
+      const auto numbers = query::numbers_of(one.remains);
+      cases.push_back({{numbers.begin(), numbers.end()}, one.hit, weight_in(kept)});
+    }
+  }
+  const std::vector<double> weights = fit_logistic(cases, 1.0);
+  query::AnswerOdds odds;
+  std::transform(weights.begin(), weights.end(), odds.weights.begin(), [](double w) { return static_cast<float>(w); });
+  bend(all, odds);
+  return odds;
+}
+
+void judge(const std::vector<Kept>& all, const query::AnswerOdds& odds, const char* title) {
+  std::vector<report::Forecast> apart;
+  std::vector<report::Forecast> nested;
+  fmt::print(stderr, "{}\n{:>8}{:>9}{:>8}{:>8}\n", title, "answers", "P said", "hits", "error");
+  const auto line = [](const std::vector<report::Forecast>& forecasts, const std::string& name) {
+    if (forecasts.empty()) return;
+    const report::ForecastQuality q = report::judge_forecasts(forecasts);
+    fmt::print(stderr, "{:>8}{:>9.3f}{:>8.3f}{:>8.3f}  {}\n", q.count, q.mean_probability, q.observed(),
+               q.calibration_error, name);
+  };
+  for (const Kept& kept : all) {
+    std::vector<report::Forecast> here;
+    for (const Unproved& one : kept.answers) here.push_back({query::probability_of_hit(odds, one.remains), one.hit});
+    line(here, kept.meeting.a + " + " + kept.meeting.b);
+    auto& pool = kept.meeting.procedure == Procedure::nested ? nested : apart;
+    pool.insert(pool.end(), here.begin(), here.end());
+  }
+  line(apart, "all that are not nested");
+  line(nested, "all nested");
+}
+
+void print(const query::AnswerOdds& odds, const std::string& comment) {
+  const auto list = [](const auto& numbers) {
+    std::string text;
+    for (const float x : numbers) text += fmt::format("{}{:.4f}F", text.empty() ? "" : ", ", x);
+    return text;
+  };
+  fmt::print("    // {}\n    {{{{{}}},\n     {{{}}}}},\n", comment, list(odds.weights), list(odds.seen));
+}
+
+void run(const Options& options) {
+  constexpr std::array<const char*, 4> names = {"cells, exact and incremental", "cells, time-critical",
+                                                "kinematic, exact and incremental", "kinematic, time-critical"};
+  for (const query::Engine engine : {query::Engine::binary, query::Engine::wide}) {
+    const Tables training = gather(training_meetings(), engine, options, options.seed);
+    const Tables held_out = gather(held_out_meetings(options.held_out), engine, options, options.seed + 1);
+    for (std::size_t i = 0; i < training.size(); ++i) {
+      const std::string name =
+          (engine == query::Engine::wide ? "wide engine, " : "binary trees, ") + std::string(names[i]);
+      const query::AnswerOdds odds = fit(training[i]);
+      print(odds, name);
+      judge(training[i], odds, (name + ": fitted on").c_str());
+      judge(held_out[i], odds, (name + ": held out").c_str());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace odds::calibration
+
+int main(int argc, char** argv) {
+  odds::calibration::Options options;
+  CLI::App app("Fits the probabilities of answers without a proof: prints the tables, and on stderr how true they are");
+  app.add_option("--poses", options.poses, "for each distance")->check(CLI::Range(1, 100000));
+  app.add_option("--seed", options.seed, "of the training poses; the held-out ones have the next");
+  app.add_option("--held-out", options.held_out, "more meshes to judge by, each with its copy");
+  CLI11_PARSE(app, argc, argv);
+  odds::calibration::run(options);
+  return 0;
+}
