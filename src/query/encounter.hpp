@@ -138,19 +138,15 @@ class Encounter {
     return {b_in_a_ * corners[0], b_in_a_ * corners[1], b_in_a_ * corners[2]};
   }
 
-  /// Where, in which direction and how deep the surfaces of the pair most probably meet, in A's mesh frame.
-  [[nodiscard]] Contact cell_contact(std::uint32_t i, std::uint32_t j, double met_with) const noexcept {
-    return met_contact(a_.statistics()[i], b_.statistics()[j], a_.nodes()[i].radius, b_.nodes()[j].radius, b_in_a_,
-                       a_.origin(), met_with);
+  /// Where the surfaces of the pair most probably meet.
+  [[nodiscard]] MetPlace place(std::uint32_t i, std::uint32_t j) const noexcept {
+    return met_place(a_.statistics()[i], b_.statistics()[j], static_cast<double>(a_.nodes()[i].radius),
+                     static_cast<double>(b_.nodes()[j].radius), b_in_a_);
   }
 
   /// Cosine between the mean normals of both nodes, times how flat they are: -1 face to face, 1 one behind the other.
   [[nodiscard]] float facing(std::uint32_t i, std::uint32_t j) const noexcept {
     return a_.statistics()[i].mean_normal.dot(relative_.rotation * b_.statistics()[j].mean_normal);
-  }
-  /// Sum of the radii of both bounding volumes, metres.
-  [[nodiscard]] double size(std::uint32_t i, std::uint32_t j) const noexcept {
-    return static_cast<double>(a_.nodes()[i].radius) + static_cast<double>(b_.nodes()[j].radius);
   }
 
   [[nodiscard]] const tree::Hierarchy<V>& a() const noexcept { return a_; }

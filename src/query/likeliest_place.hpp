@@ -2,38 +2,49 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "odds/math/elementary.hpp"
 #include "odds/query/answer.hpp"
+#include "query/node_odds.hpp"
 #include "query/shortlist.hpp"
 
 namespace odds::query {
 
-/// The mean over the shortlist, each pair weighted by how deep it overlaps for its thickness and how small it is.
-/// `probability` is that of a hit at all: the depth is the expected one, so that a force made of it grows with what is
-/// known. Precondition: the list is not empty.
+/// The mean over the shortlist in A's tree frame, each pair weighted by how deep it overlaps for its thickness and how
+/// small it is; the normal also by how flat both patches are. Two patches that nobody has looked into cannot be told to
+/// overlap deeper than the thinner of them is thick, and they may not meet at all: the depth is the expected one, for
+/// `probability` of a hit, so that a force made of it grows with what is known. Precondition: the list is not empty.
 template <class Met>
 [[nodiscard]] Contact likeliest_place(const Met& met, const Shortlist& list, double probability) noexcept {
+  std::array<MetPlace, Shortlist::capacity> places;
+  std::array<double, Shortlist::capacity> weights;
   Contact mean;
-  mean.position.setZero();
-  mean.normal.setZero();
+  Vec3 position = Vec3::Zero();
+  Vec3 facing = Vec3::Zero();
   double sum = 0.0;
+  std::size_t count = 0;
   for (const NodePair& pair : list) {
-    const double size = std::max(met.size(pair.a, pair.b), 1e-300);
-    const double weight = static_cast<double>(std::exp2(std::clamp(pair.rank, -20.0F, 4.0F))) / size;
-    const Contact contact = met.cell_contact(pair.a, pair.b, probability);
-    mean.position += weight * contact.position;
-    mean.normal += weight * contact.normal;
-    mean.depth += weight * contact.depth;
+    const MetPlace& place = places[count] = met.place(pair.a, pair.b);
+    if (count == 0) mean.position = place.position;
+    const double weight =
+        static_cast<double>(math::rough_exp2(std::clamp(pair.rank, -20.0F, 4.0F))) * place.inverse_size;
+    weights[count++] = weight;
+    position += weight * place.position;
+    facing += weight * place.facing;
     sum += weight;
   }
-  const double length = mean.normal.norm();
-  if (!(sum > 0.0) || !std::isfinite(sum) || !(length > 1e-6 * sum)) {
-    return met.cell_contact(list.highest().a, list.highest().b, probability);
+  const double length = facing.norm();
+  if (!(sum > 0.0) || !std::isfinite(sum) || !(length > 0.0) || !std::isfinite(length)) return mean;
+  mean.position = position / sum;
+  mean.normal = facing / length;
+  double depth = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double passed = mean.normal.dot(places[i].beyond);
+    depth += weights[i] * places[i].flatness * std::clamp(passed, 0.0, places[i].thickness);
   }
-  mean.position /= sum;
-  mean.depth /= sum;
-  mean.normal /= length;
+  mean.depth = probability * depth / sum;
   return mean;
 }
 

@@ -60,31 +60,37 @@ struct TreeLevels {
   return probability::log_kinematic_rate(met.a, met.b, met.rotation, met.common);
 }
 
-/// Where, in which direction and how deep the surfaces of the nodes most probably meet, in A's mesh frame. `b_in_a` and
-/// `origin_a` of the trees' frames; radii of the bounding volumes; `probability` of a meeting.
-[[nodiscard]] inline Contact met_contact(const tree::NodeStatistics& a, const tree::NodeStatistics& b, float radius_a,
-                                         float radius_b, const math::Pose& b_in_a, const Vec3& origin_a,
-                                         double probability) noexcept {
+/// What a pair of nodes says about where the surfaces meet; in A's tree frame, metres.
+struct MetPlace {
+  Vec3 position;        ///< between both centroids, nearer to that of the smaller node, which says more about where
+  Vec3 facing;          ///< mean normal of B's surface less that of A's: from outwards of A to into A; 0 .. 2 long
+  Vec3 beyond;          ///< from A's centroid to B's
+  double thickness;     ///< of the thinner of both patches
+  double flatness;      ///< 0 .. 1: a patch that faces all ways, as of a whole closed body, has no side to be beyond
+  double inverse_size;  ///< of both bounding volumes together, 1/m
+};
+
+/// `b_in_a` of the trees' frames; radii of the bounding volumes.
+[[nodiscard]] inline MetPlace met_place(const tree::NodeStatistics& a, const tree::NodeStatistics& b, double radius_a,
+                                        double radius_b, const math::Pose& b_in_a) noexcept {
   const Vec3 centroid_a = a.centroid.cast<double>();
   const Vec3 centroid_b = b_in_a * b.centroid.cast<double>();
-  // The smaller node says more about where: weight by the inverse of the size (radii of 1e19 m are infinite).
-  const double size = static_cast<double>(radius_a) + static_cast<double>(radius_b);
-  const double weight_a = size > 0.0 && std::isfinite(size) ? static_cast<double>(radius_b) / size : 0.5;
-  Contact contact;
-  contact.position = weight_a * centroid_a + (1.0 - weight_a) * centroid_b + origin_a;
-  Vec3 direction = b_in_a.rotation * b.mean_normal.cast<double>() - a.mean_normal.cast<double>();
-  if (!(direction.norm() > 1e-3)) direction = b_in_a.rotation * b.slab_normal.cast<double>();  // closed on all sides
-  const double length = direction.norm();
-  contact.normal = length > 0.0 && std::isfinite(length) ? Vec3(direction / length) : Vec3::UnitZ();
-  // A's surface lies beyond B's by this much. Two patches that nobody has looked into cannot be told to overlap deeper
-  // than the thinner of them is thick. They may not meet at all, and a patch that faces all ways has no side to be
-  // beyond: so it is the expected depth that counts, weighted by how flat both patches are (a whole closed body: not at
-  // all).
-  const double passed = contact.normal.dot(centroid_b - centroid_a);
-  const double thickness = 2.0 * static_cast<double>(std::min(a.slab_half, b.slab_half));
-  const double flatness = static_cast<double>(std::min(a.mean_normal.norm() * b.mean_normal.norm(), 1.0F));
-  contact.depth = probability * flatness * std::clamp(passed, 0.0, thickness);
-  return contact;
+  const Vec3 normal_a = a.mean_normal.cast<double>();
+  const Vec3 normal_b = b_in_a.rotation * b.mean_normal.cast<double>();
+  MetPlace place;
+  place.inverse_size = 1.0 / std::max(radius_a + radius_b, 1e-300);
+  const double share = radius_b * place.inverse_size;
+  const double weight_a = std::isfinite(share) ? share : 0.5;  // radii of 1e19 m are infinite
+  place.beyond = centroid_b - centroid_a;
+  place.position = centroid_a + (1.0 - weight_a) * place.beyond;
+  place.facing = normal_b - normal_a;
+  constexpr double closed = 1e-3;
+  if (!(place.facing.squaredNorm() > closed * closed)) {
+    place.facing = closed * (b_in_a.rotation * b.slab_normal.cast<double>());
+  }
+  place.thickness = 2.0 * static_cast<double>(std::min(a.slab_half, b.slab_half));
+  place.flatness = std::min(std::sqrt(normal_a.squaredNorm() * normal_b.squaredNorm()), 1.0);
+  return place;
 }
 
 }  // namespace odds::query

@@ -269,13 +269,14 @@ void forecast(const Met& met, const SearchResult& result, const Request& request
   if (answer.basis == Basis::proved || result.shortlist.empty()) return;
   answer.has_cell_pair = true;
   answer.cell_pair = likeliest_place(met, result.shortlist, answer.probability);
+  answer.cell_pair.position += met.a().origin();
   answer.cell_pair_probability = static_cast<double>(cell_probability);
 }
 
 template <class Tree>
 void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const Request& request,
             Pair::Implementation& pair) noexcept {
-  Spending spending(request.budget);
+  Spending spending(request.budget, pair.ending.ns());
   Answer& answer = pair.answer;
   answer = {};
   pair.hits.clear();
@@ -291,6 +292,7 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
     if (answer.basis == Basis::proved && answer.verdict == Verdict::clear) pair.known_depth.note(meshes.pose(), 0.0);
   }
   answer.cost = spending.close();
+  if (spending.ending_ns() > 0 && pair.hits.empty()) pair.ending.note(spending.ending_ns());
 }
 
 bool usable(const math::Pose& pose, const Request& request) noexcept {
@@ -366,6 +368,7 @@ std::uint32_t Pair::slice_size() const noexcept {
   if (implementation_->a->volume() != volume::Kind::wide) return implementation_->slice.size();
   return std::max(implementation_->front.size(), 1U);
 }
+std::span<const TrianglePair> Pair::crossings() const noexcept { return implementation_->hits.pairs(); }
 const Shape& Pair::a() const noexcept { return *implementation_->a; }
 const Shape& Pair::b() const noexcept { return *implementation_->b; }
 void Pair::reset() noexcept {

@@ -9,6 +9,7 @@
 #include "odds/query/budget.hpp"
 #include "odds/realtime/clock.hpp"
 #include "odds/realtime/stall_ledger.hpp"
+#include "query/ending_reserve.hpp"
 
 namespace odds::query {
 
@@ -16,7 +17,8 @@ namespace odds::query {
 /// is asked after every piece of work that `pair` bounds (a node pair's children, one row of a leaf pair).
 class Spending {
  public:
-  explicit Spending(const Budget& budget) noexcept
+  /// `ending_ns`: what of the time is kept for the answer that follows a search without a proof.
+  explicit Spending(const Budget& budget, std::int64_t ending_ns = EndingReserve{}.ns()) noexcept
       : clock_(budget.clock.now_ns != nullptr ? budget.clock : realtime::fastest_clock()),
         start_ns_(clock_()),
         ledger_(start_ns_),
@@ -25,7 +27,7 @@ class Spending {
       timed_ = true;
       const double ns = std::clamp(budget.microseconds * 1e3, 0.0, 1e15);
       deadline_ns_ = start_ns_ + static_cast<std::int64_t>(ns);
-      search_deadline_ns_ = deadline_ns_;
+      search_deadline_ns_ = deadline_ns_ - ending_ns;
     }
   }
 
@@ -47,13 +49,22 @@ class Spending {
   /// From now on the search ends early enough for contacts to be made from what it found.
   void keep_time_for_contacts() noexcept {
     if (!timed_) return;
-    search_deadline_ns_ = start_ns_ + static_cast<std::int64_t>(search_share * static_cast<double>(allowance_ns()));
+    const auto share_ns = static_cast<std::int64_t>(search_share * static_cast<double>(allowance_ns()));
+    search_deadline_ns_ = std::min(search_deadline_ns_, start_ns_ + share_ns);
   }
 
   /// Polls the clock if there is a deadline. False once the search should stop.
-  [[nodiscard]] bool may_go_on() noexcept { return poll() < search_deadline_ns_ - writing_reserve_ns; }
+  [[nodiscard]] bool may_go_on() noexcept {
+    const std::int64_t now = poll();
+    nears_end_ = now >= search_deadline_ns_ - notice_ns;
+    if (now < search_deadline_ns_) return true;
+    search_end_ns_ = now;
+    return false;
+  }
   /// The same, but looks at the clock only when `units` were spent since the last look.
   [[nodiscard]] bool may_go_on_after(std::uint32_t units) noexcept { return unpolled_units_ < units || may_go_on(); }
+  /// Whether the last look at the clock found the search's end near: time to ask the caches for what the answer needs.
+  [[nodiscard]] bool nears_end() const noexcept { return nears_end_; }
   /// A search that changes its manner after a start has up to this share of time and work for it, and these units.
   void begin_start(double share, std::uint64_t most_units) noexcept {
     const auto of_budget = static_cast<std::uint64_t>(share * static_cast<double>(units_left_));
@@ -71,11 +82,15 @@ class Spending {
   }
   [[nodiscard]] bool may_make_contacts() noexcept { return poll() < contacts_deadline_ns_; }
 
+  /// From the moment that the search was told to stop for want of time until `close`; 0: it was not.
+  [[nodiscard]] std::int64_t ending_ns() const noexcept { return ending_ns_; }
+
   /// Closes the accounts; the last thing a query does.
   [[nodiscard]] Cost close() noexcept {
     const std::int64_t now = clock_();
     ledger_.poll(now);
     cost_.longest_unpolled_units = std::max(cost_.longest_unpolled_units, unpolled_units_);
+    if (search_end_ns_ != 0) ending_ns_ = now - search_end_ns_;
     cost_.gross_us = static_cast<double>(ledger_.gross_ns()) * 1e-3;
     // Without polls a long gap is the query's own work, not a stall.
     cost_.stall_us = timed_ ? static_cast<double>(ledger_.stall_ns()) * 1e-3 : 0.0;
@@ -89,12 +104,13 @@ class Spending {
     return cost_;
   }
 
-  /// What the writing of the answer takes at most, after the search has stopped.
-  static constexpr std::int64_t writing_reserve_ns = 600;
   /// Of the time, for the search, once a hit was found and contacts are wanted.
   static constexpr double search_share = 0.5;
 
  private:
+  /// Some three pieces of work.
+  static constexpr std::int64_t notice_ns = 400;
+
   [[nodiscard]] std::int64_t allowance_ns() const noexcept { return deadline_ns_ - start_ns_; }
 
   /// The time now, or 0, before every deadline, where there is none.
@@ -125,6 +141,9 @@ class Spending {
   std::uint32_t unpolled_units_ = 0;
   std::int64_t stall_before_deadline_ns_ = 0;
   bool timed_ = false;
+  bool nears_end_ = false;
+  std::int64_t search_end_ns_ = 0;  ///< 0: not told to stop
+  std::int64_t ending_ns_ = 0;
   Cost cost_;
 };
 

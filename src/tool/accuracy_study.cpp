@@ -1,10 +1,12 @@
 // Poses, truth, answers.
 #include "tool/accuracy_study.hpp"
 
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "odds/realtime/clock.hpp"
+#include "odds/report/accuracy/contact_region.hpp"
 #include "tool/progress_line.hpp"
 
 namespace odds::tool {
@@ -19,8 +21,8 @@ using report::Trial;
 
 constexpr int most_true_contacts = 8;
 
-/// Exact contact sets, one for each pose.
-using ContactSets = std::vector<std::vector<Contact>>;
+/// What a caller would push with, if the answer has it: of trial t and pose i at [t][i].
+using GivenContacts = std::vector<std::vector<std::optional<Contact>>>;
 
 std::optional<Error> make_poses(const StudyShapes& shapes, Study& study) {
   auto maker = report::PoseMaker::make(shapes.wide_a, shapes.wide_b, study.settings.procedure, study.settings.seed);
@@ -39,27 +41,6 @@ std::optional<Error> make_poses(const StudyShapes& shapes, Study& study) {
   return std::nullopt;
 }
 
-std::optional<Error> find_truth(const StudyShapes& shapes, Study& study, ContactSets& sets) {
-  query::PairOptions options;
-  options.hit_capacity = 65536;
-  auto pair = query::Pair::make(shapes.wide_a, shapes.wide_b, options);
-  if (!pair.ok()) return pair.error();
-  query::Request request;
-  request.method = query::Method::exact;
-  request.max_contacts = most_true_contacts;
-  ProgressLine progress("finding the truth");
-  for (PoseTruth& truth : study.poses) {
-    pair.value().reset();
-    const query::Answer& answer = pair.value().run(truth.pose.pose(), request);
-    truth.hit = answer.verdict == Verdict::hit;
-    truth.contacts = static_cast<std::uint32_t>(answer.contacts.size());
-    if (truth.contacts > 0) truth.deepest_contact = answer.contacts.front();
-    sets.emplace_back(answer.contacts.begin(), answer.contacts.end());
-    progress.show(static_cast<double>(sets.size()) / static_cast<double>(study.poses.size()));
-  }
-  return std::nullopt;
-}
-
 query::Request request_of(const Trial& trial, const report::StudySettings& settings, query::EstimatorKind estimator) {
   query::Request request;
   request.estimator = estimator;
@@ -74,12 +55,13 @@ query::Request request_of(const Trial& trial, const report::StudySettings& setti
 
 /// What a caller would push with: the first contact, or the place where the surfaces most probably meet, whose depth is
 /// an expectation, so that the verdict does not matter.
-const Contact* contact_of(const query::Answer& answer) {
-  if (!answer.contacts.empty()) return &answer.contacts.front();
-  return answer.has_cell_pair ? &answer.cell_pair : nullptr;
+std::optional<Contact> contact_of(const query::Answer& answer) {
+  if (!answer.contacts.empty()) return answer.contacts.front();
+  if (answer.has_cell_pair) return answer.cell_pair;
+  return std::nullopt;
 }
 
-Sample sample_of(const query::Answer& answer, double wall_us, const std::vector<Contact>& truth, double size) {
+Sample sample_of(const query::Answer& answer, double wall_us) {
   Sample sample;
   sample.verdict = answer.verdict;
   sample.basis = answer.basis;
@@ -89,18 +71,13 @@ Sample sample_of(const query::Answer& answer, double wall_us, const std::vector<
   sample.wall_us = wall_us;
   sample.stall_us = answer.cost.stall_us;
   sample.net_overshoot_us = answer.cost.net_overshoot_us;
-  const Contact* given = contact_of(answer);
-  if (given != nullptr) sample.push = given->depth * given->normal;
-  if (given != nullptr && !truth.empty()) sample.contact = report::contact_error(*given, truth, size);
+  if (const auto given = contact_of(answer)) sample.push = given->depth * given->normal;
   return sample;
 }
 
-}  // namespace
-
-std::optional<Error> carry_out(const StudyShapes& shapes, query::EstimatorKind estimator, Study& study) {
-  if (auto error = make_poses(shapes, study)) return error;
-  ContactSets truth;
-  if (auto error = find_truth(shapes, study, truth)) return error;
+/// Answers every pose under every limit.
+std::optional<Error> answer_all(const StudyShapes& shapes, query::EstimatorKind estimator, Study& study,
+                                GivenContacts& given) {
   query::PairOptions pair_options;
   pair_options.calibration_poses = study.settings.calibration_poses;
   auto made = query::Pair::make(shapes.a, shapes.b, pair_options);
@@ -110,6 +87,7 @@ std::optional<Error> carry_out(const StudyShapes& shapes, query::EstimatorKind e
   ProgressLine progress("answering");
   const std::size_t trials = study.settings.trials.size();
   study.samples.resize(trials);
+  given.resize(trials);
   for (std::size_t t = 0; t < trials; ++t) {
     const query::Request request = request_of(study.settings.trials[t], study.settings, estimator);
     for (std::size_t i = 0; i < study.poses.size(); ++i) {
@@ -119,8 +97,8 @@ std::optional<Error> carry_out(const StudyShapes& shapes, query::EstimatorKind e
       const std::int64_t begin = clock();
       const query::Answer& answer = pair.run(pose, request);
       const std::int64_t end = clock();
-      study.samples[t].push_back(
-          sample_of(answer, 1e-3 * static_cast<double>(end - begin), truth[i], study.settings.size_m));
+      study.samples[t].push_back(sample_of(answer, 1e-3 * static_cast<double>(end - begin)));
+      given[t].push_back(contact_of(answer));
       if (i % 64 == 0) {
         progress.show((static_cast<double>(t) + static_cast<double>(i) / static_cast<double>(study.poses.size())) /
                       static_cast<double>(trials));
@@ -128,6 +106,46 @@ std::optional<Error> carry_out(const StudyShapes& shapes, query::EstimatorKind e
     }
   }
   return std::nullopt;
+}
+
+/// Proves what is true in each pose, and judges all contacts that were given there by it.
+std::optional<Error> find_truth(const StudyShapes& shapes, const GivenContacts& given, Study& study) {
+  query::PairOptions options;
+  options.hit_capacity = 65536;
+  auto pair = query::Pair::make(shapes.wide_a, shapes.wide_b, options);
+  if (!pair.ok()) return pair.error();
+  query::Request request;
+  request.method = query::Method::exact;
+  request.max_contacts = most_true_contacts;
+  ProgressLine progress("finding the truth");
+  for (std::size_t i = 0; i < study.poses.size(); ++i) {
+    PoseTruth& truth = study.poses[i];
+    const math::Pose pose = truth.pose.pose();
+    pair.value().reset();
+    const query::Answer& answer = pair.value().run(pose, request);
+    truth.hit = answer.verdict == Verdict::hit;
+    truth.contacts = static_cast<std::uint32_t>(answer.contacts.size());
+    if (truth.contacts > 0) {
+      truth.deepest_contact = answer.contacts.front();
+      const report::ContactRegion region(*shapes.wide_a, *shapes.wide_b, pose, pair.value().crossings());
+      for (std::size_t t = 0; t < given.size(); ++t) {
+        if (!given[t][i]) continue;
+        study.samples[t][i].contact =
+            report::contact_error(*given[t][i], answer.contacts, region, study.settings.size_m);
+      }
+    }
+    progress.show(static_cast<double>(i + 1) / static_cast<double>(study.poses.size()));
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Error> carry_out(const StudyShapes& shapes, query::EstimatorKind estimator, Study& study) {
+  GivenContacts given;
+  if (auto error = make_poses(shapes, study)) return error;
+  if (auto error = answer_all(shapes, estimator, study, given)) return error;
+  return find_truth(shapes, given, study);
 }
 
 }  // namespace odds::tool

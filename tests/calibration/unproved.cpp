@@ -6,24 +6,13 @@
 #include <utility>
 #include <variant>
 
-#include "odds/mesh/made/by_name.hpp"
-#include "odds/mesh/read.hpp"
+#include "calibration/named_shape.hpp"
 #include "query/bottom_slice.hpp"
 #include "query/shape_data.hpp"
 #include "query/wide/searches.hpp"
 
 namespace odds::calibration {
 namespace {
-
-using SharedShape = std::shared_ptr<const query::Shape>;
-
-Result<SharedShape> build(const std::string& argument, volume::Kind volume) {
-  auto mesh = argument.starts_with(mesh::made::prefix) ? mesh::made::make_shape(argument) : mesh::read(argument);
-  if (!mesh.ok()) return mesh.error();
-  query::ShapeOptions options;
-  options.volume = volume;
-  return query::Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(mesh).value()), options);
-}
 
 /// Memory of a search, as a Pair has it.
 struct Workspace {
@@ -64,7 +53,7 @@ std::optional<query::Remains> search(const Tree& a, const Tree& b, const query::
     }
     return remains_at_end(met, result, spending);
   } else {
-    const query::Encounter met(a, b, meshes.pose(), request.estimator);
+    const query::Encounter met(a, b, meshes.pose(), request);
     if (met.far_apart() || !met.volumes_overlap(0, 0)) return std::nullopt;
     if (request.method == query::Method::time_critical) {
       result = query::TimeCriticalSearch(met, request, 1, memory.queue, memory.hits, spending).run({0, 0, 0.0F});
@@ -95,11 +84,11 @@ Result<std::vector<std::vector<Unproved>>> unproved_answers(const Meeting& meeti
   SharedShape shapes[2];
   for (int side = 0; side < 2; ++side) {
     const std::string& name = side == 0 ? meeting.a : meeting.b;
-    auto built = build(name, volume::Kind::wide);
+    auto built = named_shape(name, volume::Kind::wide);
     if (!built.ok()) return built.error();
     wide[side] = shapes[side] = built.value();
     if (asked.volume == volume::Kind::wide) continue;
-    auto other = build(name, asked.volume);
+    auto other = named_shape(name, asked.volume);
     if (!other.ok()) return other.error();
     shapes[side] = other.value();
   }

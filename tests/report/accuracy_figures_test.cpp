@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -248,7 +249,33 @@ TEST(AccuracyRows, TheWorstPoseIsTheOneThatWasWrong) {
   EXPECT_NEAR(worst[0].error, 0.5625, 1e-15);
 }
 
+/// Two boxes with edges of 1 m; B is 0.9 m from A along x and 0.5 m along y.
+ContactRegion region_of_boxes(const query::Shape& box, query::Pair& pair) {
+  const math::Pose pose{Mat3::Identity(), {0.9, 0.5, 0.01}};
+  EXPECT_EQ(pair.run(pose, {.method = query::Method::exact, .max_contacts = 8}).verdict, query::Verdict::hit);
+  return {box, box, pose, pair.crossings()};
+}
+
+TEST(ContactRegions, AreTheSpaceThatBothFillAndTheCurvesAroundIt) {
+  const auto box = shape_of("made:box:x=1,y=1,z=1,cells=4");
+  query::Pair pair = query::Pair::make(box, box).value();
+  const ContactRegion region = region_of_boxes(*box, pair);
+  EXPECT_EQ(region.distance({0.45, 0.25, 0.0}), 0.0);          // within 0.4 .. 0.5, 0 .. 0.5
+  EXPECT_NEAR(region.distance({0.5, 0.0, 0.3}), 0.0, 1e-12);   // on a curve
+  EXPECT_NEAR(region.distance({0.5, -0.2, 0.3}), 0.2, 1e-12);  // outside B, below the curve y = 0 in A's face
+  EXPECT_NEAR(region.distance({3.5, 0.0, 0.3}), 3.0, 1e-12);
+}
+
+TEST(ContactRegions, OfNothingAreInfinitelyFar) {
+  const auto box = shape_of("made:box:x=1,y=1,z=1,cells=1");
+  const ContactRegion region(*box, *box, {Mat3::Identity(), {3.0, 0.0, 0.0}}, {});
+  EXPECT_EQ(region.distance({1.5, 0.0, 0.0}), std::numeric_limits<double>::infinity());
+}
+
 TEST(AccuracyRows, ContactsAreComparedWithTheNearest) {
+  const auto box = shape_of("made:box:x=1,y=1,z=1,cells=4");
+  query::Pair pair = query::Pair::make(box, box).value();
+  const ContactRegion region = region_of_boxes(*box, pair);
   query::Contact far;
   far.position = {5, 0, 0};
   query::Contact near;
@@ -256,11 +283,11 @@ TEST(AccuracyRows, ContactsAreComparedWithTheNearest) {
   near.normal = Vec3::UnitX();
   near.depth = 0.5;
   query::Contact given;
-  given.position = {1, 0.2, 0};
+  given.position = {1.5, 0.0, 0.3};
   given.normal = Vec3::UnitY();
   given.depth = 0.1;
-  const ContactError error = contact_error(given, std::vector<query::Contact>{far, near}, 2.0);
-  EXPECT_NEAR(error.position, 0.1, 1e-15);
+  const ContactError error = contact_error(given, std::vector<query::Contact>{far, near}, region, 2.0);
+  EXPECT_NEAR(error.position, 0.5, 1e-12);
   EXPECT_NEAR(error.normal_deg, 90.0, 1e-12);
   EXPECT_NEAR(error.depth, 0.2, 1e-15);
 }

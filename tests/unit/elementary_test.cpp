@@ -25,6 +25,17 @@ TEST(RoughLog2, IsCloseOverTheWholeRange) {
   EXPECT_LT(rough_log2(NAN), -1000.0F);
 }
 
+TEST(RoughExp2, IsCloseOverTheWholeRangeAndBoundedBeyond) {
+  for (float x = -126.0F; x < 127.0F; x += 0.0137F) {
+    const double exact = std::exp2(static_cast<double>(x));
+    EXPECT_NEAR(static_cast<double>(rough_exp2(x)), exact, 0.004 * exact) << x;
+  }
+  EXPECT_EQ(rough_exp2(0.0F), 1.0F);
+  EXPECT_EQ(rough_exp2(-1e30F), rough_exp2(-126.0F));
+  EXPECT_EQ(rough_exp2(NAN), rough_exp2(-126.0F));
+  EXPECT_TRUE(std::isfinite(rough_exp2(1e30F)));
+}
+
 TEST(ProbabilityOfRate, IsCloseAndMonotone) {
   float last = 0.0F;
   for (double x = 1e-8; x < 40.0; x *= 1.01) {

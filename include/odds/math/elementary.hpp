@@ -30,6 +30,15 @@ namespace odds::math {
   return static_cast<float>(exponent) + f * (1.33985F - 0.33985F * f);
 }
 
+/// 2^x for x in [-126, 127); relative error < 0.4 %. NaN and what is beyond counts as the nearest of them.
+[[nodiscard]] inline float rough_exp2(float x) noexcept {
+  const float within = x >= -126.0F ? (x < 127.0F ? x : 126.99999F) : -126.0F;
+  const auto whole = static_cast<int>(within + 128.0F) - 128;  // rounded down
+  const float f = within - static_cast<float>(whole);
+  const float power = std::bit_cast<float>(static_cast<std::uint32_t>(127 + whole) << 23U);
+  return power * (1.0F + f * (0.656F + 0.344F * f));
+}
+
 /// 1 - exp(-x) for x >= 0, in [0, 1]; error < 3e-7. NaN and negative numbers give 0.
 [[nodiscard]] inline float probability_of_rate(float x) noexcept {
   if (!(x > 0.0F)) return 0.0F;

@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 
 #include "odds/math/error.hpp"
 #include "odds/math/pose.hpp"
 #include "odds/query/answer.hpp"
+#include "odds/query/contact_patch.hpp"
 #include "odds/query/distance.hpp"
 #include "odds/query/request.hpp"
 #include "odds/query/shape.hpp"
@@ -58,6 +60,8 @@ class Pair {
 
   [[nodiscard]] const Shape& a() const noexcept;
   [[nodiscard]] const Shape& b() const noexcept;
+  /// All pairs of triangles that the last `run` found to meet, as many as `hit_capacity`; valid until the next run.
+  [[nodiscard]] std::span<const TrianglePair> crossings() const noexcept;
   /// Pairs of nodes in the bottom slice that the incremental method keeps; 1 (the roots) before its first run.
   [[nodiscard]] std::uint32_t slice_size() const noexcept;
   /// Forgets coherence (last hit, bottom slice, last normal), as if the pair were new.

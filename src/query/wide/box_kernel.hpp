@@ -65,6 +65,43 @@ ODDS_LANES_INLINE float squared_radius(const WideNode& node, std::uint32_t lane)
   return x * x + y * y + z * z;
 }
 
+/// Along one slab's normal n the other volume reaches no farther than its own slab and box let it: with its normal m
+/// and cosine = n . m, n = cosine m + rest, and it is bounded along m by its slab and along the rest by its box. `c`,
+/// `h` are the lanes' centres and half extents.
+template <class L>
+ODDS_LANES_INLINE typename L::Float slab_gaps(const WideNode& node, const TurnedBox& box, const Turn& turn,
+                                              const typename L::Float (&c)[3],
+                                              const typename L::Float (&h)[3]) noexcept {
+  using F = typename L::Float;
+  F n[3];
+  for (int i = 0; i < 3; ++i) n[i] = L::load(node.normal[i]);
+  const F cosine = (L::all(box.normal[0]) * n[0] + L::all(box.normal[1]) * n[1]) + L::all(box.normal[2]) * n[2];
+  const F thickness = L::load(node.thickness);
+  F gap;
+  {  // the box's slab
+    const F along = (L::all(box.normal[0]) * c[0] + L::all(box.normal[1]) * c[1]) + L::all(box.normal[2]) * c[2];
+    const F shifted = L::load(node.offset) - ((n[0] * c[0] + n[1] * c[1]) + n[2] * c[2]);
+    F reach = L::abs(cosine) * thickness;
+    for (int i = 0; i < 3; ++i) reach = reach + L::abs(L::all(box.normal[i]) - cosine * n[i]) * h[i];
+    gap = L::abs((along + cosine * shifted) - L::all(box.offset)) - (reach + L::all(box.thickness));
+  }
+  {  // the lanes' slabs
+    const F along = (n[0] * L::all(box.center[0]) + n[1] * L::all(box.center[1])) + n[2] * L::all(box.center[2]);
+    F reach = L::abs(cosine) * L::all(box.thickness);
+    for (int j = 0; j < 3; ++j) {
+      const F own =
+          (n[0] * L::all(turn.column[j][0]) + n[1] * L::all(turn.column[j][1])) + n[2] * L::all(turn.column[j][2]);
+      reach = reach + L::abs(own - cosine * L::all(box.own_normal[j])) * L::all(box.half[j]);
+    }
+    const F one = L::abs((along + cosine * L::all(box.shifted)) - L::load(node.offset)) - (reach + thickness);
+    return L::max(gap, one);
+  }
+}
+
+/// Whether slabs are looked at: always, but for programs that measure what they are worth and specialise this.
+template <class L>
+inline constexpr bool looks_at_slabs = true;
+
 /// Separating axes: the three of each box and the normals of both slabs (the nine edge pairs never paid). The gap along
 /// any axis of length at most 1 bounds the distance from below, up to the rounding that `margin` of the encounter
 /// covers. `far`: the three gaps of each frame's axes also count together, as the legs of a distance; for boxes that
@@ -89,29 +126,7 @@ ODDS_LANES_INLINE typename L::Float gaps(const WideNode& node, const TurnedBox& 
     if constexpr (far) squares = squares + L::max(one, none) * L::max(one, none);
   }
   if constexpr (far) gap = L::max(gap, L::root(squares) * L::all(0.999999F));
-  // Along one slab's normal n the other volume reaches no farther than its own slab and box let it: with its normal m
-  // and cosine = n . m, n = cosine m + rest, and it is bounded along m by its slab and along the rest by its box.
-  F n[3];
-  for (int i = 0; i < 3; ++i) n[i] = L::load(node.normal[i]);
-  const F cosine = (L::all(box.normal[0]) * n[0] + L::all(box.normal[1]) * n[1]) + L::all(box.normal[2]) * n[2];
-  const F thickness = L::load(node.thickness);
-  {  // the box's slab
-    const F along = (L::all(box.normal[0]) * c[0] + L::all(box.normal[1]) * c[1]) + L::all(box.normal[2]) * c[2];
-    const F shifted = L::load(node.offset) - ((n[0] * c[0] + n[1] * c[1]) + n[2] * c[2]);
-    F reach = L::abs(cosine) * thickness;
-    for (int i = 0; i < 3; ++i) reach = reach + L::abs(L::all(box.normal[i]) - cosine * n[i]) * h[i];
-    gap = L::max(gap, L::abs((along + cosine * shifted) - L::all(box.offset)) - (reach + L::all(box.thickness)));
-  }
-  {  // the lanes' slabs
-    const F along = (n[0] * L::all(box.center[0]) + n[1] * L::all(box.center[1])) + n[2] * L::all(box.center[2]);
-    F reach = L::abs(cosine) * L::all(box.thickness);
-    for (int j = 0; j < 3; ++j) {
-      const F own =
-          (n[0] * L::all(turn.column[j][0]) + n[1] * L::all(turn.column[j][1])) + n[2] * L::all(turn.column[j][2]);
-      reach = reach + L::abs(own - cosine * L::all(box.own_normal[j])) * L::all(box.half[j]);
-    }
-    gap = L::max(gap, L::abs((along + cosine * L::all(box.shifted)) - L::load(node.offset)) - (reach + thickness));
-  }
+  if constexpr (looks_at_slabs<L>) gap = L::max(gap, slab_gaps<L>(node, box, turn, c, h));
   for (int j = 0; j < 3; ++j) {  // the box's own axes
     const F along =
         (d[0] * L::all(turn.column[j][0]) + d[1] * L::all(turn.column[j][1])) + d[2] * L::all(turn.column[j][2]);

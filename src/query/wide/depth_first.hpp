@@ -46,6 +46,7 @@ class DepthFirst {
         continue;
       }
       if (!task_.spending.may_go_on_after(units_between_polls) || !task_.spending.allows(2 * wide_lanes)) return stop();
+      if (task_.spending.nears_end()) ask_for_statistics();
       const Expanded<L> first = expand<L, ranked>(met_, open_.take());
       if (open_.size != 0) {
         const Expanded<L> second = expand<L, ranked>(met_, open_.take());
@@ -101,6 +102,15 @@ class DepthFirst {
       return false;
     }
     return true;
+  }
+
+  /// Of the pairs that are left open if the search ends now.
+  void ask_for_statistics() const noexcept {
+    for (const SlotPairs* pairs : {&leaf_pairs_, &open_}) {
+      for (std::size_t i = pairs->size; i-- != 0 && pairs->size - i <= Shortlist::capacity;) {
+        met_.prefetch({pairs->of[0][i], pairs->of[1][i], unranked});
+      }
+    }
   }
 
   void stop() noexcept {

@@ -97,14 +97,9 @@ float Encounter::facing(Slot slot_a, Slot slot_b) const noexcept {
   return a_.statistics(slot_a).mean_normal.dot(relative_.rotation * b_.statistics(slot_b).mean_normal);
 }
 
-double Encounter::size(Slot slot_a, Slot slot_b) const noexcept {
-  return static_cast<double>(std::sqrt(squared_radius(a_.nodes()[slot_a / wide_lanes], slot_a % wide_lanes))) +
-         static_cast<double>(std::sqrt(squared_radius(b_.nodes()[slot_b / wide_lanes], slot_b % wide_lanes)));
-}
-
-Contact Encounter::cell_contact(Slot slot_a, Slot slot_b, double probability) const noexcept {
-  return met_contact(a_.statistics(slot_a), b_.statistics(slot_b), box(a_, slot_a).radius(), box(b_, slot_b).radius(),
-                     meshes_.pose(), a_.origin(), probability);
+MetPlace Encounter::place(Slot slot_a, Slot slot_b) const noexcept {
+  return met_place(a_.statistics(slot_a), b_.statistics(slot_b), static_cast<double>(box(a_, slot_a).radius()),
+                   static_cast<double>(box(b_, slot_b).radius()), meshes_.pose());
 }
 
 }  // namespace odds::query::wide

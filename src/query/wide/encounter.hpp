@@ -62,12 +62,11 @@ class Encounter {
   void prefetch(const NodePair& pair) const noexcept {
     for (const auto* at : {&a_.statistics(pair.a), &b_.statistics(pair.b)}) {
       __builtin_prefetch(at);
-      __builtin_prefetch(reinterpret_cast<const char*>(at) + 64);
+      __builtin_prefetch(reinterpret_cast<const char*>(at + 1) - 1);
     }
   }
   [[nodiscard]] float facing(Slot slot_a, Slot slot_b) const noexcept;
-  [[nodiscard]] double size(Slot slot_a, Slot slot_b) const noexcept;
-  [[nodiscard]] Contact cell_contact(Slot slot_a, Slot slot_b, double probability) const noexcept;
+  [[nodiscard]] MetPlace place(Slot slot_a, Slot slot_b) const noexcept;
 
  private:
   [[nodiscard]] static volume::Aabb box(const tree::WideTree& tree, Slot slot) noexcept;

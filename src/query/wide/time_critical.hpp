@@ -33,6 +33,9 @@ class TimeCritical {
         finish(Progressed::spent);
         break;
       }
+      if (task_.spending.nears_end()) {
+        task_.queue.show_first(Shortlist::capacity, [this](const NodePair& pair) { met_.prefetch(pair); });
+      }
       visit(task_.queue.pop());
     }
     if (task_.result.ended != Progressed::finished && task_.hits.empty()) consider_queue();

@@ -256,7 +256,8 @@ std::string contacts_section(bool charts) {
   std::string html =
       "<h2 id=\"contacts\">Contacts</h2>\n<p>What a force would be made of: the first contact of an answer, or, "
       "without "
-      "a proof, the place where the surfaces most probably meet, against the nearest contact of the exact set. "
+      "a proof, the place where the surfaces most probably meet, against the exact region of contact; direction and "
+      "depth against the nearest of the exact set. "
       "Medians; "
       "90th percentiles are in accuracy.csv.</p>\n";
   if (!charts) return html;

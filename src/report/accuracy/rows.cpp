@@ -146,12 +146,13 @@ std::vector<PushSweep> push_sweeps(const Study& study) {
   return sweeps;
 }
 
-ContactError contact_error(const query::Contact& given, std::span<const query::Contact> found, double size) {
+ContactError contact_error(const query::Contact& given, std::span<const query::Contact> found,
+                           const ContactRegion& region, double size) {
   const auto nearest = std::min_element(found.begin(), found.end(), [&](const auto& x, const auto& y) {
     return (x.position - given.position).squaredNorm() < (y.position - given.position).squaredNorm();
   });
   ContactError error;
-  error.position = (nearest->position - given.position).norm() / size;
+  error.position = region.distance(given.position) / size;
   error.normal_deg = std::atan2(nearest->normal.cross(given.normal).norm(), nearest->normal.dot(given.normal)) * 180.0 /
                      std::numbers::pi;
   error.depth = std::abs(nearest->depth - given.depth) / size;

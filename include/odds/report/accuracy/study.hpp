@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "odds/query/answer.hpp"
+#include "odds/report/accuracy/contact_region.hpp"
 #include "odds/report/accuracy/forecast.hpp"
 #include "odds/report/accuracy/poses.hpp"
 
@@ -165,9 +166,10 @@ struct PushSweep {
 /// Rows for each trial: all poses, each group, each band. A set without poses has no row.
 [[nodiscard]] std::vector<AccuracyRow> accuracy_rows(const Study& study);
 
-/// The contact of `found` nearest to `given`, compared with it. Precondition: `found` is not empty, size > 0.
+/// How far `given` is from the region of contact, and its direction and depth compared with those of the contact of
+/// `found` that is nearest to it. Precondition: `found` is not empty, size > 0.
 [[nodiscard]] ContactError contact_error(const query::Contact& given, std::span<const query::Contact> found,
-                                         double size);
+                                         const ContactRegion& region, double size);
 
 /// A pose that was answered badly: its squared errors of probability, added over all trials.
 struct WorstPose {

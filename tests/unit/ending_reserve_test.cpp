@@ -1,0 +1,36 @@
+// What of a budget is kept for the answer.
+#include "query/ending_reserve.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+
+#include "odds/math/random.hpp"
+
+namespace odds::query {
+namespace {
+
+TEST(EndingReserve, SettlesWhereFewEndingsAreLate) {
+  // Endings that take 0.5 to 1.5 us.
+  EndingReserve reserve;
+  math::Random random(3);
+  int late = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const auto took_ns = static_cast<std::int64_t>(random.uniform(500.0, 1500.0));
+    if (i >= 1000 && took_ns > reserve.ns()) ++late;
+    reserve.note(took_ns);
+  }
+  EXPECT_GT(late, 19000 / 20);
+  EXPECT_LT(late, 19000 / 6);
+}
+
+TEST(EndingReserve, StaysWithinBoundsWhateverHappens) {
+  EndingReserve reserve;
+  for (int i = 0; i < 100; ++i) reserve.note(1'000'000'000);
+  EXPECT_EQ(reserve.ns(), EndingReserve::most_ns);
+  for (int i = 0; i < 1000; ++i) reserve.note(1);
+  EXPECT_EQ(reserve.ns(), EndingReserve::least_ns);
+}
+
+}  // namespace
+}  // namespace odds::query
