@@ -7,6 +7,7 @@
 
 #include "odds/math/elementary.hpp"
 #include "odds/query/request.hpp"
+#include "odds/volume/kind.hpp"
 #include "query/remains.hpp"
 
 namespace odds::query {
@@ -36,9 +37,11 @@ struct AnswerOdds {
   return z < 0.0F ? 1.0F - upper : upper;
 }
 
-/// Which table an answer's odds come from.
-[[nodiscard]] constexpr std::size_t odds_index(Engine engine, EstimatorKind estimator, Method method) noexcept {
-  return (engine == Engine::wide ? 4U : 0U) + (estimator == EstimatorKind::kinematic ? 2U : 0U) +
+inline constexpr std::size_t odds_tables = 4 * volume::kind_names.size();
+
+/// Which table an answer's odds come from. Incremental searches are like exact ones.
+[[nodiscard]] constexpr std::size_t odds_index(volume::Kind volume, EstimatorKind estimator, Method method) noexcept {
+  return 4 * static_cast<std::size_t>(volume) + (estimator == EstimatorKind::kinematic ? 2U : 0U) +
          (method == Method::time_critical ? 1U : 0U);
 }
 

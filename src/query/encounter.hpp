@@ -46,8 +46,6 @@ enum class Progressed : std::uint8_t {
 template <volume::BoundingVolume V>
 class Encounter {
  public:
-  static constexpr Engine engine = Engine::binary;
-
   /// `b_in_a`: of B's hierarchy frame in A's.
   Encounter(const tree::Hierarchy<V>& a, const tree::Hierarchy<V>& b, const math::Pose& b_in_a,
             const Request& request) noexcept

@@ -12,12 +12,6 @@
 
 namespace odds::query {
 
-/// The searches whose undecided pairs are alike: how `rank` is meant differs between them.
-enum class Engine : std::uint8_t {
-  binary,  ///< rank: log2 of the expected number of crossings
-  wide,    ///< rank: log2 of the depth of overlap over the thickness of both surfaces
-};
-
 /// Two nodes whose volumes overlap. `rotation` maps B's frame to A's; volumes in m^3.
 struct NodesMet {
   const tree::NodeStatistics& a;

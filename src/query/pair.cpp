@@ -260,7 +260,7 @@ void forecast(const Met& met, const SearchResult& result, const Request& request
   float cell_probability = 0.0F;
   if (!result.shortlist.empty() && pair.hits.empty()) {
     const NodePair& likeliest = result.shortlist.highest();
-    const AnswerOdds& odds = answer_odds[odds_index(Met::engine, request.estimator, request.method)];
+    const AnswerOdds& odds = answer_odds[odds_index(pair.a->volume(), request.estimator, request.method)];
     cell_probability = met.probability(likeliest.a, likeliest.b);
     undecided =
         pair.recalibration(probability_of_hit(odds, remains_of(met, result, spending.so_far(), cell_probability)));

@@ -2,8 +2,12 @@
 // and poses that it was not fitted on. Prints the tables of src/query/answer_odds_table.hpp.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
+#include <map>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -23,6 +27,7 @@ using report::Procedure;
 struct Options {
   std::uint64_t poses = 30;
   std::uint64_t seed = 1;
+  std::string volume;  ///< empty: all
   std::vector<std::string> held_out;
 };
 
@@ -59,6 +64,9 @@ std::vector<Meeting> training_meetings() {
        {example("cyclone.stl.gz"), example("blob.stl.gz")},
        {example("DTC-scaled.stl.gz"), example("DTC-scaled.stl.gz")},
        {bumpy, bumpy + ",scale=0.985", Procedure::nested},
+       {"made:icosphere:frequency=40", "made:icosphere:frequency=36,radius=0.0488", Procedure::nested},
+       {"made:torus:ring=0.08,tube=0.03,around=180,across=90", "made:torus:ring=0.08,tube=0.0285,around=170,across=80",
+        Procedure::nested},
        {dense, dense + ",scale=0.99", Procedure::nested},
        {"made:torus:around=160,across=80", "made:torus:tube=0.0294,around=150,across=70", Procedure::nested}});
 }
@@ -87,20 +95,14 @@ struct Kept {
   std::vector<Unproved> answers;
 };
 
-/// The binary trees are tried with all volumes in turn, so that their odds are those of none.
-volume::Kind volume_for(query::Engine engine, std::size_t meeting) {
-  constexpr std::array<volume::Kind, 4> binary = {volume::Kind::obb, volume::Kind::kdop18, volume::Kind::aabb,
-                                                  volume::Kind::sphere};
-  return engine == query::Engine::wide ? volume::Kind::wide : binary[meeting % binary.size()];
-}
-
 /// What tables of odds are for, in the order of odds_index: incremental answers count with the exact ones.
 using Tables = std::array<std::vector<Kept>, 4>;
 
-Tables gather(const std::vector<Meeting>& meetings, query::Engine engine, const Options& options, std::uint64_t seed) {
+Tables gather(const std::vector<Meeting>& meetings, volume::Kind volume, const Options& options, std::uint64_t seed) {
   using query::EstimatorKind;
   using query::Method;
   Asked asked;
+  asked.volume = volume;
   for (const EstimatorKind estimator : {EstimatorKind::cells, EstimatorKind::kinematic}) {
     for (const Method method : {Method::exact, Method::incremental, Method::time_critical}) {
       asked.ways.push_back({estimator, method});
@@ -111,13 +113,12 @@ Tables gather(const std::vector<Meeting>& meetings, query::Engine engine, const 
   asked.seed = seed;
   Tables tables;
   for (std::size_t i = 0; i < meetings.size(); ++i) {
-    asked.volume = volume_for(engine, i);
     const auto answers = unproved_answers(meetings[i], asked);
     if (!answers.ok()) fmt::print(stderr, "left out: {}\n", answers.error().message());
     for (auto& table : tables) table.push_back({meetings[i], {}});
     for (std::size_t way = 0; answers.ok() && way < asked.ways.size(); ++way) {
       const std::vector<Unproved>& found = answers.value()[way];
-      const std::size_t index = query::odds_index(engine, asked.ways[way].estimator, asked.ways[way].method) % 4;
+      const std::size_t index = query::odds_index(volume, asked.ways[way].estimator, asked.ways[way].method) % 4;
       auto& all = tables[index].back().answers;
       all.insert(all.end(), found.begin(), found.end());
     }
@@ -158,9 +159,20 @@ query::AnswerOdds fit(const std::vector<Kept>& all) {
   return odds;
 }
 
+/// How far from first touch, in parts of the size, whichever side: each such set holds hits and misses.
+std::string distance_name(double offset) {
+  const double away = std::abs(offset);
+  if (away > 0.02) return "5 to 30 %";
+  for (const auto& [limit, name] : {std::pair{5e-6, "1e-6"}, {5e-4, "1e-4"}, {1.5e-3, "0.1 %"}, {5e-3, "0.2 %"}}) {
+    if (away < limit) return name;
+  }
+  return "1 %";
+}
+
 void judge(const std::vector<Kept>& all, const query::AnswerOdds& odds, const char* title) {
   std::vector<report::Forecast> apart;
   std::vector<report::Forecast> nested;
+  std::map<std::string, std::vector<report::Forecast>> by_distance;
   fmt::print(stderr, "{}\n{:>8}{:>9}{:>8}{:>8}\n", title, "answers", "P said", "hits", "error");
   const auto line = [](const std::vector<report::Forecast>& forecasts, const std::string& name) {
     if (forecasts.empty()) return;
@@ -170,12 +182,16 @@ void judge(const std::vector<Kept>& all, const query::AnswerOdds& odds, const ch
   };
   for (const Kept& kept : all) {
     std::vector<report::Forecast> here;
-    for (const Unproved& one : kept.answers) here.push_back({query::probability_of_hit(odds, one.remains), one.hit});
+    for (const Unproved& one : kept.answers) {
+      here.push_back({query::probability_of_hit(odds, one.remains), one.hit});
+      if (kept.meeting.procedure != Procedure::nested) by_distance[distance_name(one.offset)].push_back(here.back());
+    }
     line(here, kept.meeting.a + " + " + kept.meeting.b);
     auto& pool = kept.meeting.procedure == Procedure::nested ? nested : apart;
     pool.insert(pool.end(), here.begin(), here.end());
   }
   line(apart, "all that are not nested");
+  for (const auto& [name, forecasts] : by_distance) line(forecasts, "of these at " + name);
   line(nested, "all nested");
 }
 
@@ -191,12 +207,13 @@ void print(const query::AnswerOdds& odds, const std::string& comment) {
 void run(const Options& options) {
   constexpr std::array<const char*, 4> names = {"cells, exact and incremental", "cells, time-critical",
                                                 "kinematic, exact and incremental", "kinematic, time-critical"};
-  for (const query::Engine engine : {query::Engine::binary, query::Engine::wide}) {
-    const Tables training = gather(training_meetings(), engine, options, options.seed);
-    const Tables held_out = gather(held_out_meetings(options.held_out), engine, options, options.seed + 1);
+  for (const std::string_view word : volume::kind_names) {
+    const volume::Kind volume = *volume::kind_from_name(word);
+    if (!options.volume.empty() && options.volume != word) continue;
+    const Tables training = gather(training_meetings(), volume, options, options.seed);
+    const Tables held_out = gather(held_out_meetings(options.held_out), volume, options, options.seed + 1);
     for (std::size_t i = 0; i < training.size(); ++i) {
-      const std::string name =
-          (engine == query::Engine::wide ? "wide engine, " : "binary trees, ") + std::string(names[i]);
+      const std::string name = fmt::format("{}, {}", word, names[i]);
       const query::AnswerOdds odds = fit(training[i]);
       print(odds, name);
       judge(training[i], odds, (name + ": fitted on").c_str());
@@ -214,6 +231,7 @@ int main(int argc, char** argv) {
   app.add_option("--poses", options.poses, "for each distance")->check(CLI::Range(1, 100000));
   app.add_option("--seed", options.seed, "of the training poses; the held-out ones have the next");
   app.add_option("--held-out", options.held_out, "more meshes to judge by, each with its copy");
+  app.add_option("--bv", options.volume, "tables of this volume alone; default: of all");
   CLI11_PARSE(app, argc, argv);
   odds::calibration::run(options);
   return 0;

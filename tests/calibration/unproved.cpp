@@ -111,7 +111,7 @@ Result<std::vector<std::vector<Unproved>>> unproved_answers(const Meeting& meeti
       for (const std::uint64_t units : asked.units) {
         request.budget = query::Budget::work(units);
         const auto remains = search(*shapes[0], *shapes[1], pose, request, memory);
-        if (remains) found[way].push_back({*remains, hit});
+        if (remains) found[way].push_back({*remains, hit, made.value().offset});
       }
     }
   }

@@ -22,6 +22,7 @@ struct Meeting {
 struct Unproved {
   query::Remains remains;
   bool hit = false;
+  double offset = 0.0;  ///< from first touch, parts of the size; see report::PoseBand
 };
 
 /// A way to answer.

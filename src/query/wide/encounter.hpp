@@ -19,8 +19,6 @@ struct NearestTask;
 /// Made once per query. Both trees and the posed meshes must outlive it.
 class Encounter {
  public:
-  static constexpr Engine engine = Engine::wide;
-
   Encounter(const tree::WideTree& a, const tree::WideTree& b, const PosedMeshes& meshes,
             EstimatorKind estimator) noexcept;
 
