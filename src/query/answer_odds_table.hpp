@@ -1,4 +1,5 @@
 // Printed by odds_calibration (tests/calibration), which names the meshes that it was fitted on; do not edit by hand.
+// From obb to hull all have one fit, made over aabb, obb, sphere and kdop18 together.
 #pragma once
 
 #include <array>
