@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "odds/math/random.hpp"
+#include "query/posed_meshes.hpp"
 #include "query/search.hpp"
 #include "query/shape_data.hpp"
 
