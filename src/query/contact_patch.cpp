@@ -104,6 +104,8 @@ struct PatchBuilder::Scratch {
   void make_hasty_patch(const PatchInput& input) noexcept;
   Patch make_patch(const PatchInput& input, const patch::RimSums& sums, Indices indices, const Effort& effort,
                    Watch& watch) noexcept;
+  Patch patch_along(const Vec3& normal, const PatchInput& input, const patch::RimSums& sums, Indices indices,
+                    const Effort& effort, Watch& watch) noexcept;
   void find_witnesses(Indices indices, const patch::Frame& frame, Watch& watch) noexcept;
   std::size_t probe(const PatchInput& input, const Vec3& centre, double reach, const patch::Frame& frame,
                     const patch::Chosen& spread, Measured& measured, Watch& watch) noexcept;
@@ -285,10 +287,21 @@ std::size_t PatchBuilder::Scratch::probe(const PatchInput& input, const Vec3& ce
 
 Patch PatchBuilder::Scratch::make_patch(const PatchInput& input, const patch::RimSums& sums, Indices indices,
                                         const Effort& effort, Watch& watch) noexcept {
+  const patch::PatchView view{input, rim, sums, indices, effort.sample};
+  Patch made = patch_along(patch::patch_normal(view, watch), input, sums, indices, effort, watch);
+  // A lump at the corner of two faces that nearly coincide has an area of its own, along which the bodies overlap from
+  // end to end.
+  if (!(made.depth > tolerances::lump_depth * sums.diagonal()) || sums.length == 0.0) return made;
+  const Patch other = patch_along(patch::shortest_way_out(view, watch), input, sums, indices, effort, watch);
+  return other.depth < made.depth ? other : made;
+}
+
+Patch PatchBuilder::Scratch::patch_along(const Vec3& normal, const PatchInput& input, const patch::RimSums& sums,
+                                         Indices indices, const Effort& effort, Watch& watch) noexcept {
   Patch made;
   made.lower = sums.lower;
   made.upper = sums.upper;
-  made.normal = patch::patch_normal({input, rim, sums, indices, effort.sample}, watch);
+  made.normal = normal;
   const patch::Frame frame(made.normal);
   const Vec3 centre = span_centre(rim, indices, sums.centre(rim.origin), made.normal);
   find_witnesses(effort.ends_only ? telling.ends_of(rim.pieces, indices, frame, fan, centre)

@@ -286,4 +286,8 @@ Vec3 patch_normal(const PatchView& view, Watch& watch) noexcept {
   return sums.length > 0.0 ? snap_to_face(view, normal, watch) : normal;
 }
 
+Vec3 shortest_way_out(const PatchView& view, Watch& watch) noexcept {
+  return least_overlap(view, view.sums.vector_area(view.rim.origin), watch);
+}
+
 }  // namespace odds::query::patch

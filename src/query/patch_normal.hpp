@@ -21,4 +21,8 @@ struct PatchView {
 /// unit length.
 [[nodiscard]] Vec3 patch_normal(const PatchView& view, Watch& watch) noexcept;
 
+/// The direction of least overlap among the normals of the patch's faces and its vector area, measured right through
+/// the bodies. Unit.
+[[nodiscard]] Vec3 shortest_way_out(const PatchView& view, Watch& watch) noexcept;
+
 }  // namespace odds::query::patch

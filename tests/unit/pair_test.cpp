@@ -217,6 +217,22 @@ TEST(Pair, AHitThatIsEnoughHasItsDepthThoughNoneIsKnown) {
   EXPECT_GT(many.contacts[0].depth, 0.0);
 }
 
+TEST(Pair, ALumpAtACornerOfFlushBricksIsNotPushedFromEndToEnd) {
+  // Walls that coincide to 2 nm and 25 nrad: at one corner the rounding of the turn makes a rim of its own.
+  const auto brick = Shape::build(made_mesh("box:x=0.2,y=0.5,z=0.248")).value();
+  auto pair = std::move(Pair::make(brick, brick)).value();
+  math::Pose pose;
+  pose.rotation << 0.99999999999999989, 1.3504912776384688e-08, -7.4509883184334598e-09, -1.3504912672059829e-08,
+      0.99999999999999978, 1.2171243966113742e-08, 7.4509885075222164e-09, -1.2171243850357446e-08, 0.99999999999999989;
+  pose.translation = {2.3786570551535305e-09, -1.5867360871792951e-10, -0.24797026431371449};
+  const Answer& answer = pair.run(pose, {.max_contacts = 8});
+  ASSERT_GE(answer.contacts.size(), 4U);
+  for (const Contact& contact : answer.contacts) {
+    EXPECT_GT(contact.normal.z(), 0.99);
+    EXPECT_LT(contact.depth, 1e-4);
+  }
+}
+
 TEST(Pair, AnIncrementalRunWithoutTimeIsNotSureOfAnything) {
   const auto shape = Shape::build(testing::wavy_sphere(24)).value();
   auto pair = std::move(Pair::make(shape, shape)).value();

@@ -80,6 +80,10 @@ inline constexpr double round_overlap = 0.12;
 inline constexpr double opposed = -0.3;
 /// By how much the patch with the last run's normal is preferred as the first, so that the order does not flicker.
 inline constexpr double keep_first = 1.05;
+/// An overlap that is this many times deeper than its rim is wide, more than any needle, is looked at in other
+/// directions too.
+/// Test: Pair.ALumpAtACornerOfFlushBricksIsNotPushedFromEndToEnd.
+inline constexpr double lump_depth = 1000.0;
 /// Depth of a contact, as a part of the smaller body's size, that is believed where no run has measured any: a solver
 /// then holds up what rests on it, and a wrong direction moves a body by no more than this in a few steps.
 /// Test: StarvedCrate.DoesNotSinkIn, StarvedCrate.IsNeverThrown.
