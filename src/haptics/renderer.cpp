@@ -47,6 +47,8 @@ bool Renderer::begin() noexcept {
   failed_reads_ = 0;
   rescued_steps_ = 0;
   contacts_left_out_ = 0;
+  pairs_left_out_ = 0;
+  frame_overshoot_us_ = 0.0;
   effects_->reset();
   if (!hand_) return true;
   DeviceState state;
@@ -159,6 +161,8 @@ void Renderer::tick(std::int64_t now_ns, TickRecord& record) noexcept {
   const ode::Wrench on_hand = effects_->on_hand(tick);
   copy(step, record);
   contacts_left_out_ += step.contacts_left_out;
+  pairs_left_out_ += step.pairs_left_out;
+  frame_overshoot_us_ = std::max(frame_overshoot_us_, step.frame_overshoot_us);
   if (step.bodies_slowed + step.bodies_recovered > 0) ++rescued_steps_;
   if (hand_) {
     if (step.bodies_recovered > 0) safety_->trip();

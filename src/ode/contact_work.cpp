@@ -24,13 +24,14 @@ Momentum momentum_without_contacts(dBodyID body, const MassProperties& mass, con
   return m;
 }
 
-double work_of_contacts(const Momentum& before, dBodyID body, const MassProperties& mass, const Wrench& pull,
-                        double step_s) noexcept {
+ContactEffect effect_of_contacts(const Momentum& before, dBodyID body, const MassProperties& mass, const Wrench& pull,
+                                 double step_s) noexcept {
   const Vec3 velocity = vector_of(dBodyGetLinearVel(body));
   const Vec3 spin = vector_of(dBodyGetAngularVel(body));
   const Vec3 impulse = mass.mass_kg * velocity - before.linear_ns - step_s * pull.force_n;
   const Vec3 turn = angular_momentum(body, mass) - before.angular_nms - step_s * pull.torque_nm;
-  return 0.5 * impulse.dot(velocity + before.velocity_m_per_s) + 0.5 * turn.dot(spin + before.spin_rad_per_s);
+  return {impulse,
+          0.5 * impulse.dot(velocity + before.velocity_m_per_s) + 0.5 * turn.dot(spin + before.spin_rad_per_s)};
 }
 
 }  // namespace odds::ode

@@ -19,9 +19,15 @@ struct Momentum {
 [[nodiscard]] Momentum momentum_without_contacts(dBodyID body, const MassProperties& mass, const Vec3& gravity_m_per_s2,
                                                  double step_s) noexcept;
 
-/// Joule, after the step. `pull`: what the coupling exerted. An impulse times the mean of the velocities before and
-/// after it is the change of kinetic energy exactly.
-[[nodiscard]] double work_of_contacts(const Momentum& before, dBodyID body, const MassProperties& mass,
-                                      const Wrench& pull, double step_s) noexcept;
+/// What contacts did to one body in a step.
+struct ContactEffect {
+  Vec3 impulse_ns = Vec3::Zero();  ///< world frame
+  double work_j = 0.0;             ///< change of kinetic energy
+};
+
+/// After the step. `pull`: what the coupling exerted. An impulse times the mean of the velocities before and after it
+/// is the change of kinetic energy exactly.
+[[nodiscard]] ContactEffect effect_of_contacts(const Momentum& before, dBodyID body, const MassProperties& mass,
+                                               const Wrench& pull, double step_s) noexcept;
 
 }  // namespace odds::ode

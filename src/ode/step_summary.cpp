@@ -25,6 +25,8 @@ void StepSummary::add(const StepSummary& next) noexcept {
   solver_calls += next.solver_calls;
   bodies_stepped += next.bodies_stepped;
   contact_work_j += next.contact_work_j;
+  pairs_left_out += next.pairs_left_out;
+  frame_overshoot_us = std::max(frame_overshoot_us, next.frame_overshoot_us);
   contacts_left_out += next.contacts_left_out;
   max_depth_m = std::max(max_depth_m, next.max_depth_m);
   collision_us += next.collision_us;

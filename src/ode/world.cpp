@@ -15,6 +15,7 @@
 #include "ode/coupling_joint.hpp"
 #include "ode/mass_properties.hpp"
 #include "ode/vectors.hpp"
+#include "ode/world_frame.hpp"
 #include "ode/world_options.hpp"
 
 namespace odds::ode {
@@ -43,6 +44,7 @@ struct Body {
   MassProperties mass;
   std::unique_ptr<CouplingJoint> coupling;
   BodyState last_good;
+  Vec3 contact_impulse_ns = Vec3::Zero();  // since prepare()
 };
 
 }  // namespace
@@ -69,6 +71,8 @@ struct World::Implementation {
   std::uint32_t dynamic_bodies = 0;
   StepSummary summary;  // of the step under way
   MeetingHook hook;
+  FrameBudget frame;
+  dGeomID attention = nullptr;    // the body that a hand holds
   std::vector<Momentum> momenta;  // of all bodies, before the solver; empty unless asked for
 
   Result<Body*> add(std::shared_ptr<const query::Shape> shape, const math::Pose& pose, const std::string& name);
@@ -78,7 +82,7 @@ struct World::Implementation {
   void note_answer(dGeomID a, dGeomID b, Meeting& meeting);
   void add_contact(const ContactPoint& point, const dContactGeom& found, dBodyID a, dBodyID b);
   void note_momenta();
-  [[nodiscard]] double contact_work() const;
+  void note_contacts();
   void apply_damping();
   void hold_to_limits(Body& body);
   void place(Body& body, const BodyState& state);
@@ -292,15 +296,15 @@ void World::Implementation::note_momenta() {
   }
 }
 
-double World::Implementation::contact_work() const {
-  double work = 0.0;
+void World::Implementation::note_contacts() {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const Body& body = *bodies[i];
+    Body& body = *bodies[i];
     if (body.body == nullptr) continue;
     const Wrench pull = body.coupling ? body.coupling->wrench() : Wrench{};
-    work += work_of_contacts(momenta[i], body.body, body.mass, pull, options.step_s);
+    const ContactEffect effect = effect_of_contacts(momenta[i], body.body, body.mass, pull, options.step_s);
+    body.contact_impulse_ns += effect.impulse_ns;
+    summary.contact_work_j += effect.work_j;
   }
-  return work;
 }
 
 void World::Implementation::hold_to_limits(Body& body) {
@@ -391,14 +395,20 @@ void World::add_coupling(BodyId id) {
   Body& body = *implementation_->bodies.at(id.index);
   if (body.body != nullptr && !body.coupling) {
     body.coupling = std::make_unique<CouplingJoint>(implementation_->world, body.body);
+    implementation_->attention = body.geom.id();
   }
 }
 
 std::optional<Error> World::prepare() {
-  if (auto error = implementation_->prepare_pairs()) return error;
-  if (implementation_->options.contact_work) implementation_->momenta.resize(implementation_->bodies.size());
-  if (implementation_->dynamic_bodies > 0) implementation_->warm_up_solver();
-  dSpaceClean(implementation_->space);
+  Implementation& self = *implementation_;
+  if (auto error = self.prepare_pairs()) return error;
+  Result<FrameBudget> frame = make_frame_budget(self.options, self.bodies.size());
+  if (!frame) return frame.error();
+  self.frame = std::move(frame).value();
+  for (const auto& body : self.bodies) body->contact_impulse_ns.setZero();
+  if (self.options.contact_work) self.momenta.resize(self.bodies.size());
+  if (self.dynamic_bodies > 0) self.warm_up_solver();
+  dSpaceClean(self.space);
   return std::nullopt;
 }
 
@@ -406,7 +416,9 @@ StepSummary World::step() noexcept {
   Implementation& self = *implementation_;
   self.summary = {};
   const std::int64_t start_ns = self.options.clock();
-  if (self.options.contact.enabled) dSpaceCollide(self.space, &self, &Implementation::near);
+  if (self.options.contact.enabled) {
+    collide_frame(self.space, &self, &Implementation::near, self.frame.get(), self.attention, self.summary);
+  }
   const std::int64_t collided_ns = self.options.clock();
   self.summary.collision_us = 1e-3 * static_cast<double>(collided_ns - start_ns);
   if (self.dynamic_bodies == 0) return self.summary;
@@ -417,7 +429,7 @@ StepSummary World::step() noexcept {
   self.summary.bodies_stepped = self.dynamic_bodies;
   self.options.solver == Solver::exact ? dWorldStep(self.world, h) : dWorldQuickStep(self.world, h);
   dJointGroupEmpty(self.contacts);
-  if (measures) self.summary.contact_work_j = self.contact_work();
+  if (measures) self.note_contacts();
   for (const auto& body : self.bodies) {
     if (body->body != nullptr) self.hold_to_limits(*body);
   }
@@ -434,6 +446,8 @@ Wrench World::coupling_wrench(BodyId id) const noexcept {
   const Body& body = *implementation_->bodies[id.index];
   return body.coupling ? body.coupling->wrench() : Wrench{};
 }
+
+Vec3 World::contact_impulse(BodyId id) const noexcept { return implementation_->bodies[id.index]->contact_impulse_ns; }
 
 void World::apply(BodyId id, const Wrench& wrench) noexcept {
   const Body& body = *implementation_->bodies[id.index];

@@ -18,6 +18,9 @@ std::optional<Error> check(const WorldOptions& o) {
   if (o.query.max_contacts < 0 || o.query.max_contacts > most_contacts_per_pair) {
     return bad("the contacts of a pair are out of range", "give 0 to 8");
   }
+  if (!(o.frame_us > 0.0) || o.frame_work_units < 1) {
+    return bad("the frame's budget is not positive", "give microseconds above zero, at least one work unit");
+  }
   if (o.max_contacts_per_step < 1 || o.max_contacts_per_step > 1024) {
     return bad("the contacts of a step are out of range", "give 1 to 1024");
   }

@@ -19,10 +19,13 @@ bool machine_was_quiet(const RunInfo& info, const RunSummary& summary) {
   return summary.stall_share <= largest_stall_share && (!info.fitness || info.fitness->fit);
 }
 
-Check answered(const RunSummary& s) {
+Check answered(const RunInfo& info, const RunSummary& s) {
   Check check{"answered", "Did every planned tick run, with an answer to every query?", "", State::met};
   check.finding = fmt::format("{} of {} ticks ran, {} queries, all answered", grouped(s.ran), grouped(s.planned),
                               grouped(s.queries));
+  if (info.pairs_left_out > 0) {
+    check.finding += fmt::format("; {} pairs had to wait for a later tick", grouped(info.pairs_left_out));
+  }
   if (s.skipped > 0) check.finding += fmt::format("; {} periods skipped", grouped(s.skipped));
   return check;
 }
@@ -53,6 +56,10 @@ Check budget(const RunInfo& info, const RunSummary& s) {
                               duration(info.budget_us * 1e3), duration(overshoot_ns),
                               duration(static_cast<double>(s.query_overshoot.max())),
                               duration(info.allowed_overshoot_us * 1e3), duration(s.longest_overshoot_us * 1e3));
+  if (std::isfinite(info.frame_us)) {
+    check.finding += fmt::format("; all of a step in {}: at most {} beyond it", duration(info.frame_us * 1e3),
+                                 duration(info.frame_overshoot_us * 1e3));
+  }
   return check;
 }
 
@@ -110,8 +117,9 @@ Check machine(const RunInfo& info, const RunSummary& s) {
 
 std::vector<Check> run_checks(const RunInfo& info, const RunSummary& summary) {
   const bool quiet = machine_was_quiet(info, summary);
-  std::vector<Check> checks{answered(summary), deadline(info, summary), budget(info, summary), memory(info, summary),
-                            force(summary),    recording(summary),      machine(info, summary)};
+  std::vector<Check> checks{answered(info, summary), deadline(info, summary), budget(info, summary),
+                            memory(info, summary),   force(summary),          recording(summary),
+                            machine(info, summary)};
   const std::uint64_t missed = summary.late + summary.skipped;
   if (summary.skipped > 0) checks[0].state = quiet ? State::missed : State::inconclusive;
   if (missed > 0) checks[1].state = quiet ? State::missed : State::inconclusive;

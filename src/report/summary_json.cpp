@@ -39,12 +39,13 @@ Json run(const RunInfo& info) {
           {"effects", info.effects},
           {"period_us", static_cast<double>(info.period_ns) * 1e-3},
           {"budget_us", number_or_null(info.budget_us)},
+          {"frame_us", number_or_null(info.frame_us)},
           {"allowed_overshoot_us", number_or_null(info.allowed_overshoot_us)},
           {"simulated_time", info.simulated_time},
           {"stopped_early", info.loop.stopped}};
 }
 
-Json counts(const RunSummary& s) {
+Json counts(const RunInfo& info, const RunSummary& s) {
   return {{"planned", s.planned},
           {"ran", s.ran},
           {"skipped", s.skipped},
@@ -53,6 +54,7 @@ Json counts(const RunSummary& s) {
           {"records_lost", s.records_lost},
           {"queries", s.queries},
           {"ticks_with_query", s.ticks_with_query},
+          {"pairs_left_out", info.pairs_left_out},
           {"hits", s.hits},
           {"proved", s.by_basis[0]},
           {"estimated", s.by_basis[1]},
@@ -122,9 +124,10 @@ std::string summary_json(const RunInfo& info, const RunSummary& s) {
                     {"net", figures(s.query_net)},
                     {"net_overshoot", figures(s.query_overshoot)},
                     {"longest_gross_overshoot_us", s.longest_overshoot_us},
+                    {"frame_overshoot_us", info.frame_overshoot_us},
                     {"stall_share", s.stall_share}}},
                   {"phases", {{"collision", figures(s.collision)}, {"step", figures(s.step)}}},
-                  {"counts", counts(s)},
+                  {"counts", counts(info, s)},
                   {"contact",
                    {{"most_contacts", s.most_contacts},
                     {"deepest_m", number_or_null(s.deepest_m)},

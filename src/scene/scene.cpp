@@ -57,6 +57,10 @@ std::optional<Error> read_query(const Settings& settings, Scene& scene) {
   }
   reader.number("p_min", {0.0, 1.0, true}, request.p_min);
   if (reader.integer("k_min", 1, 1'000'000, number)) request.k_min = static_cast<std::uint32_t>(number);
+  reader.number("frame_us", Range::positive(), scene.frame.microseconds);
+  if (reader.integer("frame_work_units", 1, largest_integer, number)) {
+    scene.frame.work_units = static_cast<std::uint64_t>(number);
+  }
   if (reader.integer("max_contacts", 0, 8, number)) request.max_contacts = static_cast<int>(number);
   return reader.finish();
 }
@@ -315,6 +319,8 @@ ode::WorldOptions Scene::world_options(const haptics::EffectSet& asked) const {
   ode::WorldOptions options;
   options.step_s = loop.period_s();
   options.query = query;
+  options.frame_us = frame.microseconds;
+  options.frame_work_units = frame.work_units;
   options.solver = solver;
   options.iterations = solver_iterations;
   options.max_contacts_per_step = max_contacts;

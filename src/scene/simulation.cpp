@@ -73,7 +73,10 @@ std::optional<Error> Simulation::load() {
                  "give more than 0 s and at most 86.4 million ticks"};
   }
   ticks_ = static_cast<std::uint64_t>(wanted);
-  if (options_.simulated_time) scene_.query.budget = repeatable(scene_.query.budget);
+  if (options_.simulated_time) {
+    scene_.query.budget = repeatable(scene_.query.budget);
+    scene_.frame = repeatable(scene_.frame);
+  }
   for (const Mesh& mesh : scene_.meshes) {
     const std::string what = fmt::format("mesh '{}'", mesh.name);
     report(what, 0.0);
@@ -84,7 +87,9 @@ std::optional<Error> Simulation::load() {
     report(what, 1.0);
   }
   effects_ = scene_.make_effects();
-  Result<ode::World> world = ode::World::make(scene_.world_options(*effects_));
+  ode::WorldOptions world_options = scene_.world_options(*effects_);
+  world_options.contact_work = world_options.contact_work || options_.contact_impulse;
+  Result<ode::World> world = ode::World::make(world_options);
   if (!world) return world.error();
   world_.emplace(std::move(world).value());
   if (auto error = add_bodies()) return error;
@@ -129,7 +134,9 @@ std::optional<Error> Simulation::add_hand() {
     const haptics::DeviceRequest request{&scene_.device->settings, scene_.base_directory};
     auto device = haptics::make_device(scene_.device->type, request);
     if (!device) return device.error();
-    device_ = std::make_unique<haptics::RecordingDevice>(std::move(device).value(), ticks_);
+    std::unique_ptr<haptics::Device> used = std::move(device).value();
+    if (options_.use_device) used = options_.use_device(std::move(used));
+    device_ = std::make_unique<haptics::RecordingDevice>(std::move(used), ticks_);
     if (auto error = device_->open()) return error;
     haptics::DeviceSpec spec = device_->spec();
     if (scene_.device->physical_damping_ns_per_m)
@@ -216,6 +223,8 @@ RunOutcome Simulation::run(const std::stop_token& stop) {
   outcome.failed_reads = renderer_->failed_reads();
   outcome.rescued_steps = renderer_->rescued_steps();
   outcome.contacts_left_out = renderer_->contacts_left_out();
+  outcome.pairs_left_out = renderer_->pairs_left_out();
+  outcome.frame_overshoot_us = renderer_->frame_overshoot_us();
   for (std::size_t i = 0; i < effects_->size(); ++i) outcome.effects.push_back(effects_->cost(i));
   outcome.events = effects_->events();
   outcome.events_lost = effects_->events_lost();

@@ -77,6 +77,7 @@ report::RunInfo describe(const scene::Simulation& simulation, const RunArguments
   for (const scene::AskedEffect& effect : scene.effects) info.effects.push_back(effect.name);
   info.period_ns = scene.loop.period_ns;
   info.budget_us = simulation.budget().microseconds;
+  info.frame_us = simulation.scene().frame.microseconds;
   info.simulated_time = arguments.fast;
   info.host = realtime::describe_host();
   return info;
@@ -110,6 +111,8 @@ int run(const RunArguments& arguments) {
   }
   info.loop = outcome.loop;
   info.thread = outcome.thread;
+  info.pairs_left_out = outcome.pairs_left_out;
+  info.frame_overshoot_us = outcome.frame_overshoot_us;
   for (const haptics::EffectCost& cost : outcome.effects) {
     info.effect_costs.push_back(
         {cost.name, cost.place.line, cost.ticks, cost.evaluations, cost.total_ns, cost.longest_ns});

@@ -70,6 +70,7 @@ void print_run_table(const report::RunInfo& info, const report::RunSummary& s, c
   if (outcome.failed_reads > 0) line("device", fmt::format("{} reads failed", outcome.failed_reads));
   if (outcome.rescued_steps > 0)
     line("world", fmt::format("{} steps held a body's speed or put it back", outcome.rescued_steps));
+  if (outcome.pairs_left_out > 0) line("pairs without time", std::to_string(outcome.pairs_left_out));
   if (outcome.contacts_left_out > 0) line("contacts left out", std::to_string(outcome.contacts_left_out));
   for (const realtime::SetupLine& setup : info.thread) line("asked", setup.text());
   for (const report::Check& check : s.checks) {

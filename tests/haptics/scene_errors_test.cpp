@@ -108,6 +108,8 @@ INSTANTIATE_TEST_SUITE_P(
         Malformed{"LockText", 4, "lock_memory = \"yes\"", "4:15", "true or false"},
         Malformed{"BudgetZero", 6, "budget_us = 0", "6:13", "greater than 0"},
         Malformed{"WorkFraction", 6, "work_units = 0.5", "6:14", "an integer"},
+        Malformed{"FrameZero", 6, "frame_us = 0", "6:12", "greater than 0"},
+        Malformed{"FrameWorkFraction", 6, "frame_work_units = 0.5", "6:20", "an integer"},
         Malformed{"MethodUnknown", 7, "method = \"time_critical\"", "7:10", "did you mean 'time-critical'"},
         Malformed{"VolumeUnknown", 7, "bv = \"obbb\"", "7:6", "did you mean 'obb'"},
         Malformed{"EstimatorUnknown", 7, "estimator = \"book\"", "7:13", "cells or kinematic"},

@@ -158,6 +158,76 @@ TEST(WorldContact, ABoxRestsOnAPlateAsDeepAsTheStiffnessSays) {
   EXPECT_LT(world.state(body).pose.translation.head<2>().norm(), 5e-3);
 }
 
+TEST(WorldContact, TheImpulseOfContactsCarriesTheWeightWhereItIsAskedFor) {
+  for (const bool asked : {true, false}) {
+    WorldOptions options = repeatable_options();
+    options.gravity_m_per_s2 = Vec3(0, 0, -9.81);
+    options.contact.damping_ns_per_m = 200;
+    options.contact_work = asked;
+    World world = make(options);
+    ASSERT_TRUE(world.add_fixed(floor_plate(), at(0, 0, 0), "floor").ok());
+    const BodyId body = world.add_dynamic(cube(), at(0, 0, 0.0998), {.mass_kg = 0.5}, "cube").value();
+    ASSERT_FALSE(world.prepare().has_value());
+    for (int i = 0; i < 500; ++i) world.step();
+    const Vec3 before = world.contact_impulse(body);
+    for (int i = 0; i < 1000; ++i) world.step();
+    const Vec3 force = world.contact_impulse(body) - before;  // over a second
+    if (asked) {
+      EXPECT_NEAR(force.z(), 0.5 * 9.81, 0.01);
+    } else {
+      EXPECT_EQ(force.norm(), 0.0);
+    }
+    EXPECT_LT(force.head<2>().norm(), 0.01);
+  }
+}
+
+TEST(WorldFrame, WorkIsBoundedCountedAndShared) {
+  const auto run = [](std::uint64_t units, std::uint64_t& left_out, std::uint64_t& most_work) {
+    WorldOptions options = repeatable_options();
+    options.gravity_m_per_s2 = Vec3(0, 0, -9.81);
+    options.solver = Solver::iterative;
+    options.max_contacts_per_step = 256;
+    options.frame_work_units = units;
+    World world = make(options);
+    EXPECT_TRUE(world.add_fixed(floor_plate(), at(0, 0, 0), "floor").ok());
+    std::vector<BodyId> bodies;
+    for (int i = 0; i < 16; ++i) {
+      const double x = 0.2 * (i % 4) - 0.3;
+      const double y = 0.2 * (i / 4) - 0.3;
+      bodies.push_back(world.add_dynamic(cube(), at(x, y, 0.105), {.mass_kg = 0.2}, "cube").value());
+    }
+    EXPECT_FALSE(world.prepare().has_value());
+    left_out = 0;
+    most_work = 0;
+    double lowest_m = 1.0;
+    for (int i = 0; i < 400; ++i) {
+      const StepSummary step = world.step();
+      left_out += step.pairs_left_out;
+      most_work = std::max(most_work, step.node_pairs + step.triangle_pairs);
+    }
+    for (const BodyId body : bodies) lowest_m = std::min(lowest_m, world.state(body).pose.translation.z());
+    return lowest_m;
+  };
+  std::uint64_t left_out = 0;
+  std::uint64_t most_work = 0;
+  EXPECT_GT(run(std::numeric_limits<std::uint64_t>::max(), left_out, most_work), 0.098);
+  EXPECT_EQ(left_out, 0U);
+  const std::uint64_t all = most_work;
+  ASSERT_GT(all, 100U);
+  EXPECT_GT(run(all / 10, left_out, most_work), 0.09);  // nobody falls through: who waited comes first
+  EXPECT_GT(left_out, 0U);
+  EXPECT_LE(most_work, all / 10 + 200);  // no more than the last query's own step
+}
+
+TEST(WorldFrame, RefusesWhatIsNoBudget) {
+  WorldOptions options = repeatable_options();
+  options.frame_us = 0.0;
+  EXPECT_FALSE(World::make(options).ok());
+  options.frame_us = 100.0;
+  options.frame_work_units = 0;
+  EXPECT_FALSE(World::make(options).ok());
+}
+
 double slid(double mu) {
   WorldOptions options = repeatable_options();
   options.gravity_m_per_s2 = Vec3(3.0, 0, -9.81);  // a slope of tan 0.306
@@ -233,6 +303,8 @@ TEST(World, TakesNoMemoryInAStepAfterPrepare) {
   for (const Solver solver : {Solver::exact, Solver::iterative}) {
     WorldOptions options = repeatable_options();
     options.solver = solver;
+    options.frame_us = solver == Solver::exact ? 500.0 : std::numeric_limits<double>::infinity();
+    options.contact_work = true;
     options.contact.friction = 0.3;
     options.gravity_m_per_s2 = Vec3(0, 0, -9.81);
     World world = make(options);

@@ -69,6 +69,10 @@ class Renderer {
   /// Steps in which the world had to put a body back or hold its speed.
   [[nodiscard]] std::uint64_t rescued_steps() const noexcept { return rescued_steps_; }
   [[nodiscard]] std::uint64_t contacts_left_out() const noexcept { return contacts_left_out_; }
+  /// Pairs for which a frame had no time left, over all ticks.
+  [[nodiscard]] std::uint64_t pairs_left_out() const noexcept { return pairs_left_out_; }
+  /// Largest time of a frame beyond its budget, microseconds.
+  [[nodiscard]] double frame_overshoot_us() const noexcept { return frame_overshoot_us_; }
 
  private:
   void read_device(std::int64_t now_ns) noexcept;
@@ -92,6 +96,8 @@ class Renderer {
   std::uint64_t failed_reads_ = 0;
   std::uint64_t rescued_steps_ = 0;
   std::uint64_t contacts_left_out_ = 0;
+  std::uint64_t pairs_left_out_ = 0;
+  double frame_overshoot_us_ = 0.0;
 };
 
 }  // namespace odds::haptics

@@ -55,12 +55,16 @@ struct WorldOptions {
   int iterations = 20;  ///< of the iterative solver
   /// Method, estimator, budget (of each pair), p_min, k_min and max_contacts (of each pair, 0 .. 8).
   query::Request query = with_contacts(8);
+  /// All collisions of a step together, shared by importance (odds_frame.h); what is near to the coupled body matters
+  /// most. Infinity and the greatest number: no limit.
+  double frame_us = std::numeric_limits<double>::infinity();
+  std::uint64_t frame_work_units = std::numeric_limits<std::uint64_t>::max();
   std::uint32_t max_contacts_per_step = 64;  ///< of the whole world, 1 .. 1024; further ones are left out and counted
   double max_speed_m_per_s = 20.0;           ///< bodies are held to it: a tool never flies away
   double max_spin_rad_per_s = 200.0;
   bool contact_velocity = false;  ///< whether ContactPoint::velocity_m_per_s is wanted; friction computes it anyway
   bool angular_friction = false;  ///< whether to take memory for rows of rolling and spinning friction
-  bool contact_work = false;      ///< whether StepSummary::contact_work_j is wanted
+  bool contact_work = false;      ///< whether StepSummary::contact_work_j and World::contact_impulse are wanted
   realtime::Clock clock = {};     ///< null: realtime::fastest_clock()
 };
 
@@ -126,6 +130,8 @@ struct StepSummary {
   /// What contacts did to the bodies' kinetic energy, joule; below zero they took it away. Measured from momenta, so
   /// that the damping of bodies counts too. 0 unless asked for.
   double contact_work_j = 0.0;
+  std::uint32_t pairs_left_out = 0;     ///< for which the frame had no time left
+  double frame_overshoot_us = 0.0;      ///< of the frame beyond its time, >= 0
   std::uint32_t contacts_left_out = 0;  ///< beyond max_contacts_per_step, or not finite
   double max_depth_m = 0.0;
   double collision_us = 0.0;        ///< broad phase, queries and contact joints
@@ -165,6 +171,9 @@ class World {
   void set_coupling(BodyId body, const Coupling& coupling) noexcept;
   /// What the coupling exerted on the body in the last step.
   [[nodiscard]] Wrench coupling_wrench(BodyId body) const noexcept;
+  /// What contacts, and the damping of bodies, have given a body since prepare(), N s, world frame. Zero unless
+  /// WorldOptions::contact_work. Differences of it over a time are the mean contact force of that time.
+  [[nodiscard]] Vec3 contact_impulse(BodyId body) const noexcept;
   /// Adds a force at the centre of mass and a torque for the next step. World frame. What is not finite is ignored.
   void apply(BodyId body, const Wrench& wrench) noexcept;
 

@@ -44,6 +44,9 @@ struct RunInfo {
   std::int64_t period_ns = 1'000'000;
   double budget_us = std::numeric_limits<double>::infinity();  ///< of one query; infinity: none
   double allowed_overshoot_us = 1.0;                           ///< net, at the 99.9th percentile
+  double frame_us = std::numeric_limits<double>::infinity();   ///< of all collisions of a step together; infinity: none
+  double frame_overshoot_us = 0.0;                             ///< largest, of a step's collisions beyond `frame_us`
+  std::uint64_t pairs_left_out = 0;                            ///< for which a frame had no time left, over all steps
   bool simulated_time = false;  ///< wake-up and tick times are a virtual clock's; query times are real all the same
   realtime::LoopSummary loop;   ///< as run_periodic returned it
 

@@ -77,6 +77,7 @@ struct Scene {
       search;  ///< further directories for meshes; "${NAME}" stands for a variable of the environment
   Loop loop;
   query::Request query;
+  query::Budget frame;  ///< of all queries of a step together; its clock is not used
   volume::Kind volume = volume::Kind::wide;
   ode::Solver solver = ode::Solver::exact;
   int solver_iterations = 20;

@@ -30,6 +30,9 @@ struct SimulationOptions {
   bool simulated_time = false;
   std::optional<double> seconds;  ///< how long to run; nothing: as the scene says
   haptics::AllocationCount allocations = nullptr;
+  bool contact_impulse = false;  ///< whether World::contact_impulse is wanted
+  /// Given the scene's device, not yet open, says which one to use. Empty: that one.
+  std::function<std::unique_ptr<haptics::Device>(std::unique_ptr<haptics::Device>)> use_device;
   /// Called while building: what is being done, and how far it is in [0, 1]. May be empty.
   std::function<void(std::string_view what, double share)> progress;
 };
@@ -46,6 +49,8 @@ struct RunOutcome {
   std::uint64_t failed_reads = 0;
   std::uint64_t rescued_steps = 0;
   std::uint64_t contacts_left_out = 0;
+  std::uint64_t pairs_left_out = 0;           ///< for which a frame had no time left
+  double frame_overshoot_us = 0.0;            ///< largest, of a step's frame beyond its time
   std::vector<haptics::EffectCost> effects;   ///< what each effect took, in the order in which they act
   std::vector<haptics::ContactEvent> events;  ///< if the scene asks for events
   std::uint64_t events_lost = 0;
