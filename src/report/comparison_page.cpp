@@ -65,37 +65,76 @@ std::string picture(const Comparison& comparison, const ComparedRun& run, const 
                    scale.most_n, width - 44, height + 14, scale.end_s);
 }
 
+std::string onset(const ForceDifference& d) {
+  const std::string missed = fmt::format("{} of {} missed", d.onsets_missed, d.onsets);
+  return d.onset_p99_ticks ? fmt::format("{:.0f}, {}", *d.onset_p99_ticks, missed) : missed;
+}
+
+std::string cells(const ForceDifference& d) {
+  if (d.ticks == 0) return "<td>–</td><td>–</td>";
+  return fmt::format("<td>{:.2f} % / {:.2f} %</td><td>{:.2f}° / {:.2f}°</td>", 100.0 * d.error_p50, 100.0 * d.error_p95,
+                     d.angle_p50_deg, d.angle_p95_deg);
+}
+
+std::string row_at_same_poses(const ComparedRun& run) {
+  const ForceDifference& d = *run.at_same_poses;
+  return fmt::format("<tr><th>{}</th>{}<td>{}</td><td>{}</td><td>{:.3g} N</td></tr>\n", html_escaped(run.name),
+                     cells(d), onset(d), grouped(d.missed_in_row), d.largest_false_n);
+}
+
 std::string row(const ComparedRun& run, bool is_exact) {
   const ForceDifference& d = run.difference;
-  const auto cell = [&](const std::string& text) { return "<td>" + (is_exact ? "–" : text) + "</td>"; };
-  const bool any = d.ticks > 0;
-  return fmt::format("<tr><th>{}</th><td>{}</td><td>{:.0f}</td>", html_escaped(run.name), percent(run.proved_share),
-                     run.units_per_query) +
-         cell(any ? fmt::format("{:.2f} % / {:.2f} %", 100.0 * d.error_p50, 100.0 * d.error_p95) : "–") +
-         cell(any ? fmt::format("{:.2f}° / {:.2f}°", d.angle_p50_deg, d.angle_p95_deg) : "–") +
-         fmt::format("<td>{:.3f} %</td>", 100.0 * d.noise_share) +
-         cell(any ? fmt::format("{:.3f} %", 100.0 * d.added_noise_share) : "–") +
-         cell(d.onset_p99_ticks ? fmt::format("{:.0f}, {} of {} missed", *d.onset_p99_ticks, d.onsets_missed, d.onsets)
-                                : fmt::format("{} of {} missed", d.onsets_missed, d.onsets)) +
-         "</tr>\n";
+  return fmt::format(
+      "<tr><th>{}</th><td>{}</td><td>{:.0f}</td>{}<td>{:.3f} %</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
+      html_escaped(run.name), percent(run.proved_share), run.units_per_query,
+      is_exact ? "<td>–</td><td>–</td>" : cells(d), 100.0 * d.noise_share,
+      is_exact || d.ticks == 0 ? "–" : fmt::format("{:.3f} %", 100.0 * d.added_noise_share), is_exact ? "–" : onset(d),
+      is_exact ? "–" : fmt::format("{:.3g} N", d.largest_false_n));
+}
+
+// Both have the same exact run beside them, so that any of them says how it touches.
+std::string at_same_poses(const Comparison& comparison) {
+  std::string rows;
+  const ForceDifference* any = nullptr;
+  for (const ComparedRun& run : comparison.runs) {
+    if (!run.at_same_poses) continue;
+    any = &*run.at_same_poses;
+    rows += row_at_same_poses(run);
+  }
+  if (any == nullptr) return "";
+  return fmt::format(
+      "<h2>At the poses of the exact run</h2>\n<p>The force of all contacts on the tool, tick by tick: the run without "
+      "a "
+      "limit, and what a query within the budget makes of the same tick, from the same poses and velocities. {} ticks "
+      "in "
+      "contact, mean force {:.3g} N. People notice a change of force from about 7 % on, of its direction from about "
+      "18° "
+      "on.</p>\n<table>\n<thead><tr><th>budget of a query</th><th>contact force off by p50 / p95</th><th>direction p50 "
+      "/ "
+      "p95</th><th>onset p99, ticks</th><th>ticks missed in a row</th><th>where nothing "
+      "touches</th></tr></thead>\n<tbody>\n{}</tbody>\n</table>\n",
+      grouped(any->ticks), any->mean_force_n, rows);
 }
 
 std::string page(const Comparison& comparison) {
   const Scale scale = scale_of(comparison);
   const ForceDifference& exact = comparison.runs.front().difference;
-  std::string html = page_begin("One scene, several budgets", page_script());
+  std::string html = page_head("One scene, several budgets", {});
   html += fmt::format(
-      "<header>\n<h1>One scene, several budgets</h1>\n<p class=\"sub\">{}, {:.0f} Hz, {} ticks in contact, mean force "
-      "{:.3g} N; odds {}</p>\n</header>\n",
-      html_escaped(comparison.scene), comparison.rate_hz, grouped(exact.ticks), exact.mean_force_n,
-      html_escaped(comparison.version));
-  html +=
-      "<main>\n<p>Every run follows the same hand in simulated time, and differs only in the work that each query may "
-      "do. "
-      "Forces are compared tick by tick with those of the run without a limit. People notice a change of force from "
-      "about 7 % on, of its direction from about 18° on.</p>\n<table>\n<thead><tr><th>budget of a query</th><th>proved"
+      "<header>\n<h1>One scene, several budgets</h1>\n<p class=\"sub\">{}, {:.0f} Hz; odds {}</p>\n</header>\n<main>\n",
+      html_escaped(comparison.scene), comparison.rate_hz, html_escaped(comparison.version));
+  html += at_same_poses(comparison);
+  html += fmt::format(
+      "<h2>Each on its own</h2>\n<p>Every run follows the same hand in simulated time, and differs only in the work "
+      "that "
+      "each query may do. The force on the hand is compared tick by tick with that of the run without a limit: {} "
+      "ticks in "
+      "contact, mean force {:.3g} N. After its first other contact a run goes its own way: how fast a scene parts from "
+      "itself is shown by the run without a limit in which everything but the tool stands 1 nm aside. Where that "
+      "one is far off, so is every other.</p>\n<table>\n<thead><tr><th>run</th><th>proved"
       "</th><th>units a query</th><th>force error p50 / p95</th><th>direction p50 / p95</th><th>noise 50-500 Hz</th>"
-      "<th>thereof added</th><th>onset p99, ticks</th></tr></thead>\n<tbody>\n";
+      "<th>thereof added</th><th>onset p99, ticks</th><th>where nothing touches</th></tr></thead>\n<tbody>\n",
+      grouped(exact.ticks), exact.mean_force_n);
   for (const ComparedRun& run : comparison.runs) html += row(run, &run == &comparison.runs.front());
   html += "</tbody>\n</table>\n";
   for (const ComparedRun& run : comparison.runs) {
@@ -107,16 +146,22 @@ std::string page(const Comparison& comparison) {
   return html + "</main>\n</body>\n</html>\n";
 }
 
+std::string columns(const ForceDifference& d) {
+  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}", d.ticks, d.mean_force_n, d.error_p50, d.error_p95,
+                     d.angle_p50_deg, d.angle_p95_deg, d.noise_share, d.added_noise_share, d.onsets, d.onsets_missed,
+                     d.onset_p99_ticks ? fmt::format("{}", *d.onset_p99_ticks) : "", d.missed_in_row,
+                     d.largest_false_n);
+}
+
 std::string csv(const Comparison& comparison) {
   std::string text =
-      "run,proved_share,units_per_query,ticks_in_contact,mean_force_n,force_error_p50,force_error_p95,angle_p50_deg,"
-      "angle_p95_deg,noise_share,added_noise_share,onsets,onsets_missed,onset_p99_ticks\n";
+      "run,poses,proved_share,units_per_query,ticks_in_contact,mean_force_n,force_error_p50,force_error_p95,"
+      "angle_p50_deg,angle_p95_deg,noise_share,added_noise_share,onsets,onsets_missed,onset_p99_ticks,missed_in_row,"
+      "largest_false_n\n";
   for (const ComparedRun& run : comparison.runs) {
-    const ForceDifference& d = run.difference;
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", run.name, run.proved_share, run.units_per_query,
-                        d.ticks, d.mean_force_n, d.error_p50, d.error_p95, d.angle_p50_deg, d.angle_p95_deg,
-                        d.noise_share, d.added_noise_share, d.onsets, d.onsets_missed,
-                        d.onset_p99_ticks ? fmt::format("{}", *d.onset_p99_ticks) : "");
+    const std::string query = fmt::format("{},{}", run.proved_share, run.units_per_query);
+    text += fmt::format("{},own,{},{}\n", run.name, query, columns(run.difference));
+    if (run.at_same_poses) text += fmt::format("{},exact,,,{}\n", run.name, columns(*run.at_same_poses));
   }
   return text;
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace odds::report {
 namespace {
@@ -123,9 +124,15 @@ ForceDifference compare_forces(std::span<const ForceSample> exact, std::span<con
   std::vector<double> angles;
   double exact_sum = 0.0;
   double run_sum = 0.0;
+  bool missed = false;
   for (std::size_t i = 0; i < count; ++i) {
     const double size = exact[i].force_n.norm();
-    if (!(size >= touching_n)) continue;
+    const bool missed_before = std::exchange(missed, size >= touching_n && run[i].contacts == 0);
+    if (missed && missed_before) ++figures.missed_in_row;
+    if (!(size >= touching_n)) {
+      figures.largest_false_n = std::max(figures.largest_false_n, (run[i].force_n - exact[i].force_n).norm());
+      continue;
+    }
     errors.push_back(std::abs(run[i].force_n.norm() - size) / size);
     angles.push_back(angle_deg(exact[i].force_n, run[i].force_n));
     figures.mean_force_n += size;

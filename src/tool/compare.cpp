@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "odds/report/force_comparison.hpp"
+#include "odds/scene/same_poses.hpp"
 #include "odds/scene/scene.hpp"
 #include "odds/scene/simulation.hpp"
 #include "tool/build_progress.hpp"
@@ -24,17 +25,31 @@ struct CompareArguments {
   std::string out = "odds_compare";
 };
 
-Result<report::ComparedRun> run_with(scene::Scene scene, std::optional<double> budget_us,
-                                     const CompareArguments& arguments) {
-  report::ComparedRun run;
-  run.name = budget_us ? fmt::format("{} us", *budget_us) : "no limit";
-  scene.query.budget = budget_us ? query::Budget::time(*budget_us) : query::Budget::unlimited();
+constexpr double nudge_m = 1e-9;  // far more than rounding, far less than anybody feels
+
+scene::SimulationOptions options_of(const CompareArguments& arguments, BuildProgress& progress) {
   scene::SimulationOptions options;
   options.simulated_time = true;
   options.seconds = arguments.seconds;
-  BuildProgress progress;
   options.progress = [&](std::string_view what, double share) { progress.show(what, share); };
-  auto made = scene::Simulation::make(std::move(scene), options);
+  return options;
+}
+
+/// The whole scene but the tool a little aside: what no budget has to do with.
+scene::Scene nudged(scene::Scene scene) {
+  for (scene::Body& body : scene.bodies) {
+    if (!body.follows_device) body.pose.translation += Vec3::Constant(nudge_m);
+  }
+  return scene;
+}
+
+Result<report::ComparedRun> run_with(std::string name, scene::Scene scene, const query::Budget& budget,
+                                     const CompareArguments& arguments) {
+  report::ComparedRun run;
+  run.name = std::move(name);
+  scene.query.budget = budget;
+  BuildProgress progress;
+  auto made = scene::Simulation::make(std::move(scene), options_of(arguments, progress));
   progress.done();
   if (!made) return made.error();
   const scene::RunOutcome outcome = made.value()->run();
@@ -55,19 +70,85 @@ Result<report::ComparedRun> run_with(scene::Scene scene, std::optional<double> b
   return run;
 }
 
+/// One difference for each budget: contact forces at the poses of the run without a limit.
+Result<std::vector<report::ForceDifference>> at_same_poses(const scene::Scene& scene, std::size_t ticks,
+                                                           const CompareArguments& arguments) {
+  std::vector<query::Budget> budgets;
+  for (const double us : arguments.budgets_us) budgets.push_back(query::Budget::time(us));
+  BuildProgress progress;
+  auto made = scene::SamePoses::make(scene, budgets, options_of(arguments, progress));
+  progress.done();
+  if (!made) return made.error();
+  scene::SamePoses& runs = *made.value();
+  std::vector<report::ForceSample> exact;
+  std::vector<std::vector<report::ForceSample>> limited(budgets.size());
+  for (std::size_t tick = 0; tick < ticks; ++tick) {
+    const std::int64_t now_ns = static_cast<std::int64_t>(tick) * scene.loop.period_ns;
+    haptics::TickRecord record;
+    runs.tick(now_ns, record);
+    const double t_s = 1e-9 * static_cast<double>(now_ns);
+    exact.push_back({t_s, runs.exact().force_n, runs.exact().contacts});
+    for (std::size_t i = 0; i < budgets.size(); ++i) {
+      limited[i].push_back({t_s, runs.limited(i).force_n, runs.limited(i).contacts});
+    }
+  }
+  std::vector<report::ForceDifference> differences;
+  for (const auto& samples : limited) {
+    differences.push_back(report::compare_forces(exact, samples, arguments.touching_n, 1.0 / scene.loop.period_s()));
+  }
+  return differences;
+}
+
+std::string onset(const report::ForceDifference& d) {
+  return fmt::format("onset p99 {} ({} of {} missed), where nothing touches at most {:.3g} N",
+                     d.onset_p99_ticks ? fmt::format("{:.0f} ticks", *d.onset_p99_ticks) : "-", d.onsets_missed,
+                     d.onsets, d.largest_false_n);
+}
+
+std::string errors(const report::ForceDifference& d) {
+  return fmt::format("force off by {:.2f} % (p95 {:.2f} %), {:.2f} degrees (p95 {:.2f})", 100.0 * d.error_p50,
+                     100.0 * d.error_p95, d.angle_p50_deg, d.angle_p95_deg);
+}
+
 void print(const report::Comparison& comparison) {
+  fmt::print("{}: force of contacts on the tool, in each tick at the pose of the run without a limit\n",
+             comparison.scene);
+  for (const report::ComparedRun& run : comparison.runs) {
+    if (!run.at_same_poses) continue;
+    const report::ForceDifference& d = *run.at_same_poses;
+    fmt::print("  {:>20}: {}, {}, {} ticks missed in a row\n", run.name, errors(d), onset(d), d.missed_in_row);
+  }
   const report::ForceDifference& exact = comparison.runs.front().difference;
-  fmt::print("{}: {} ticks in contact, mean force {:.3g} N, own noise {:.3f} % (50-500 Hz)\n", comparison.scene,
-             exact.ticks, exact.mean_force_n, 100.0 * exact.noise_share);
+  fmt::print(
+      "force on the hand, each run on its own: {} ticks in contact, mean {:.3g} N, own noise {:.3f} % (50-500 Hz)\n",
+      exact.ticks, exact.mean_force_n, 100.0 * exact.noise_share);
   for (const report::ComparedRun& run : comparison.runs) {
     const report::ForceDifference& d = run.difference;
-    fmt::print(
-        "  {:>9}: {:5.1f} % of ticks proved, force off by {:.2f} % (p95 {:.2f} %), {:.2f} degrees (p95 {:.2f}), "
-        "{:.3f} % added noise, onset p99 {} ({} of {} missed)\n",
-        run.name, 100.0 * run.proved_share, 100.0 * d.error_p50, 100.0 * d.error_p95, d.angle_p50_deg, d.angle_p95_deg,
-        100.0 * d.added_noise_share, d.onset_p99_ticks ? fmt::format("{:.0f} ticks", *d.onset_p99_ticks) : "-",
-        d.onsets_missed, d.onsets);
+    fmt::print("  {:>20}: {:5.1f} % of ticks proved, {}, {:.3f} % added noise, {}\n", run.name,
+               100.0 * run.proved_share, errors(d), 100.0 * d.added_noise_share, onset(d));
   }
+}
+
+/// All runs of a comparison, without their differences.
+std::optional<Error> run_all(const scene::Scene& scene, const CompareArguments& arguments,
+                             report::Comparison& comparison) {
+  const auto add = [&](std::string name, scene::Scene varied, const query::Budget& budget) -> std::optional<Error> {
+    Result<report::ComparedRun> run = run_with(std::move(name), std::move(varied), budget, arguments);
+    if (!run) return run.error();
+    comparison.runs.push_back(std::move(run).value());
+    return std::nullopt;
+  };
+  if (auto error = add("no limit", scene, query::Budget::unlimited())) return error;
+  if (auto error = add("1 nm aside", nudged(scene), query::Budget::unlimited())) return error;
+  const std::size_t ticks = comparison.runs.front().samples.size();
+  const Result<std::vector<report::ForceDifference>> differences = at_same_poses(scene, ticks, arguments);
+  if (!differences) return differences.error();
+  for (std::size_t i = 0; i < arguments.budgets_us.size(); ++i) {
+    const double us = arguments.budgets_us[i];
+    if (auto error = add(fmt::format("{} us", us), scene, query::Budget::time(us))) return error;
+    comparison.runs.back().at_same_poses = differences.value()[i];
+  }
+  return std::nullopt;
 }
 
 int compare(const CompareArguments& arguments) {
@@ -83,13 +164,7 @@ int compare(const CompareArguments& arguments) {
   comparison.version = ODDS_VERSION;
   comparison.rate_hz = 1.0 / scene.value().loop.period_s();
   comparison.touching_n = arguments.touching_n;
-  std::vector<std::optional<double>> budgets = {std::nullopt};
-  budgets.insert(budgets.end(), arguments.budgets_us.begin(), arguments.budgets_us.end());
-  for (const std::optional<double>& budget_us : budgets) {
-    Result<report::ComparedRun> run = run_with(scene.value(), budget_us, arguments);
-    if (!run) return fail(run.error());
-    comparison.runs.push_back(std::move(run).value());
-  }
+  if (const auto error = run_all(scene.value(), arguments, comparison)) return fail(*error);
   for (report::ComparedRun& run : comparison.runs) {
     run.difference =
         report::compare_forces(comparison.runs.front().samples, run.samples, comparison.touching_n, comparison.rate_hz);

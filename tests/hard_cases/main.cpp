@@ -22,10 +22,14 @@ void print(const Outcome& outcome) {
   for (const Figures& f : outcome.runs) {
     fmt::print(
         "{:<20} {:<6} {:5} ticks {:6.2f} s  largest {:8.3g} N  given {:8.2g} J  deep missed {} of {}  force {}  angle "
-        "{}  contacts {}  {}\n",
+        "{}  same poses {}  contacts {}  {}\n",
         outcome.hard_case->name, f.budget, f.ticks, f.wall_s, f.largest_force_n, f.given_j, f.missed_deep, f.deep,
         f.force_error_p95 ? fmt::format("{:.1f} %", 100.0 * *f.force_error_p95) : "-",
-        f.angle_error_p95_deg ? fmt::format("{:.1f} deg", *f.angle_error_p95_deg) : "-", f.most_contacts,
+        f.angle_error_p95_deg ? fmt::format("{:.1f} deg", *f.angle_error_p95_deg) : "-",
+        f.at_same_poses && f.at_same_poses->ticks > 0
+            ? fmt::format("{:.1f} % {:.1f} deg", 100.0 * f.at_same_poses->error_p95, f.at_same_poses->angle_p95_deg)
+            : "-",
+        f.most_contacts,
         !f.broken.empty() ? "BROKEN"
         : !f.weak.empty() ? "weak"
                           : "holds");

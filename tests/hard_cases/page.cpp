@@ -50,18 +50,24 @@ std::string or_dash(const std::optional<double>& number, double factor, const ch
   return number ? fmt::format("{:.2f}{}", factor * *number, unit) : std::string("–");
 }
 
+std::optional<double> at_poses(const Figures& f, double report::ForceDifference::*figure) {
+  if (!f.at_same_poses || f.at_same_poses->ticks == 0) return std::nullopt;
+  return (*f.at_same_poses).*figure;
+}
+
 std::string row(const Figures& f) {
   std::string broken;
   for (const std::string& what : f.broken) broken += what + "<br>";
   for (const std::string& what : f.weak) broken += "weak: " + what + "<br>";
   return fmt::format(
       "<tr><td>{}</td><td>{}</td><td>{}</td><td>{:.3g}</td><td>{:.2g}</td><td>{} of "
-      "{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td>"
+      "{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td>"
       "<td>{}</td><td>{:.3g}</td><td>{}</td><td class=\"{}\">{}</td></tr>\n",
       f.budget, f.ticks, f.not_finite, f.largest_force_n, f.given_j, f.missed_deep, f.deep,
-      or_dash(f.force_error_p95, 100.0, " %"), or_dash(f.angle_error_p95_deg, 1.0, "°"),
-      f.onset_ticks ? fmt::format("{:+d}", *f.onset_ticks) : "–", or_dash(f.noise_share, 100.0, " %"), f.most_contacts,
-      1e3 * f.deepest_m, f.safety_ticks,
+      or_dash(at_poses(f, &report::ForceDifference::error_p95), 100.0, " %"),
+      or_dash(at_poses(f, &report::ForceDifference::angle_p95_deg), 1.0, "°"), or_dash(f.force_error_p95, 100.0, " %"),
+      or_dash(f.angle_error_p95_deg, 1.0, "°"), f.onset_ticks ? fmt::format("{:+d}", *f.onset_ticks) : "–",
+      or_dash(f.noise_share, 100.0, " %"), f.most_contacts, 1e3 * f.deepest_m, f.safety_ticks,
       !f.broken.empty() ? "bad"
       : f.weak.empty()  ? "good"
                         : "weak",
@@ -90,13 +96,17 @@ std::string page_of(const std::vector<Outcome>& outcomes, double seconds_taken) 
       "bound, and, down to 50 µs, no deep contact missed in two ticks in a row and forces as without a budget. Force "
       "on the hand over time: <b>without a budget</b>, <b style=\"color:{}\">50 "
       "µs</b> (1000 work "
-      "units), <b style=\"color:{}\">1 µs</b> (20). Simulated time, the same on every run.</p>\n",
+      "units), <b style=\"color:{}\">1 µs</b> (20). <i>Contacts</i>: the force of contacts on the tool, in each tick "
+      "at "
+      "the pose of the run without a budget; <i>hand</i>: the force on the hand, each run on its own, where they can "
+      "be "
+      "compared tick by tick. Simulated time, the same on every run.</p>\n",
       good, runs, seconds_taken, colours[1], colours[2]);
   for (const Outcome& outcome : outcomes) {
     html += fmt::format(
         "<h2>{}</h2>\n<p>{}</p>\n{}\n<table><tr><th>budget</th><th>ticks</th><th>not finite</th><th>largest "
         "N</th><th>given J</th>"
-        "<th>deep missed</th><th>force p95</th><th>angle "
+        "<th>deep missed</th><th>contacts p95</th><th>angle p95</th><th>hand p95</th><th>angle "
         "p95</th><th>onset</th><th>noise</th><th>contacts</th><th>deepest mm</th>"
         "<th>safety ticks</th><th></th></tr>\n",
         outcome.hard_case->name, outcome.hard_case->what, picture(outcome));

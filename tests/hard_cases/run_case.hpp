@@ -8,6 +8,7 @@
 
 #include "hard_cases/hard_case.hpp"
 #include "odds/math/error.hpp"
+#include "odds/report/force_comparison.hpp"
 
 namespace odds::hard_cases {
 
@@ -38,10 +39,12 @@ struct Figures {
   std::uint32_t most_contacts = 0;
   double deepest_m = 0.0;
   double end_height_m = 0.0;              ///< of the body that the case names
-  std::optional<double> force_error_p95;  ///< share of the exact run's force
+  std::optional<double> force_error_p95;  ///< on the hand, of this run on its own; share of the exact run's force
   std::optional<double> angle_error_p95_deg;
   std::optional<int> onset_ticks;     ///< between the first contact of this run and that of the exact one
-  std::optional<double> noise_share;  ///< RMS of the change from tick to tick beyond the exact run's, of its mean force
+  std::optional<double> noise_share;  ///< from 50 to 500 Hz, beyond the exact run's, of its mean force
+  /// The force of contacts on the tool, in each tick at the pose of the exact run. Not where nobody holds a tool.
+  std::optional<report::ForceDifference> at_same_poses;
   double wall_s = 0.0;
   std::vector<Sample> samples;
   std::vector<std::string> broken;  ///< what did not hold

@@ -1,8 +1,10 @@
 // Figures of runs whose differences are known.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <sstream>
 
 #include "odds/report/force_comparison.hpp"
 #include "support/temporary_folder.hpp"
@@ -84,6 +86,23 @@ TEST(ForceComparison, OnsetsAreFoundLateEarlyOrNotAtAll) {
   EXPECT_EQ(missed.onsets_missed, 1U);
 }
 
+TEST(ForceComparison, TicksWithoutContactCountFromTheSecondInARowOn) {
+  const auto exact = swing(nothing);
+  auto run = exact;
+  for (const std::size_t at : {10UL, 20UL, 21UL, 30UL, 31UL, 32UL}) run[at].contacts = 0;
+  EXPECT_EQ(compare_forces(exact, run, 0.05, rate_hz).missed_in_row, 3U);
+  EXPECT_EQ(compare_forces(exact, run, 100.0, rate_hz).missed_in_row, 0U);
+}
+
+TEST(ForceComparison, AForceWhereNothingTouchesIsSeen) {
+  std::vector<ForceSample> exact(100);
+  for (std::size_t i = 50; i < 100; ++i) exact[i].force_n = Vec3(0, 0, 1);
+  auto run = exact;
+  run[10].force_n = Vec3(0, 0.3, 0);
+  run[60].force_n = Vec3(0, 9, 0);
+  EXPECT_DOUBLE_EQ(compare_forces(exact, run, 0.05, rate_hz).largest_false_n, 0.3);
+}
+
 TEST(ForceComparison, ThePageShowsEveryRunAndEscapesNames) {
   testing::TemporaryFolder folder;
   Comparison comparison;
@@ -92,6 +111,8 @@ TEST(ForceComparison, ThePageShowsEveryRunAndEscapesNames) {
     ComparedRun run;
     run.name = name;
     run.samples = swing(nothing);
+    run.difference = compare_forces(run.samples, run.samples, 0.05, rate_hz);
+    if (!comparison.runs.empty()) run.at_same_poses = run.difference;
     comparison.runs.push_back(std::move(run));
   }
   ASSERT_FALSE(write_comparison(folder.path(), comparison));
@@ -101,7 +122,17 @@ TEST(ForceComparison, ThePageShowsEveryRunAndEscapesNames) {
   std::size_t pictures = 0;
   for (std::size_t at = page.find("<svg"); at != std::string::npos; at = page.find("<svg", at + 1)) ++pictures;
   EXPECT_EQ(pictures, 3U);
-  EXPECT_EQ(testing::contents_of(folder / "comparison.csv").find("run,proved_share"), 0U);
+  EXPECT_NE(page.find("At the poses of the exact run"), std::string::npos);
+  const std::string csv = testing::contents_of(folder / "comparison.csv");
+  EXPECT_EQ(csv.find("run,poses,proved_share"), 0U);
+  const auto columns = [](const std::string& line) { return std::count(line.begin(), line.end(), ','); };
+  std::istringstream lines(csv);
+  std::string line;
+  std::getline(lines, line);
+  const auto wanted = columns(line);
+  int rows = 0;
+  for (; std::getline(lines, line); ++rows) EXPECT_EQ(columns(line), wanted) << line;
+  EXPECT_EQ(rows, 5);
   EXPECT_TRUE(write_comparison(folder.path(), {}));
 }
 

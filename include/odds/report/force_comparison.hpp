@@ -37,6 +37,10 @@ struct ForceDifference {
   std::uint64_t onsets = 0;         ///< of contact in the exact run, after at least five ticks without
   std::uint64_t onsets_missed = 0;  ///< without one in this run within 20 ticks
   std::optional<double> onset_p99_ticks;  ///< how far apart they are
+  /// Ticks in which this run has no contact although the exact run's force is at least `touching_n`, and so in the tick
+  /// before.
+  std::uint64_t missed_in_row = 0;
+  double largest_false_n = 0.0;  ///< difference of the forces in ticks in which the exact run's is below `touching_n`
 };
 
 /// Both runs have the same ticks; their shorter length counts. `rate_hz` > 0.
@@ -50,6 +54,8 @@ struct ComparedRun {
   double units_per_query = 0.0;  ///< mean work
   std::vector<ForceSample> samples;
   ForceDifference difference;
+  /// Of the force of contacts on the tool, in each tick at the pose of the exact run. None for runs without a limit.
+  std::optional<ForceDifference> at_same_poses;
 };
 
 struct Comparison {
