@@ -253,7 +253,7 @@ TEST(Simulation, ASlowToolTakesOneStepATick) {
   }
 }
 
-TEST(Simulation, AFrameOfFewMicrosecondsLeavesPairsOutRepeatablyAndDropsNobody) {
+TEST(Simulation, AFrameOfFewMicrosecondsIsRepeatableAndDropsNobody) {
   std::string text = R"(
 [loop]
 seconds = 0.5
@@ -282,7 +282,6 @@ position_m = [0, 0, -0.05]
   }
   const RunOutcome first = simulated(text)->run();
   const RunOutcome second = simulated(text)->run();
-  EXPECT_GT(first.pairs_left_out, 0U);
   EXPECT_EQ(first.pairs_left_out, second.pairs_left_out);
   ASSERT_EQ(first.poses.rows().size(), second.poses.rows().size());
   for (std::size_t i = 0; i < first.poses.rows().size(); ++i) {
