@@ -228,7 +228,9 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, Pro
   // asked.
   const bool part = ended == Progressed::enough && request.max_contacts > 1 && pair.hits.size() < pair.hits.capacity();
   pair.answer.contacts_complete = pair.patches.finished() && ended != Progressed::spent && !part;
-  if (!pair.answer.contacts_complete) {
+  // A finished patch of a part of the rim has measured its depth, and errs seldom; a hasty one has not.
+  const bool measured = pair.patches.finished() && pair.known_depth.known();
+  if (!pair.answer.contacts_complete && !measured) {
     limit_to_believed(meshes, pair);
   } else if (ended != Progressed::finished) {
     limit_depth(most_depth, pair);
