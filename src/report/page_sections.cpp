@@ -42,8 +42,8 @@ std::string percentile_table(const RunSummary& s) {
          "<th>99.9 %</th><th>99.99 %</th><th>longest</th></tr>\n" +
          percentile_row("tick: planned start to force", s.tick) +
          percentile_row("wake-up: planned start to running", s.wake) +
-         percentile_row("collision phase, gross", s.collision) + percentile_row("query, gross", s.query_gross) +
-         percentile_row("query, net of stalls", s.query_net) +
+         percentile_row("tick, net: its own work", s.tick_net) + percentile_row("collision phase, gross", s.collision) +
+         percentile_row("query, gross", s.query_gross) + percentile_row("query, net of stalls", s.query_net) +
          percentile_row("query, net overshoot", s.query_overshoot) + percentile_row("simulation step", s.step) +
          "</table></div>\n";
 }

@@ -20,7 +20,8 @@ bool finite(const std::array<double, N>& numbers) {
 
 bool finite(const TickRecord& t) {
   return finite(std::array{t.query_gross_us, t.query_stall_us, t.query_net_us, t.query_overshoot_us,
-                           t.query_net_overshoot_us, t.probability, t.collision_us, t.step_us, t.max_depth_m}) &&
+                           t.query_net_overshoot_us, t.probability, t.collision_us, t.step_us, t.processor_us,
+                           t.max_depth_m}) &&
          finite(t.device_position_m) && finite(t.device_orientation_wxyz) && finite(t.tool_position_m) &&
          finite(t.tool_orientation_wxyz) && finite(t.force_n) && finite(t.torque_nm);
 }
@@ -58,6 +59,12 @@ void add_conditions(RunSummary& summary, const TickRecord& tick) {
   summary.largest_force_n = std::fmax(summary.largest_force_n, length(tick.force_n));
   summary.least_energy_j = std::fmin(summary.least_energy_j, tick.observed_energy_j);
   summary.largest_torque_nm = std::fmax(summary.largest_torque_nm, length(tick.torque_nm));
+}
+
+/// See run_summary.hpp.
+double net_us(const TickRecord& tick) {
+  const double awake_us = 1e-3 * static_cast<double>(tick.done_ns - tick.woke_ns) - tick.query_stall_us;
+  return tick.processor_us > 0.0 ? std::fmin(awake_us, tick.processor_us) : awake_us;
 }
 
 /// Latencies and misses of one tick and of the periods skipped before it.
@@ -104,6 +111,7 @@ RunSummary summarize(const RunInfo& info, std::span<const TickRecord> ticks) {
     add_times(summary, tick, info.period_ns, miss_run);
     add_query(summary, tick);
     add_conditions(summary, tick);
+    record_us(summary.tick_net, net_us(tick));
     record_us(summary.collision, tick.collision_us);
     record_us(summary.step, tick.step_us);
     if (!std::isfinite(tick.query_gross_us) || !std::isfinite(tick.query_stall_us)) continue;

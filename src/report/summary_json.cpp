@@ -115,28 +115,29 @@ std::string summary_json(const RunInfo& info, const RunSummary& s) {
   for (const Check& check : s.checks) {
     checks.push_back({{"key", check.key}, {"state", name(check.state)}, {"finding", check.finding}});
   }
-  const Json json{{"format", "odds run summary 1"},
-                  {"run", run(info)},
-                  {"checks", checks},
-                  {"latency", {{"wake", figures(s.wake)}, {"tick", figures(s.tick)}}},
-                  {"query",
-                   {{"gross", figures(s.query_gross)},
-                    {"net", figures(s.query_net)},
-                    {"net_overshoot", figures(s.query_overshoot)},
-                    {"longest_gross_overshoot_us", s.longest_overshoot_us},
-                    {"frame_overshoot_us", info.frame_overshoot_us},
-                    {"stall_share", s.stall_share}}},
-                  {"phases", {{"collision", figures(s.collision)}, {"step", figures(s.step)}}},
-                  {"counts", counts(info, s)},
-                  {"contact",
-                   {{"most_contacts", s.most_contacts},
-                    {"deepest_m", number_or_null(s.deepest_m)},
-                    {"largest_force_n", number_or_null(s.largest_force_n)},
-                    {"largest_torque_nm", number_or_null(s.largest_torque_nm)}}},
-                  {"safety_ticks", safety(s)},
-                  {"effects", effects(info)},
-                  {"energy", {{"least_at_hand_j", number_or_null(s.least_energy_j)}}},
-                  {"machine", machine(info)}};
+  const Json json{
+      {"format", "odds run summary 1"},
+      {"run", run(info)},
+      {"checks", checks},
+      {"latency", {{"wake", figures(s.wake)}, {"tick", figures(s.tick)}, {"tick_net", figures(s.tick_net)}}},
+      {"query",
+       {{"gross", figures(s.query_gross)},
+        {"net", figures(s.query_net)},
+        {"net_overshoot", figures(s.query_overshoot)},
+        {"longest_gross_overshoot_us", s.longest_overshoot_us},
+        {"frame_overshoot_us", info.frame_overshoot_us},
+        {"stall_share", s.stall_share}}},
+      {"phases", {{"collision", figures(s.collision)}, {"step", figures(s.step)}}},
+      {"counts", counts(info, s)},
+      {"contact",
+       {{"most_contacts", s.most_contacts},
+        {"deepest_m", number_or_null(s.deepest_m)},
+        {"largest_force_n", number_or_null(s.largest_force_n)},
+        {"largest_torque_nm", number_or_null(s.largest_torque_nm)}}},
+      {"safety_ticks", safety(s)},
+      {"effects", effects(info)},
+      {"energy", {{"least_at_hand_j", number_or_null(s.least_energy_j)}}},
+      {"machine", machine(info)}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";  // a scene's text may not be UTF-8
 }
 

@@ -14,7 +14,8 @@ constexpr const char* heading =
     "us,"
     "contacts,max_depth_m,device_x_m,device_y_m,device_z_m,device_qw,device_qx,device_qy,device_qz,tool_x_m,tool_y_m,"
     "tool_z_m,tool_qw,tool_qx,tool_qy,tool_qz,force_x_n,force_y_n,force_z_n,torque_x_nm,torque_y_nm,torque_z_nm,safety,"
-    "minor_faults,major_faults,voluntary_switches,involuntary_switches,allocations,observed_energy_j,contact_work_j\n";
+    "minor_faults,major_faults,voluntary_switches,involuntary_switches,allocations,observed_energy_j,contact_work_j,"
+    "processor_us\n";
 
 }  // namespace
 
@@ -42,7 +43,8 @@ std::string ticks_csv(std::span<const haptics::TickRecord> ticks) {
     fmt::format_to(out, ",{},{},{},{},{},", t.safety, t.minor_faults, t.major_faults, t.voluntary_switches,
                    t.involuntary_switches);
     if (t.allocations != haptics::not_measured) fmt::format_to(out, "{}", t.allocations);
-    fmt::format_to(out, ",{:.9g},{:.9g}", t.observed_energy_j, t.contact_work_j);
+    fmt::format_to(out, ",{:.9g},{:.9g},", t.observed_energy_j, t.contact_work_j);
+    if (t.processor_us > 0.0) fmt::format_to(out, "{:.3f}", t.processor_us);
     text.push_back('\n');
   }
   return fmt::to_string(text);

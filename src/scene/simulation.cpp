@@ -40,6 +40,7 @@ void note_usage(const realtime::ThreadUsage& used, TickRecord& record) {
   record.major_faults = static_cast<std::uint32_t>(used.major_faults);
   record.voluntary_switches = static_cast<std::uint32_t>(used.voluntary_switches);
   record.involuntary_switches = static_cast<std::uint32_t>(used.involuntary_switches);
+  record.processor_us = 1e-3 * static_cast<double>(used.processor_ns);
 }
 
 }  // namespace

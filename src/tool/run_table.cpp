@@ -45,6 +45,7 @@ void print_run_table(const report::RunInfo& info, const report::RunSummary& s, c
   line("page faults in ticks", fmt::format("{} minor, {} major", s.minor_faults, s.major_faults));
   if (!info.simulated_time) line("wake-up latency", percentiles(s.wake));
   if (!info.simulated_time) line("tick latency", percentiles(s.tick));
+  if (!info.simulated_time) line("tick, net", percentiles(s.tick_net));
   line("queries", fmt::format("{} in {} ticks, budget {}", s.queries, s.ticks_with_query,
                               std::isfinite(info.budget_us) ? fmt::format("{} us", info.budget_us) : "in work units"));
   line("query, net", percentiles(s.query_net));

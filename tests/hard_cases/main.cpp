@@ -1,4 +1,5 @@
-// Runs all hard cases, prints one line for each run, writes one page. Exit status 1 if something does not hold.
+// Runs all hard cases, prints one line for each run, writes one page. Exit status 1 if a run is harmful, or one of
+// those without a budget or with 50 us is unsafe or feels different.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -10,10 +11,12 @@
 #include <string>
 #include <vector>
 
+#include "hard_cases/judgement.hpp"
 #include "hard_cases/page.hpp"
 #include "hard_cases/run_case.hpp"
 #include "hard_cases/soak.hpp"
 #include "hard_cases/troubled_device.hpp"
+#include "support/allocation_counter.hpp"
 
 namespace odds::hard_cases {
 namespace {
@@ -30,11 +33,20 @@ void print(const Outcome& outcome) {
             ? fmt::format("{:.1f} % {:.1f} deg", 100.0 * f.at_same_poses->error_p95, f.at_same_poses->angle_p95_deg)
             : "-",
         f.most_contacts,
-        !f.broken.empty() ? "BROKEN"
-        : !f.weak.empty() ? "weak"
-                          : "holds");
-    for (const std::string& what : f.broken) fmt::print("    {}\n", what);
-    for (const std::string& what : f.weak) fmt::print("    {}\n", what);
+        !f.safe()        ? "UNSAFE"
+        : !f.off.empty() ? "safe, feels different"
+                         : "safe");
+    for (const auto* list : {&f.harmful, &f.missed, &f.off}) {
+      for (const std::string& what : *list) fmt::print("    {}\n", what);
+    }
+  }
+}
+
+void print(const std::vector<Tally>& tallies) {
+  for (const Tally& t : tallies) {
+    fmt::print("budget {:<6} safe {:2} of {:2} (no harm {:2} of {:2})", t.budget, t.safe, t.runs, t.harmless, t.runs);
+    if (t.compared > 0) fmt::print("  feels as without a budget {:2} of {:2}", t.feels_right, t.compared);
+    fmt::print("\n");
   }
 }
 
@@ -58,10 +70,11 @@ int soak_all(const std::filesystem::path& place, double seconds) {
     const Soak& s = soaked.value();
     all_hold = all_hold && s.holds();
     fmt::print(
-        "{:<24} {:9} ticks in {:6.1f} s  not finite {}  beyond the limit {}  faulted {}  rescued {}  largest {:.3g} N  "
-        "lowest balance "
-        "{:.2g} J  {}\n",
-        scene.filename().string(), s.ticks, s.wall_s, s.not_finite, s.beyond_limit, s.faulted, s.rescued,
+        "{:<24} {:9} ticks in {:6.1f} s  {} allocations  {} effects{}  not finite {}  beyond the limit {}  faulted {}  "
+        "rescued {}  largest {:.3g} N  lowest balance {:.2g} J  {}\n",
+        scene.filename().string(), s.ticks, s.wall_s,
+        support::counts_allocations ? std::to_string(s.allocations) : "uncounted", s.effects,
+        s.idle.empty() ? "" : ", never at work:" + s.idle, s.not_finite, s.beyond_limit, s.faulted, s.rescued,
         s.largest_force_n, s.least_energy_j, s.holds() ? "holds" : "BROKEN");
     std::fflush(stdout);
   }
@@ -83,13 +96,14 @@ int run(const std::string& folder, const std::string& only, double share) {
       return 1;
     }
     print(outcome.value());
-    for (const Figures& f : outcome.value().runs) all_hold = all_hold && f.broken.empty();
+    for (const Figures& f : outcome.value().runs) all_hold = all_hold && f.holds();
     outcomes.push_back(std::move(outcome).value());
   }
   if (outcomes.empty()) {
     fmt::print(stderr, "error: there is no case '{}'\n", only);
     return 2;
   }
+  print(tally(outcomes));
   const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   std::ofstream(folder + "/hard_cases.html") << page_of(outcomes, took_s);
   fmt::print("page: {}/hard_cases.html\n", folder);

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hard_cases/judgement.hpp"
+
 namespace odds::hard_cases {
 namespace {
 
@@ -56,59 +58,77 @@ std::optional<double> at_poses(const Figures& f, double report::ForceDifference:
 }
 
 std::string row(const Figures& f) {
-  std::string broken;
-  for (const std::string& what : f.broken) broken += what + "<br>";
-  for (const std::string& what : f.weak) broken += "weak: " + what + "<br>";
+  std::string unsafe;
+  for (const auto* list : {&f.harmful, &f.missed}) {
+    for (const std::string& what : *list) unsafe += what + "<br>";
+  }
+  std::string off;
+  for (const std::string& what : f.off) off += what + "<br>";
+  const char* none = f.budget == "none" ? "" : compared(f) ? "as without a budget" : "nothing to compare";
   return fmt::format(
       "<tr><td>{}</td><td>{}</td><td>{}</td><td>{:.3g}</td><td>{:.2g}</td><td>{} of "
       "{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td>"
-      "<td>{}</td><td>{:.3g}</td><td>{}</td><td class=\"{}\">{}</td></tr>\n",
+      "<td>{}</td><td>{:.3g}</td><td>{}</td><td class=\"{}\">{}</td><td class=\"{}\">{}</td></tr>\n",
       f.budget, f.ticks, f.not_finite, f.largest_force_n, f.given_j, f.missed_deep, f.deep,
       or_dash(at_poses(f, &report::ForceDifference::error_p95), 100.0, " %"),
       or_dash(at_poses(f, &report::ForceDifference::angle_p95_deg), 1.0, "°"), or_dash(f.force_error_p95, 100.0, " %"),
       or_dash(f.angle_error_p95_deg, 1.0, "°"), f.onset_ticks ? fmt::format("{:+d}", *f.onset_ticks) : "–",
       or_dash(f.noise_share, 100.0, " %"), f.most_contacts, 1e3 * f.deepest_m, f.safety_ticks,
-      !f.broken.empty() ? "bad"
-      : f.weak.empty()  ? "good"
-                        : "weak",
-      broken.empty() ? "holds" : broken);
+      f.safe()                           ? "good"
+      : f.judged() || !f.harmful.empty() ? "bad"
+                                         : "weak",
+      unsafe.empty() ? "safe" : unsafe,
+      f.off.empty() ? "good"
+      : f.judged()  ? "bad"
+                    : "weak",
+      off.empty() ? none : off);
+}
+
+// How many runs hold, and what that means.
+std::string counts(const std::vector<Tally>& tallies, double seconds_taken) {
+  std::string html =
+      "<table><tr><th>budget</th><th>no harm</th><th>and nothing deep missed: safe</th><th>feels as without a "
+      "budget</th></tr>\n";
+  for (const Tally& t : tallies) {
+    html += fmt::format("<tr><td>{}</td><td>{} of {}</td><td>{} of {}</td><td>{}</td></tr>\n", t.budget, t.harmless,
+                        t.runs, t.safe, t.runs,
+                        t.compared > 0 ? fmt::format("{} of {}", t.feels_right, t.compared) : std::string("–"));
+  }
+  return html +
+         fmt::format(
+             "</table>\n<p><b>No harm</b>: every number finite, no force beyond the limit, no energy to the hand "
+             "beyond the case's bound. <b>Safe</b>: besides, no deep contact missed in two ticks in a row, and "
+             "nothing falls through. <b>Feel</b>: contact forces within 7 % and 18° at the 95th percentile of "
+             "those without a budget, at the same poses, and of the hand where two runs can be compared; contact "
+             "begins within a tick; at most 1 % of noise added. A microsecond is 20 pairs of nodes: what such "
+             "runs miss is told in brown, not judged.</p>\n<p>Force on the hand over time: <b>without a "
+             "budget</b>, <b style=\"color:{}\">50 µs</b> (1000 work units), <b style=\"color:{}\">1 µs</b> "
+             "(20). <i>Contacts</i>: the force of contacts on the tool, in each tick at the pose of the run "
+             "without a budget; <i>hand</i>: the force on the hand, each run on its own. Simulated time, the "
+             "same on every run; it took {:.0f} s.</p>\n",
+             colours[1], colours[2], seconds_taken);
 }
 
 }  // namespace
 
 std::string page_of(const std::vector<Outcome>& outcomes, double seconds_taken) {
-  std::size_t runs = 0;
-  std::size_t good = 0;
-  for (const Outcome& outcome : outcomes) {
-    runs += outcome.runs.size();
-    good += static_cast<std::size_t>(
-        std::count_if(outcome.runs.begin(), outcome.runs.end(), [](const Figures& f) { return f.broken.empty(); }));
-  }
   std::string html =
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Hard cases</title><style>"
-      "body{font:14px/1.4 sans-serif;max-width:1100px;margin:1em auto;padding:0 "
+      "body{font:14px/1.4 sans-serif;max-width:1500px;margin:1em auto;padding:0 "
       "1em}table{border-collapse:collapse;font-size:12px}"
       "td,th{border-bottom:1px solid #ccc;padding:2px "
-      "6px;text-align:right}td:first-child,th:first-child,td:last-child,th:last-child{text-align:left}"
+      "6px;text-align:right}td:first-child,th:first-child,td:nth-last-child(-n+2),th:nth-last-child(-n+2){text-align:"
+      "left}"
+      "td:nth-last-child(-n+2){min-width:11em}td:nth-child(n+2):nth-last-child(n+3){white-space:nowrap}"
       ".good{color:#060}.bad{color:#b00}.weak{color:#960}</style></head><body>\n<h1>Hard cases</h1>\n";
-  html += fmt::format(
-      "<p>{} of {} runs are safe ({:.0f} s): every number finite, no force beyond the limit, no energy beyond the "
-      "bound, and, down to 50 µs, no deep contact missed in two ticks in a row and forces as without a budget. Force "
-      "on the hand over time: <b>without a budget</b>, <b style=\"color:{}\">50 "
-      "µs</b> (1000 work "
-      "units), <b style=\"color:{}\">1 µs</b> (20). <i>Contacts</i>: the force of contacts on the tool, in each tick "
-      "at "
-      "the pose of the run without a budget; <i>hand</i>: the force on the hand, each run on its own, where they can "
-      "be "
-      "compared tick by tick. Simulated time, the same on every run.</p>\n",
-      good, runs, seconds_taken, colours[1], colours[2]);
+  html += counts(tally(outcomes), seconds_taken);
   for (const Outcome& outcome : outcomes) {
     html += fmt::format(
         "<h2>{}</h2>\n<p>{}</p>\n{}\n<table><tr><th>budget</th><th>ticks</th><th>not finite</th><th>largest "
         "N</th><th>given J</th>"
         "<th>deep missed</th><th>contacts p95</th><th>angle p95</th><th>hand p95</th><th>angle "
         "p95</th><th>onset</th><th>noise</th><th>contacts</th><th>deepest mm</th>"
-        "<th>safety ticks</th><th></th></tr>\n",
+        "<th>safety ticks</th><th>safety</th><th>feel</th></tr>\n",
         outcome.hard_case->name, outcome.hard_case->what, picture(outcome));
     for (const Figures& f : outcome.runs) html += row(f);
     html += "</table>\n";

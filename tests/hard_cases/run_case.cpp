@@ -9,6 +9,7 @@
 #include <span>
 
 #include "hard_cases/compare.hpp"
+#include "hard_cases/judgement.hpp"
 #include "odds/mesh/made/by_name.hpp"
 #include "odds/mesh/read.hpp"
 #include "odds/query/pair.hpp"
@@ -25,8 +26,6 @@ struct Budget {
   const char* name;
   std::uint64_t work_units;  // 0: no limit
 };
-constexpr double most_force_error = 0.07;  // what people begin to notice, of a force ...
-constexpr double most_angle_deg = 18.0;    // ... and of its direction
 constexpr Budget budgets[] = {{"none", 0}, {"50 us", 1000}, {"1 us", 20}};
 
 /// The same meshes without a budget: whether the tool overlaps something, and how deeply.
@@ -192,48 +191,6 @@ Result<std::vector<report::ForceDifference>> at_same_poses(const HardCase& hard_
     differences.push_back(report::compare_forces(exact, samples, hard_case.touching_n, rate_hz));
   }
   return differences;
-}
-
-// Safety is judged at every budget. That nothing is missed or passed is judged as such down to 50 us; at 1 us, which is
-// 20 pairs of nodes, it is written down as weak.
-void judge(const HardCase& hard_case, Figures& f) {
-  const auto broken = [&](const std::string& what) { f.broken.push_back(what); };
-  const auto felt = [&](const std::string& what) { (f.budget == "1 us" ? f.weak : f.broken).push_back(what); };
-  if (f.not_finite > 0) broken(fmt::format("{} ticks with numbers that are not finite", f.not_finite));
-  if (f.largest_force_n > hard_case.max_force_n * (1.0 + 1e-9)) {
-    broken(fmt::format("a force of {:.3g} N, beyond the limit of {} N", f.largest_force_n, hard_case.max_force_n));
-  }
-  if (f.given_j > hard_case.given_j) {
-    broken(fmt::format("{:.3g} J given to the hand, {:.3g} allowed", f.given_j, hard_case.given_j));
-  }
-  if (f.missed_deep > 0) {
-    felt(fmt::format("{} ticks without contact in a deep overlap, not the first of their row", f.missed_deep));
-  }
-  if (!hard_case.ends.empty() && !(f.end_height_m > hard_case.ends_above_m)) {
-    felt(fmt::format("'{}' ends at {:.4g} m, not above {:.4g} m", hard_case.ends, f.end_height_m,
-                     hard_case.ends_above_m));
-  }
-  if (f.at_same_poses && f.at_same_poses->error_p95 > most_force_error) {
-    felt(fmt::format("at the same poses contact forces are off by {:.1f} % at the 95th percentile ({:.0f} % allowed)",
-                     100.0 * f.at_same_poses->error_p95, 100.0 * most_force_error));
-  }
-  if (f.at_same_poses && f.at_same_poses->angle_p95_deg > most_angle_deg) {
-    felt(fmt::format("at the same poses contact forces are off by {:.1f} degrees at the 95th percentile ({} allowed)",
-                     f.at_same_poses->angle_p95_deg, most_angle_deg));
-  }
-  if (f.budget == "none" || !hard_case.compares) return;
-  if (f.force_error_p95 && *f.force_error_p95 > most_force_error) {
-    felt(fmt::format("force off by {:.1f} % at the 95th percentile ({:.0f} % allowed)", 100.0 * *f.force_error_p95,
-                     100.0 * most_force_error));
-  }
-  if (f.angle_error_p95_deg && *f.angle_error_p95_deg > most_angle_deg) {
-    felt(fmt::format("force off by {:.1f} degrees at the 95th percentile ({} allowed)", *f.angle_error_p95_deg,
-                     most_angle_deg));
-  }
-  if (f.onset_ticks && std::abs(*f.onset_ticks) > 1) felt(fmt::format("contact begins {} ticks off", *f.onset_ticks));
-  if (f.noise_share && *f.noise_share > 0.01) {
-    felt(fmt::format("{:.2f} % added noise (1 % allowed)", 100.0 * *f.noise_share));
-  }
 }
 
 }  // namespace

@@ -47,8 +47,15 @@ struct Figures {
   std::optional<report::ForceDifference> at_same_poses;
   double wall_s = 0.0;
   std::vector<Sample> samples;
-  std::vector<std::string> broken;  ///< what did not hold
-  std::vector<std::string> weak;    ///< what a budget of 1 us cannot give: safe, but not as it should feel
+  std::vector<std::string> harmful;  ///< numbers, forces or energy that must never be, at any budget
+  std::vector<std::string> missed;   ///< deep contacts that were not seen, bodies that fell through
+  std::vector<std::string> off;      ///< forces that differ from the exact run's by more than people notice
+
+  /// Whether the budget is long enough to be judged by what it misses and how it feels; 1 us, 20 pairs of nodes, is
+  /// not.
+  [[nodiscard]] bool judged() const { return budget != "1 us"; }
+  [[nodiscard]] bool safe() const { return harmful.empty() && missed.empty(); }
+  [[nodiscard]] bool holds() const { return harmful.empty() && (!judged() || (missed.empty() && off.empty())); }
 };
 
 struct Outcome {

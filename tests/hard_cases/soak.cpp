@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "odds/scene/simulation.hpp"
+#include "support/allocation_counter.hpp"
 
 namespace odds::hard_cases {
 namespace {
@@ -21,6 +22,12 @@ void note(Soak& soak, const haptics::TickRecord& record, double most_n) {
   if ((record.safety & haptics::safety_faulted) != 0) ++soak.faulted;
   soak.largest_force_n = std::fmax(soak.largest_force_n, force.norm());
   soak.least_energy_j = std::fmin(soak.least_energy_j, record.observed_energy_j);
+}
+
+// The effects' counts begin anew with each round.
+void note(std::vector<std::uint64_t>& evaluations, const haptics::EffectSet& effects) {
+  evaluations.resize(effects.size());
+  for (std::size_t i = 0; i < effects.size(); ++i) evaluations[i] += effects.cost(i).evaluations;
 }
 
 }  // namespace
@@ -41,20 +48,31 @@ Result<Soak> soak(const std::string& scene_file, double seconds) {
   const auto round = static_cast<std::int64_t>(simulation.scene().loop.seconds * 1e9) / period_ns;
   const auto all = static_cast<std::int64_t>(seconds * 1e9) / period_ns;
   Soak result;
+  std::vector<std::uint64_t> evaluations;
   const auto began = std::chrono::steady_clock::now();
   for (std::int64_t tick = 0; tick < all; ++tick) {
     if (tick % round == 0) {
       for (std::uint32_t i = 0; i < world.body_count(); ++i) world.set_state({i}, start[i]);
       if (simulation.device() != nullptr) simulation.device()->enable_forces(true);
       result.rescued += simulation.renderer().rescued_steps();
+      note(evaluations, simulation.effects());
       if (!simulation.renderer().begin())
         return Error{scene_file, "", "the device gives no position", "check the device"};
     }
     haptics::TickRecord record;
-    simulation.renderer().tick(tick % round * period_ns, record);
+    {
+      const support::AllocationCounter counter;
+      simulation.renderer().tick(tick % round * period_ns, record);
+      result.allocations += counter.allocations();
+    }
     note(result, record, most_n);
   }
   result.rescued += simulation.renderer().rescued_steps();
+  note(evaluations, simulation.effects());
+  result.effects = simulation.effects().size();
+  for (std::size_t i = 0; i < result.effects; ++i) {
+    if (evaluations[i] == 0) result.idle += " " + simulation.effects().cost(i).name;
+  }
   result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   return result;
 }

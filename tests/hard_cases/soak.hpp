@@ -15,10 +15,13 @@ struct Soak {
   std::uint64_t beyond_limit = 0;  ///< ticks with a force above the device's limit
   std::uint64_t faulted = 0;       ///< ticks with a latched fault
   std::uint64_t rescued = 0;       ///< steps that held a body's speed or put it back
+  std::uint64_t allocations = 0;   ///< within ticks; 0 where they are not counted (a sanitizer's build)
+  std::size_t effects = 0;         ///< that the scene asks for
+  std::string idle;                ///< those of them that were never evaluated
   double largest_force_n = 0.0;
   double least_energy_j = 0.0;  ///< lowest balance at the hand
   double wall_s = 0.0;
-  [[nodiscard]] bool holds() const { return not_finite == 0 && beyond_limit == 0 && faulted == 0; }
+  [[nodiscard]] bool holds() const { return not_finite == 0 && beyond_limit == 0 && faulted == 0 && allocations == 0; }
 };
 
 /// Runs the scene again and again, from its start each time the scene's own seconds are over, bodies and device put

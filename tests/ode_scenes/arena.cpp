@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "odds/mesh/made/by_name.hpp"
+#include "odds/scene/simulation.hpp"
 #include "ode/mass_properties.hpp"
 #include "ode/vectors.hpp"
 #include "ode_scenes/bullet.hpp"
@@ -32,7 +33,8 @@ T value_or_throw(Result<T> result) {
 std::string Collider::name() const {
   switch (kind) {
     case Kind::odds:
-      return std::isfinite(budget_us) ? fmt::format("odds, {:g} µs", budget_us) : "odds, no limit";
+      if (!std::isfinite(budget_us)) return "odds, no limit";
+      return in_work ? fmt::format("odds, {} units", work_units()) : fmt::format("odds, {:g} µs", budget_us);
     case Kind::stock:
       return "ODE's dTriMesh";
     case Kind::primitive:
@@ -41,6 +43,10 @@ std::string Collider::name() const {
       return "Bullet's GImpact";
   }
   return "";
+}
+
+unsigned long Collider::work_units() const {
+  return std::max(1UL, static_cast<unsigned long>(std::lround(scene::work_units_per_us * budget_us)));
 }
 
 /// A mesh in ODE's form; ODE keeps pointers to the arrays.
@@ -71,7 +77,8 @@ Arena::Arena(const Collider& collider, const Physics& physics, double gravity)
   if (collider_.kind == Collider::Kind::odds) {
     oddsTakeOverParams params;
     oddsTakeOverParamsInit(&params);
-    params.budget_us = collider_.budget_us;
+    params.budget_us = collider_.in_work ? dInfinity : collider_.budget_us;
+    if (collider_.in_work) params.work_units = collider_.work_units();
     if (oddsTakeOverTriMesh(&params) == 0) throw std::runtime_error(oddsGetLastError());
   }
   if (collider_.kind == Collider::Kind::gimpact) bullet_ = std::make_unique<Bullet>();

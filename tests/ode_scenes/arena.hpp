@@ -27,9 +27,11 @@ struct Collider {
   };
   Kind kind = Kind::odds;
   double budget_us = 100.0;  ///< of odds
+  bool in_work = false;      ///< as work units in place of microseconds: the same bits on every run, on any machine
 
   [[nodiscard]] bool ours() const noexcept { return kind == Kind::odds; }
   [[nodiscard]] std::string name() const;
+  [[nodiscard]] unsigned long work_units() const;  ///< 20 for a microsecond; budget_us must be finite
 };
 
 /// How contacts and solver are set.

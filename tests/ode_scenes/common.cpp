@@ -6,7 +6,7 @@ namespace odds::ode_scenes {
 
 std::vector<Collider> colliders(const Plan& plan, bool primitive) {
   std::vector<Collider> list;
-  for (const double budget : plan.budgets_us) list.push_back({Collider::Kind::odds, budget});
+  for (const double budget : plan.budgets_us) list.push_back({Collider::Kind::odds, budget, plan.in_work});
   if (!plan.others) return list;
   list.push_back({Collider::Kind::stock});
   if (primitive) list.push_back({Collider::Kind::primitive});

@@ -20,27 +20,32 @@ struct Options {
   Plan plan;
 };
 
+constexpr double least_budget_us = 0.1;
+
 using Scene = Section (*)(const Plan&);
 constexpr std::pair<const char*, Scene> all[] = {{"stacks", &stacks},     {"peg", &peg_in_hole}, {"gears", &gears},
                                                  {"bolt", &bolt_and_nut}, {"drag", &drag},       {"crowd", &crowd}};
 
 int usage() {
-  fmt::print(stderr,
-             "usage: odds_ode_scenes [--out FOLDER] [--only stacks|peg|gears|bolt|drag|crowd] [--quick] [--seconds S]\n"
-             "                       [--budgets US,US,...] [--ours] [--gimpact]\n"
-             "       odds_ode_scenes --soak [--seconds S] [--out FOLDER]   (stacks of five, ten minutes)\n"
-             "--quick: ten seconds, one gap, stacks of 2 and 5; --budgets: of ours, else 100,5,10,20 us; --ours: "
-             "without those that it is compared with;\n"
-             "--gimpact: Bullet's GImpact, too, if built with Bullet\n");
+  fmt::print(
+      stderr,
+      "usage: odds_ode_scenes [--out FOLDER] [--only stacks|peg|gears|bolt|drag|crowd] [--quick] [--seconds S]\n"
+      "                       [--budgets US,US,...] [--work] [--bricks N,N,...] [--gaps MM,MM,...] [--ours] "
+      "[--gimpact]\n"
+      "       odds_ode_scenes --soak [--seconds S] [--out FOLDER]   (stacks of five, ten minutes)\n"
+      "--quick: ten seconds, one gap, stacks of 2 and 5; --bricks, --gaps: of stacks, else 2,5,10 and 0,0.1,0.5,1 mm;\n"
+      "--budgets: of ours, else 100,5,10,20 us; --work: as 20 work units each, the same on every run;\n"
+      "--ours: without those that it is compared with;\n"
+      "--gimpact: Bullet's GImpact, too, if built with Bullet\n");
   return 2;
 }
 
-/// Positive numbers between commas.
-bool read_list(const char* text, std::vector<double>& numbers) {
+/// Numbers between commas, none below `least`.
+bool read_list(const char* text, std::vector<double>& numbers, double least) {
   numbers.clear();
   for (char* end = nullptr; numbers.empty() || *end == ','; text = end + 1) {
     numbers.push_back(std::strtod(text, &end));
-    if (end == text || !(numbers.back() > 0.0)) return false;
+    if (end == text || !(numbers.back() >= least)) return false;
     if (*end == '\0') return true;
   }
   return false;
@@ -62,9 +67,17 @@ bool read(int argc, char** argv, Options& options) {
       options.plan.gaps_mm = {0.1};
       options.plan.bricks = {2, 5};
     } else if (argument == "--budgets" && i + 1 < argc) {
-      if (!read_list(argv[++i], options.plan.budgets_us)) return false;
+      if (!read_list(argv[++i], options.plan.budgets_us, least_budget_us)) return false;
+    } else if (argument == "--gaps" && i + 1 < argc) {
+      if (!read_list(argv[++i], options.plan.gaps_mm, 0.0)) return false;
+    } else if (argument == "--bricks" && i + 1 < argc) {
+      std::vector<double> counts;
+      if (!read_list(argv[++i], counts, 1.0)) return false;
+      options.plan.bricks.assign(counts.begin(), counts.end());
     } else if (argument == "--ours") {
       options.plan.others = false;
+    } else if (argument == "--work") {
+      options.plan.in_work = true;
     } else if (argument == "--gimpact") {
       options.plan.gimpact = true;
     } else if (argument == "--soak") {

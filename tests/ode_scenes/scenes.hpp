@@ -11,8 +11,9 @@ struct Plan {
   double seconds = 60.0;  ///< of each stack
   std::vector<double> gaps_mm = {0.0, 0.1, 0.5, 1.0};
   std::vector<int> bricks = {2, 5, 10};
-  bool others = true;                                  ///< also the colliders that ours is compared with
-  bool gimpact = false;                                ///< among them Bullet's
+  bool others = true;                                         ///< also the colliders that ours is compared with
+  bool gimpact = false;                                       ///< among them Bullet's
+  bool in_work = false;                                       ///< ours in work units
   std::vector<double> budgets_us = {100.0, 5.0, 10.0, 20.0};  ///< the usual one, and starved ones
 };
 

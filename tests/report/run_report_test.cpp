@@ -107,6 +107,21 @@ TEST(RunSummary, times_on_a_restless_machine_are_inconclusive_and_counts_are_jud
   EXPECT_EQ(state(summary, "budget"), State::inconclusive) << "by the stalls that the queries saw themselves";
 }
 
+TEST(RunSummary, net_time_of_a_tick_is_the_smaller_of_its_two_bounds) {
+  const auto longest_us = [](double stall_us, double processor_us) {
+    MadeRecording made = calm_recording();  // awake for 150 us
+    for (auto& tick : made.ticks) {
+      tick.query_stall_us = stall_us;
+      tick.processor_us = processor_us;
+    }
+    return 1e-3 * static_cast<double>(summarize(made.info, made.ticks).tick_net.max());
+  };
+  EXPECT_NEAR(longest_us(0.0, 0.0), 150.0, 0.5) << "nobody measured the thread's own time";
+  EXPECT_NEAR(longest_us(30.0, 0.0), 120.0, 0.5);
+  EXPECT_NEAR(longest_us(30.0, 140.0), 120.0, 0.5) << "a processor that was stolen looks busy to the system";
+  EXPECT_NEAR(longest_us(30.0, 90.0), 90.0, 0.5) << "the thread lost the processor outside of a query";
+}
+
 TEST(RunSummary, what_nobody_counted_is_not_called_kept) {
   MadeRecording made = calm_recording();
   for (auto& tick : made.ticks) tick.allocations = haptics::not_measured;

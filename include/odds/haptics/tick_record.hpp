@@ -68,6 +68,8 @@ struct TickRecord {
   std::uint32_t major_faults = 0;        ///< page faults with I/O
   std::uint32_t voluntary_switches = 0;  ///< within the tick's work, not counting the sleep before it
   std::uint32_t involuntary_switches = 0;
+  /// Time in which the loop's thread ran within the tick's work; 0 where nobody measured it.
+  double processor_us = 0.0;
   /// Calls of malloc, operator new and their kin by the loop's thread within the tick's work; `not_measured` where the
   /// program has no counter (the command `odds` has one).
   std::uint32_t allocations = not_measured;

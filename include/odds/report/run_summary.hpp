@@ -34,6 +34,7 @@ struct Check {
 struct RunSummary {
   Histogram wake;             ///< woke - planned
   Histogram tick;             ///< done - planned; a skipped period counts with the next tick that ran (see summarize)
+  Histogram tick_net;         ///< the tick's own work: see summarize
   Histogram query_gross;      ///< per tick with a query
   Histogram query_net;        ///< gross without stalls
   Histogram query_overshoot;  ///< net, beyond the budget; the largest of the tick's queries
@@ -77,6 +78,10 @@ struct RunSummary {
 /// Latencies count from the planned start, so that a late wake-up is part of them. A skipped period has no force of its
 /// own: it counts with the time from its planned start to the end of the next tick that ran, which is how long the hand
 /// waited. Without this the worst moments would be missing from the percentiles (coordinated omission).
+///
+/// The net time of a tick is bounded from above in two ways, of which the smaller counts: from waking up to the force,
+/// less the stalls in its queries; and the time in which the loop's thread ran (TickRecord::processor_us), where it was
+/// measured. A thread that lost the processor outside a query shows in the second, a stolen processor in the first.
 [[nodiscard]] RunSummary summarize(const RunInfo& info, std::span<const haptics::TickRecord> ticks);
 
 }  // namespace odds::report
