@@ -20,20 +20,49 @@ struct IndexedMesh {
   std::vector<mesh::Triangle> triangles;
 };
 
-// dGeomTriMeshGetTriangle answers in the world frame. A second, space-less geom at the identity on the same data gives
-// the mesh frame without a rounding transform. Equal corners become one vertex again.
+bool is_at_identity(dGeomID geom) noexcept {
+  const dReal* position = dGeomGetPosition(geom);
+  const dReal* rotation = dGeomGetRotation(geom);
+  for (int row = 0; row < 3; ++row) {
+    if (position[row] != 0) return false;
+    for (int column = 0; column < 3; ++column) {
+      if (rotation[4 * row + column] != (row == column ? 1 : 0)) return false;
+    }
+  }
+  return true;
+}
+
+// dGeomTriMeshGetTriangle answers in the world frame. A geom at the identity gives the mesh frame without a rounding
+// transform: the client's own where it stands there, as a new one does, else a second one on the same data. ODE keeps
+// the pose record of the geom that was destroyed last for the next one, and a client may count on finding its own
+// there (DART 6.12 reads a geom's pose after dGeomSetBody has given it up): a copy would take its place.
+class AtIdentity {
+ public:
+  explicit AtIdentity(dGeomID trimesh)
+      : copied_(!is_at_identity(trimesh)),
+        id_(copied_ ? dCreateTriMesh(nullptr, dGeomTriMeshGetData(trimesh), nullptr, nullptr, nullptr) : trimesh) {}
+  AtIdentity(const AtIdentity&) = delete;
+  AtIdentity& operator=(const AtIdentity&) = delete;
+  ~AtIdentity() {
+    if (copied_) dGeomDestroy(id_);
+  }
+  [[nodiscard]] dGeomID id() const noexcept { return id_; }
+
+ private:
+  bool copied_;
+  dGeomID id_;
+};
+
+// Equal corners become one vertex again.
 IndexedMesh read_triangles(dGeomID trimesh) {
-  struct Copy {
-    dGeomID id;
-    ~Copy() { dGeomDestroy(id); }
-  } copy = {dCreateTriMesh(nullptr, dGeomTriMeshGetData(trimesh), nullptr, nullptr, nullptr)};
+  const AtIdentity source(trimesh);
   IndexedMesh result;
   std::map<std::array<double, 3>, std::uint32_t> index_of;
-  const int count = dGeomTriMeshGetTriangleCount(copy.id);
+  const int count = dGeomTriMeshGetTriangleCount(source.id());
   result.triangles.reserve(static_cast<std::size_t>(std::max(count, 0)));
   for (int t = 0; t < count; ++t) {
     std::array<dVector3, 3> corners;
-    dGeomTriMeshGetTriangle(copy.id, t, &corners[0], &corners[1], &corners[2]);
+    dGeomTriMeshGetTriangle(source.id(), t, &corners[0], &corners[1], &corners[2]);
     mesh::Triangle triangle;
     for (std::size_t c = 0; c < 3; ++c) {
       const std::array<double, 3> key = {corners[c][0], corners[c][1], corners[c][2]};

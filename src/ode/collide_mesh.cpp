@@ -22,6 +22,7 @@ query::Request request_for(const Settings& settings, int limit) noexcept {
   request.p_min = settings.p_min;
   request.k_min = settings.k_min;
   request.max_contacts = limit;
+  request.carry_motion = settings.carry_motion;
   return request;
 }
 

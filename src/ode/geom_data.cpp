@@ -43,6 +43,7 @@ Settings combine(const Settings& a, const Settings& b) noexcept {
   both.p_min = std::max(a.p_min, b.p_min);
   both.k_min = std::max(a.k_min, b.k_min);
   both.max_contacts = std::min(a.max_contacts, b.max_contacts);
+  both.carry_motion = std::min(a.carry_motion, b.carry_motion);
   both.method = std::min(a.method, b.method);
   both.estimator = std::min(a.estimator, b.estimator);
   both.undecided_policy = std::max(a.undecided_policy, b.undecided_policy);

@@ -22,6 +22,7 @@ struct Settings {
   double p_min = 1.0;
   std::uint32_t k_min = 10;
   int max_contacts = 8;
+  double carry_motion = 1e-5;
   query::Method method = query::Method::time_critical;
   query::EstimatorKind estimator = query::EstimatorKind::kinematic;
   int undecided_policy = ODDS_UNDECIDED_HIT;

@@ -6,12 +6,6 @@
 
 namespace odds::ode {
 
-HeldContacts::Held HeldContacts::held(const query::Contact& contact, const math::Pose& b_in_a) noexcept {
-  // The normal points into A: A's own surface has come that far against it.
-  const Vec3 half = 0.5 * contact.depth * contact.normal;
-  return {contact.position - half, b_in_a.inverse() * Vec3(contact.position + half), contact};
-}
-
 std::span<const query::Contact> HeldContacts::best_of(const query::Answer& answer, const math::Pose& b_in_a,
                                                       double size) noexcept {
   if (answer.basis == query::Basis::proved && answer.contacts_complete) {  // or clear, and there are none
@@ -27,7 +21,7 @@ std::span<const query::Contact> HeldContacts::best_of(const query::Answer& answe
 
 void HeldContacts::keep(std::span<const query::Contact> found, const math::Pose& b_in_a, bool careful) noexcept {
   count_ = std::min(found.size(), most);
-  for (std::size_t i = 0; i < count_; ++i) held_[i] = held(found[i], b_in_a);
+  for (std::size_t i = 0; i < count_; ++i) held_[i] = query::HeldContact(found[i], b_in_a);
   made_at_ = b_in_a;
   careful_ = careful;
   runs_ = 0;
@@ -42,19 +36,14 @@ double HeldContacts::motion_about(const Vec3& on_b, const math::Pose& b_in_a, do
 std::span<const query::Contact> HeldContacts::at(const math::Pose& b_in_a, double size) noexcept {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < count_; ++i) {
-    Held held = held_[i];
-    const Vec3 on_b = b_in_a * held.on_b;
-    const Vec3 across = on_b - held.on_a;
-    const double depth = held.contact.normal.dot(across);
-    const double slip = (across - depth * held.contact.normal).norm();
+    const query::HeldContact held = held_[i];
+    const auto [depth, slip] = held.parted(b_in_a);
     if (!(slip <= most_slip * size && depth >= -most_gap * size)) continue;
-    held.contact.position = 0.5 * (held.on_a + on_b);
-    held.contact.depth = std::max(depth, 0.0);
-    touching_[kept] = held.contact;
+    touching_[kept] = held.at(b_in_a);
     held_[kept++] = held;
   }
   count_ = kept;
-  rests_ = kept > 0 && motion_about(held_[0].on_b, b_in_a, size) <= rest * size;
+  rests_ = kept > 0 && motion_about(held_[0].on_b(), b_in_a, size) <= rest * size;
   runs_ = std::min(runs_ + 1, most_runs + 1);
   std::sort(touching_.begin(), touching_.begin() + static_cast<std::ptrdiff_t>(kept),
             [](const query::Contact& x, const query::Contact& y) { return x.depth > y.depth; });

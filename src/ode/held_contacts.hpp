@@ -7,6 +7,7 @@
 
 #include "odds/math/pose.hpp"
 #include "odds/query/answer.hpp"
+#include "odds/query/held_contact.hpp"
 
 namespace odds::ode {
 
@@ -48,15 +49,9 @@ class HeldContacts {
   [[nodiscard]] std::span<const query::Contact> at(const math::Pose& b_in_a, double size) noexcept;
 
  private:
-  struct Held {
-    Vec3 on_a;
-    Vec3 on_b;  ///< in B's mesh frame
-    query::Contact contact;
-  };
-  [[nodiscard]] static Held held(const query::Contact& contact, const math::Pose& b_in_a) noexcept;
   [[nodiscard]] double motion_about(const Vec3& on_b, const math::Pose& b_in_a, double reach) const noexcept;
 
-  std::array<Held, most> held_;
+  std::array<query::HeldContact, most> held_;
   std::array<query::Contact, most> touching_;
   std::size_t count_ = 0;
   math::Pose made_at_;

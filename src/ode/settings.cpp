@@ -82,6 +82,15 @@ int dGeomOddsMeshGetMaxContacts(dGeomID geom) noexcept {
   return get<int>(geom, __func__, [](const Settings& s) { return s.max_contacts; });
 }
 
+int dGeomOddsMeshSetCarryMotion(dGeomID geom, dReal part) noexcept {
+  return set(geom, __func__, part >= 0 && part <= 1, "the motion must be 0 .. 1 of the smaller body's size",
+             [=](Settings& s) { s.carry_motion = part; });
+}
+
+dReal dGeomOddsMeshGetCarryMotion(dGeomID geom) noexcept {
+  return get<dReal>(geom, __func__, [](const Settings& s) { return s.carry_motion; });
+}
+
 int dGeomOddsMeshSetMethod(dGeomID geom, int method) noexcept {
   return set(geom, __func__, method >= ODDS_METHOD_EXACT && method <= ODDS_METHOD_TIME_CRITICAL,
              "the method must be one of ODDS_METHOD_EXACT, _INCREMENTAL, _TIME_CRITICAL",

@@ -127,7 +127,7 @@ bool World::Implementation::configure(dGeomID geom) const {
          dGeomOddsMeshSetWorkBudget(geom, units) != 0 && dGeomOddsMeshSetPMin(geom, q.p_min) != 0 &&
          dGeomOddsMeshSetKMin(geom, static_cast<int>(q.k_min)) != 0 &&
          dGeomOddsMeshSetMaxContacts(geom, q.max_contacts) != 0 && dGeomOddsMeshSetMethod(geom, method) != 0 &&
-         dGeomOddsMeshSetEstimator(geom, estimator) != 0;
+         dGeomOddsMeshSetEstimator(geom, estimator) != 0 && dGeomOddsMeshSetCarryMotion(geom, q.carry_motion) != 0;
 }
 
 BodyState World::Implementation::state_of(const Body& body) const {

@@ -236,6 +236,7 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, Pro
     limit_depth(most_depth, pair);
   }
   if (!pair.answer.contacts_complete) return;
+  pair.carried.keep(pair.answer.contacts, request.max_contacts, pair.hits.pairs(), pose_b_in_a);
   if (ended == Progressed::finished) pair.known_depth.note(meshes.pose(), deepest_of(pair.answer.contacts));
   pair.previous_normal = pair.answer.contacts.front().normal;
   pair.previous_position = pair.answer.contacts.front().position;
@@ -275,6 +276,27 @@ void forecast(const Met& met, const SearchResult& result, const Request& request
   answer.cell_pair_probability = static_cast<double>(cell_probability);
 }
 
+/// The contacts of an earlier run, where the bodies have hardly moved since: false if they will not do.
+bool carry_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request,
+                    Pair::Implementation& pair, Spending& spending) noexcept {
+  if (request.max_contacts <= 1 || request.polygon_free) return false;
+  const double size = std::min(pair.a->mesh().size(), pair.b->mesh().size());
+  if (!pair.carried.serve(pose_b_in_a, request.max_contacts, request.carry_motion * size, size)) return false;
+  for (TrianglePair& proof : pair.carried.proofs()) {
+    if (!spending.allows(1)) return false;
+    spending.spend_triangle_pairs(1);
+    if (!meshes.meet(proof)) continue;
+    std::swap(proof, pair.carried.proofs().front());  // the next run's first
+    pair.hits.add(pair.carried.proofs().front());
+    pair.answer.verdict = Verdict::hit;
+    pair.answer.probability = 1.0;
+    pair.answer.contacts = std::span(pair.rough).first(pair.carried.write(pose_b_in_a, pair.rough));
+    pair.answer.contacts_carried = true;
+    return true;
+  }
+  return false;
+}
+
 template <class Tree>
 void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const Request& request,
             Pair::Implementation& pair) noexcept {
@@ -283,6 +305,10 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
   answer = {};
   pair.hits.clear();
   const PosedMeshes meshes(pair.a->mesh(), pair.b->mesh(), a.origin(), b.origin(), pose_b_in_a);
+  if (carry_contacts(meshes, pose_b_in_a, request, pair, spending)) {
+    answer.cost = spending.close();
+    return;
+  }
   const auto encounter = encounter_of(a, b, meshes, request);
   const SearchResult result = search(encounter, meshes, request, pair, spending);
   forecast(encounter, result, request, spending, pair);
@@ -300,7 +326,7 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
 bool usable(const math::Pose& pose, const Request& request) noexcept {
   return pose.is_rigid(tolerances::pose_orthonormality) && request.budget.microseconds > 0.0 &&
          request.budget.work_units > 0 && request.p_min > 0.0 && request.p_min <= 1.0 && request.k_min >= 1 &&
-         request.max_contacts >= 0;
+         request.max_contacts >= 0 && request.carry_motion >= 0.0 && request.carry_motion <= 1.0;
 }
 
 }  // namespace
@@ -379,6 +405,7 @@ void Pair::reset() noexcept {
   implementation_->front.reset();
   implementation_->previous_normal.setZero();
   implementation_->known_depth.forget();
+  implementation_->carried.forget();
   implementation_->has_witness = false;
 }
 

@@ -6,6 +6,7 @@
 
 #include "odds/query/pair.hpp"
 #include "query/bottom_slice.hpp"
+#include "query/carried_contacts.hpp"
 #include "query/ending_reserve.hpp"
 #include "query/known_depth.hpp"
 #include "query/recalibration.hpp"
@@ -41,6 +42,7 @@ struct Pair::Implementation {
   Vec3 previous_normal = Vec3::Zero();    ///< of the last run's first contact, in A's frame; zero: none
   Vec3 previous_position = Vec3::Zero();  ///< of that contact
   KnownDepth known_depth;
+  CarriedContacts carried;
   EndingReserve ending;
   std::array<Contact, most_contacts> rough;  ///< contacts that there was no time to make with care
   Answer answer;

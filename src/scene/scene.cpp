@@ -62,6 +62,7 @@ std::optional<Error> read_query(const Settings& settings, Scene& scene) {
     scene.frame.work_units = static_cast<std::uint64_t>(number);
   }
   if (reader.integer("max_contacts", 0, 8, number)) request.max_contacts = static_cast<int>(number);
+  reader.number("carry_motion", {0.0, 1.0}, request.carry_motion);
   return reader.finish();
 }
 

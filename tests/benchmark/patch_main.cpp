@@ -44,9 +44,10 @@ std::vector<math::Pose> poses_of(const Rest& rest, std::size_t count) {
   return poses;
 }
 
-int run(std::size_t count, double budget_us) {
+int run(const std::string& only, std::size_t count, double budget_us) {
   std::printf("%-16s %9s %9s %9s %9s %9s %9s\n", "at rest", "verdict", "contacts", "p90", "p99", "whole, %", "number");
   for (const Rest& rest : rests) {
+    if (std::string(rest.name).find(only) == std::string::npos) continue;
     auto made = mesh::made::make_shape(rest.mesh);
     const auto shape = query::Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(made).value()));
     auto pair = std::move(query::Pair::make(shape.value(), shape.value())).value();
@@ -82,10 +83,12 @@ int run(std::size_t count, double budget_us) {
 int main(int argc, char** argv) {
   CLI::App app{
       "Microseconds of this thread for the verdict, and for up to four contacts, of bodies that rest on each other"};
+  std::string only;
   std::size_t count = 2000;
   double budget_us = std::numeric_limits<double>::infinity();
+  app.add_option("--only", only, "those whose name has this in it");
   app.add_option("--poses", count, "poses of each")->check(CLI::Range(std::size_t{10}, std::size_t{10000000}));
   app.add_option("--budget-us", budget_us, "of the query with contacts; else unlimited")->check(CLI::PositiveNumber);
   CLI11_PARSE(app, argc, argv);
-  return odds::benchmark::run(count, budget_us);
+  return odds::benchmark::run(only, count, budget_us);
 }

@@ -127,6 +127,8 @@ TEST_F(GeomTest, SettingsHaveTheDocumentedDefaultsAndKeepWhatIsSet) {
   EXPECT_EQ(dGeomOddsMeshSetPMin(geom, 0.9), 1);
   EXPECT_EQ(dGeomOddsMeshSetKMin(geom, 3), 1);
   EXPECT_EQ(dGeomOddsMeshSetMaxContacts(geom, 4), 1);
+  EXPECT_EQ(dGeomOddsMeshGetCarryMotion(geom), 1e-5);
+  EXPECT_EQ(dGeomOddsMeshSetCarryMotion(geom, 1e-4), 1);
   EXPECT_EQ(dGeomOddsMeshSetMethod(geom, ODDS_METHOD_EXACT), 1);
   EXPECT_EQ(dGeomOddsMeshSetEstimator(geom, ODDS_ESTIMATOR_CELLS), 1);
   EXPECT_EQ(dGeomOddsMeshSetUndecidedPolicy(geom, ODDS_UNDECIDED_NO_CONTACT, 0.7), 1);
@@ -136,6 +138,7 @@ TEST_F(GeomTest, SettingsHaveTheDocumentedDefaultsAndKeepWhatIsSet) {
   for (const double bad : {0.0, -1.0, 1.01, nan}) EXPECT_EQ(dGeomOddsMeshSetPMin(geom, bad), 0);
   EXPECT_EQ(dGeomOddsMeshSetKMin(geom, 0), 0);
   for (const int bad : {-1, 9}) EXPECT_EQ(dGeomOddsMeshSetMaxContacts(geom, bad), 0);
+  for (const dReal bad : {-1e-9, 1.5, std::nan("")}) EXPECT_EQ(dGeomOddsMeshSetCarryMotion(geom, bad), 0);
   for (const int bad : {-1, 3}) EXPECT_EQ(dGeomOddsMeshSetMethod(geom, bad), 0);
   for (const int bad : {-1, 2}) EXPECT_EQ(dGeomOddsMeshSetEstimator(geom, bad), 0);
   for (const double bad : {-0.1, 1.0, nan})

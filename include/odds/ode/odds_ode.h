@@ -115,9 +115,9 @@ int oddsMeshDataIsClosed(oddsMeshDataID data) ODDS_NOTHROW;
 dGeomID dCreateOddsMesh(dSpaceID space, oddsMeshDataID data) ODDS_NOTHROW;
 
 /* Settings. A pair of two such geoms uses the more careful of both settings, in either order of call:
- *   budgets: the smaller; maximum of contacts: the smaller; p_min, k_min: the greater; method: exact before incremental
- *   before time-critical; estimator: cells if either asks for cells; undecided: no contact if either says so, else the
- *   greater probability.
+ *   budgets: the smaller; maximum of contacts, carried motion: the smaller; p_min, k_min: the greater; method: exact
+ *   before incremental before time-critical; estimator: cells if either asks for cells; undecided: no contact if either
+ *   says so, else the greater probability.
  * Setters return 1, or 0 (value out of range, nothing changed). Getters of a wrong geom return 0. */
 
 /* Wall time one collision may take, > 0; dInfinity: no limit. Default 100. */
@@ -140,6 +140,13 @@ int dGeomOddsMeshGetKMin(dGeomID geom) ODDS_NOTHROW;
  * this limit both hold. With 8, a ray gives every crossing that the caller has room for. */
 int dGeomOddsMeshSetMaxContacts(dGeomID geom, int count) ODDS_NOTHROW;
 int dGeomOddsMeshGetMaxContacts(dGeomID geom) ODDS_NOTHROW;
+
+/* Contacts of a mesh with a mesh are carried along with the bodies instead of being made anew while nothing near them
+ * has moved farther than this part of the smaller body's size, 0 .. 1, since they were made with care: bodies at rest
+ * cost next to nothing, and their contacts stand still. A pair of triangles still proves the hit. Default 1e-5; 0:
+ * always made anew. */
+int dGeomOddsMeshSetCarryMotion(dGeomID geom, dReal part) ODDS_NOTHROW;
+dReal dGeomOddsMeshGetCarryMotion(dGeomID geom) ODDS_NOTHROW;
 
 enum { ODDS_METHOD_EXACT = 0, ODDS_METHOD_INCREMENTAL = 1, ODDS_METHOD_TIME_CRITICAL = 2 /* default */ };
 int dGeomOddsMeshSetMethod(dGeomID geom, int method) ODDS_NOTHROW;

@@ -44,6 +44,7 @@ struct WorldOptions {
   [[nodiscard]] static query::Request with_contacts(int count) {
     query::Request request;
     request.max_contacts = count;
+    request.carry_motion = 1e-5;
     return request;
   }
 
@@ -53,7 +54,7 @@ struct WorldOptions {
   Damping damping;
   Solver solver = Solver::exact;
   int iterations = 20;  ///< of the iterative solver
-  /// Method, estimator, budget (of each pair), p_min, k_min and max_contacts (of each pair, 0 .. 8).
+  /// Method, estimator, budget (of each pair), p_min, k_min, max_contacts (of each pair, 0 .. 8) and carry_motion.
   query::Request query = with_contacts(8);
   /// All collisions of a step together, shared by importance (odds_frame.h); what is near to the coupled body matters
   /// most. Infinity and the greatest number: no limit.

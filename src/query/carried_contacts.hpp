@@ -1,0 +1,66 @@
+// The contacts of the last patch that was made with care, for bodies that have hardly moved since.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include "odds/math/motion.hpp"
+#include "odds/query/contact_patch.hpp"
+#include "odds/query/held_contact.hpp"
+#include "query/posed_meshes.hpp"
+
+namespace odds::query {
+
+/// Bodies at rest tremble by nanometres: their contacts are the same but for the depth, which follows the motion. What
+/// is carried is still proved: a pair of triangles that met when it was made has to meet now. Nothing else can have
+/// come in deeper than the motion. No allocation.
+class CarriedContacts {
+ public:
+  /// Pairs of triangles that are tried as proof.
+  static constexpr std::size_t most_proofs = 8;
+
+  void forget() noexcept { count_ = 0; }
+
+  /// `wanted`: number of contacts that were asked for; `hits`: pairs of triangles that meet at `pose`, of B's mesh
+  /// frame in A's.
+  void keep(std::span<const Contact> contacts, int wanted, std::span<const TrianglePair> hits,
+            const math::Pose& pose) noexcept {
+    count_ = std::min(contacts.size(), held_.size());
+    for (std::size_t i = 0; i < count_; ++i) held_[i] = HeldContact(contacts[i], pose);
+    wanted_ = wanted;
+    pose_ = pose;
+    proof_count_ = std::min(hits.size(), most_proofs);
+    for (std::size_t i = 0; i < proof_count_; ++i) proofs_[i] = hits[i * hits.size() / proof_count_];
+  }
+
+  /// Whether what is kept is an answer to the same question now: as many contacts, no point within `size` of the first
+  /// of them has moved farther than `motion` (metres), and one of them at least still overlaps.
+  [[nodiscard]] bool serve(const math::Pose& pose, int wanted, double motion, double size) const noexcept {
+    if (count_ == 0 || wanted != wanted_ || !(motion > 0.0)) return false;
+    const math::Pose then{pose_.rotation, pose_ * held_[0].on_b()};
+    const math::Pose now{pose.rotation, pose * held_[0].on_b()};
+    if (!(math::motion_bound(then, now, size) <= motion)) return false;
+    return std::any_of(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(count_),
+                       [&pose](const HeldContact& held) { return held.parted(pose).depth > 0.0; });
+  }
+
+  /// Pairs of triangles, the likeliest first, of which one that still meets proves the hit.
+  [[nodiscard]] std::span<TrianglePair> proofs() noexcept { return std::span(proofs_).first(proof_count_); }
+
+  /// Writes the contacts at this pose. Returns their number.
+  std::size_t write(const math::Pose& pose, std::span<Contact, most_contacts> contacts) const noexcept {
+    for (std::size_t i = 0; i < count_; ++i) contacts[i] = held_[i].at(pose);
+    return count_;
+  }
+
+ private:
+  std::array<HeldContact, most_contacts> held_;
+  std::array<TrianglePair, most_proofs> proofs_;
+  std::size_t count_ = 0;
+  std::size_t proof_count_ = 0;
+  int wanted_ = 0;
+  math::Pose pose_;
+};
+
+}  // namespace odds::query
