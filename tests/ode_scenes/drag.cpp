@@ -16,6 +16,7 @@ constexpr double to_x = 0.15;
 constexpr double press_m = 0.003;
 constexpr double tube = 0.008;
 constexpr double most_change_n = 0.1;
+constexpr double ball_density = 0.05 / (4.0 / 3.0 * 3.14159265 * tube * tube * tube);  // 50 g, as ODE's sphere
 constexpr Physics physics{"", 50, 1.0 / 11.0, 0.1, 0.3, 64};
 
 /// Height of the ground along the path, every millimetre.
@@ -44,7 +45,7 @@ Run run_drag(const std::string& tool, const Mesh& ground, const std::vector<doub
     dMassSetSphereTotal(&mass, 0.05, tube);
     geom = arena.add(dCreateSphere(arena.space(), tube), mass, start);
   } else {
-    geom = arena.add(made(tool), {Mat3::Identity(), start}, 2000.0);
+    geom = arena.add(made(tool), {Mat3::Identity(), start}, tool[0] == 'i' ? ball_density : 2000.0);
   }
   arena.prepare();
   Hand hand{dGeomGetBody(geom), Vec3::Constant(2000.0), 0.5};
@@ -84,7 +85,7 @@ Section drag(const Plan& plan) {
   Section section{
       "drag",
       "A tool over hilly ground",
-      "<p>A torus of 1,024 triangles and a gear of 1,536, 50 g, are dragged at 50 mm/s over ground of 8,192 "
+      "<p>A torus of 1,024 triangles, a gear of 1,536 and a ball of 1,280 are dragged at 50 mm/s over ground of 8,192 "
       "triangles and pressed 3 mm into it, by a spring of 2000 N/m: how much does the spring's force change "
       "within a millisecond? For ODE's sphere, 0.05 N.</p>",
       "s",
@@ -94,7 +95,8 @@ Section drag(const Plan& plan) {
   const Mesh ground = made("terrain:side=0.5,height=0.02,feature=0.3,depth=0.05,cells=64", false);
   const std::vector<double> path = heights(ground);
   for (const char* tool :
-       {"torus:ring=0.02,tube=0.008,around=32,across=16", "gear:module=0.002,teeth=16,flank=8,root=3"}) {
+       {"torus:ring=0.02,tube=0.008,around=32,across=16", "gear:module=0.002,teeth=16,flank=8,root=3",
+        "icosphere:radius=0.008,frequency=8"}) {
     const bool first = tool[0] == 't';
     for (const Collider& collider : colliders(plan, first)) {
       section.runs.push_back(run_drag(tool, ground, path, collider));
