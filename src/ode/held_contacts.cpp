@@ -8,8 +8,13 @@ namespace odds::ode {
 
 std::span<const query::Contact> HeldContacts::best_of(const query::Answer& answer, const math::Pose& b_in_a,
                                                       double size) noexcept {
-  if (answer.basis == query::Basis::proved && answer.contacts_complete) {  // or clear, and there are none
-    keep(answer.contacts, b_in_a, true);
+  if (answer.basis == query::Basis::proved && answer.contacts_complete) {
+    // Bodies at rest hop: what is apart now by less than a hop touches in the same places again.
+    if (answer.contacts.empty()) {
+      static_cast<void>(at(b_in_a, size));
+    } else {
+      keep(answer.contacts, b_in_a, true);
+    }
     return answer.contacts;
   }
   const std::span<const query::Contact> still_held = at(b_in_a, size);

@@ -219,7 +219,10 @@ void PatchBuilder::Scratch::make_hasty_patch(const PatchInput& input) noexcept {
   }
   if (count == 0) return;
   sums.loose_ends = 1;
-  patches[patch_count++] = make_patch(blind, sums, Indices{by_patch.data(), count}, hasty, without_clock);
+  const Indices indices{by_patch.data(), count};
+  patches[patch_count++] = input.known_normal != nullptr
+                               ? patch_along(*input.known_normal, blind, sums, indices, hasty, without_clock)
+                               : make_patch(blind, sums, indices, hasty, without_clock);
 }
 
 /// Fills `witnesses` with the overlap's corners of the pairs of the pieces; at least one.

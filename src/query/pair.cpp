@@ -174,15 +174,15 @@ void limit_depth(double most_depth, Pair::Implementation& pair) noexcept {
 }
 
 /// What single pairs of triangles say, when there is no time for a patch.
-void make_rough_contacts(const PosedMeshes& meshes, const Request& request, Pair::Implementation& pair,
-                         Spending& spending) noexcept {
+void make_rough_contacts(const PosedMeshes& meshes, const Vec3* known_normal, const Request& request,
+                         Pair::Implementation& pair, Spending& spending) noexcept {
   const Vec3 centre_b = meshes.pose().translation + meshes.origin_a();
   const Vec3 towards_a = pair.previous_normal.isZero() ? Vec3(meshes.origin_a() - centre_b) : pair.previous_normal;
   spending.reserve_for_contacts(rough_finish_ns);
   const auto room =
       std::span(pair.rough).first(std::min(static_cast<std::size_t>(request.max_contacts), pair.rough.size()));
   const std::size_t count = rough_contacts(meshes, pair.hits.pairs(), pair.a->is_solid() && pair.b->is_solid(),
-                                           towards_a, room, [&] { return spending.may_make_contacts(); });
+                                           towards_a, known_normal, room, [&] { return spending.may_make_contacts(); });
   pair.answer.contacts = room.first(count);
   limit_to_believed(meshes, pair);
   pair.answer.contacts_complete = false;
@@ -194,8 +194,10 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, Pro
                    const Request& request, Pair::Implementation& pair, Spending& spending) noexcept {
   const Vec3 centre_b = meshes.pose().translation + meshes.origin_a();
   spending.reserve_for_contacts(request.max_contacts > 1 ? hasty_finish_ns : single_finish_ns);
+  const double smaller = std::min(pair.a->mesh().size(), pair.b->mesh().size());
+  const Vec3* known_normal = pair.known_direction.at(pose_b_in_a, smaller);
   if (!spending.may_make_contacts()) {
-    make_rough_contacts(meshes, request, pair, spending);
+    make_rough_contacts(meshes, known_normal, request, pair, spending);
     return;
   }
   if (request.max_contacts > 1) spending.reserve_for_contacts(patch_finish_ns);
@@ -214,6 +216,7 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, Pro
     input.previous_normal = &pair.previous_normal;
     input.previous_position = &pair.previous_position;
   }
+  input.known_normal = known_normal;
   input.max_contacts = request.max_contacts;
   if (request.max_contacts > 1) {  // a single contact is asked for its speed
     input.probe_a = {&probe_depth, pair.a.get()};
@@ -234,6 +237,10 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, Pro
     limit_to_believed(meshes, pair);
   } else if (ended != Progressed::finished) {
     limit_depth(most_depth, pair);
+  }
+  if (pair.patches.finished() && request.max_contacts > 1) {
+    const Contact& first = pair.answer.contacts.front();
+    pair.known_direction.note(first.position, first.normal, pose_b_in_a, smaller, pair.answer.contacts_complete);
   }
   if (!pair.answer.contacts_complete) return;
   pair.carried.keep(pair.answer.contacts, request.max_contacts, pair.hits.pairs(), pose_b_in_a);
@@ -405,6 +412,7 @@ void Pair::reset() noexcept {
   implementation_->front.reset();
   implementation_->previous_normal.setZero();
   implementation_->known_depth.forget();
+  implementation_->known_direction.forget();
   implementation_->carried.forget();
   implementation_->has_witness = false;
 }

@@ -9,6 +9,7 @@
 #include "query/carried_contacts.hpp"
 #include "query/ending_reserve.hpp"
 #include "query/known_depth.hpp"
+#include "query/known_direction.hpp"
 #include "query/recalibration.hpp"
 #include "query/wide/searches.hpp"
 
@@ -42,6 +43,7 @@ struct Pair::Implementation {
   Vec3 previous_normal = Vec3::Zero();    ///< of the last run's first contact, in A's frame; zero: none
   Vec3 previous_position = Vec3::Zero();  ///< of that contact
   KnownDepth known_depth;
+  KnownDirection known_direction;
   CarriedContacts carried;
   EndingReserve ending;
   std::array<Contact, most_contacts> rough;  ///< contacts that there was no time to make with care

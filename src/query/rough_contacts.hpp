@@ -132,10 +132,11 @@ struct Crossing {
 
 /// As many contacts as there is room for, spread over the hits, all with one direction and one depth: the least overlap
 /// of some pairs of triangles along it, at most the extent of what was cut. In A's mesh frame. About 0.4 us for each
-/// pair; `may_go_on()` is asked before every one after the first. Returns how many.
+/// pair; `may_go_on()` is asked before every one after the first. `known`: the direction, or null. Returns how many.
 template <class MayGoOn>
 std::size_t rough_contacts(const PosedMeshes& meshes, std::span<const TrianglePair> hits, bool both_solid,
-                           const Vec3& towards_a, std::span<Contact> written, MayGoOn may_go_on) noexcept {
+                           const Vec3& towards_a, const Vec3* known, std::span<Contact> written,
+                           MayGoOn may_go_on) noexcept {
   std::array<Crossing, most_contacts> crossings;  // also for one contact: a direction is made of several
   std::array<TrianglePair, most_contacts> chosen;
   const std::size_t most = std::min(hits.size(), crossings.size());
@@ -150,7 +151,8 @@ std::size_t rough_contacts(const PosedMeshes& meshes, std::span<const TrianglePa
     ++count;
   }
   const std::span<const Crossing> made = std::span(crossings).first(count);
-  const Vec3 direction = snapped_to_face(made, both_solid, rough_direction(made, both_solid, towards_a));
+  const Vec3 direction =
+      known != nullptr ? *known : snapped_to_face(made, both_solid, rough_direction(made, both_solid, towards_a));
   // A corner that has just come through is not deeper than its rim is wide, though the triangles reach on.
   double depth = extent_of(made);
   for (const Crossing& crossing : made) depth = std::min(depth, crossing.overlap_along(direction));

@@ -79,6 +79,31 @@ TEST(HeldContacts, CareDoesNotGrowStaleAtRest) {
   EXPECT_FALSE(held.better_than_rough()) << "the contact has not moved, but a metre from it the body has";
 }
 
+// A body at rest hops by micrometres. A run without time after such a hop knows two pairs of triangles, whose direction
+// is a guess.
+TEST(HeldContacts, AHopForgetsNothing) {
+  HeldContacts held;
+  const query::Contact careful[] = {contact_at({0, 0, 0}, Vec3::UnitZ(), 0.001)};
+  const query::Contact guessed[] = {contact_at({0, 0, 0}, Vec3::UnitX(), 0.0001)};
+  query::Answer clear;
+  query::Answer made;
+  made.verdict = query::Verdict::hit;
+  made.contacts = careful;
+  query::Answer rough = made;
+  rough.contacts = guessed;
+  rough.contacts_complete = false;
+  rough.contact_pairs = 2;
+  EXPECT_EQ(held.best_of(made, {}, 1.0).size(), 1U);
+  EXPECT_TRUE(held.best_of(clear, moved({0, 0, -0.00101}), 1.0).empty()) << "apart is apart";
+  const auto given = held.best_of(rough, moved({0, 0, -0.0008}), 1.0);
+  ASSERT_EQ(given.size(), 1U);
+  EXPECT_EQ(given[0].normal, Vec3::UnitZ());
+  EXPECT_NEAR(given[0].depth, 0.0002, 1e-12);
+  // Far apart they are let go.
+  EXPECT_TRUE(held.best_of(clear, moved({0, 0, -0.1}), 1.0).empty());
+  EXPECT_EQ(held.best_of(rough, {}, 1.0)[0].normal, Vec3::UnitX());
+}
+
 math::Pose pose_of(dBodyID body) {
   return {ode::matrix_of(dBodyGetRotation(body)), ode::vector_of(dBodyGetPosition(body))};
 }

@@ -57,9 +57,11 @@ struct PatchInput {
   Vec3 reference_b = Vec3::Zero();          ///< centre of B's body, in A's frame
   const Vec3* previous_normal = nullptr;    ///< unit; the first contact's normal of the last run, in A's frame, or null
   const Vec3* previous_position = nullptr;  ///< where that contact was, in A's frame, or null
-  int max_contacts = 4;                     ///< 1 .. most_contacts (clamped)
-  DepthProbe probe_a;                       ///< optional
-  DepthProbe probe_b;                       ///< optional
+  /// Direction of the last patch of bodies that have hardly moved since, or null: that of a patch made in a hurry.
+  const Vec3* known_normal = nullptr;
+  int max_contacts = 4;  ///< 1 .. most_contacts (clamped)
+  DepthProbe probe_a;    ///< optional
+  DepthProbe probe_b;    ///< optional
 };
 
 /// Makes contacts: at most eight, one normal per patch, the deepest first, then those that span the largest area, so
