@@ -36,6 +36,7 @@ void EffectSet::configure(ode::WorldOptions& options) const {
 }
 
 void EffectSet::bind(ode::World& world) {
+  clock_ = world.options().clock;
   for (Entry& entry : entries_) entry.effect->bind(world);
   if ((stages_ & stage_meeting) != 0) world.set_meeting_hook({&EffectSet::meet, this});
 }

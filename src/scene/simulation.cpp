@@ -89,6 +89,7 @@ std::optional<Error> Simulation::load() {
   }
   effects_ = scene_.make_effects();
   ode::WorldOptions world_options = scene_.world_options(*effects_);
+  world_options.clock = options_.clock;
   world_options.contact_work = world_options.contact_work || options_.contact_impulse;
   Result<ode::World> world = ode::World::make(world_options);
   if (!world) return world.error();

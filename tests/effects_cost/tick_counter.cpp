@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "odds/haptics/effect_registry.hpp"
+#include "odds/realtime/clock.hpp"
 #include "odds/scene/simulation.hpp"
 
 // Found by its name: callgrind --toggle-collect=odds_counted_ticks.
@@ -31,6 +32,8 @@ int main(int argc, char** argv) {
   }
   odds::scene::SimulationOptions options;
   options.simulated_time = true;
+  odds::realtime::ManualClock clock(10);  // a stall of the machine's would be booked by instructions of its own
+  options.clock = clock.clock();
   auto simulation = odds::scene::Simulation::make(std::move(scene).value(), options);
   if (!simulation) {
     std::fprintf(stderr, "error: %s\n", simulation.error().message().c_str());

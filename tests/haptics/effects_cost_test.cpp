@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <map>
@@ -84,11 +85,12 @@ std::string table(std::string_view name) {
   return found == tables().end() ? "" : "[effects." + std::string(name) + "]\n" + found->second;
 }
 
-std::unique_ptr<Simulation> simulate(const std::string& effects) {
+std::unique_ptr<Simulation> simulate(const std::string& effects, const realtime::Clock& clock = {}) {
   Result<Scene> parsed = parse_scene("format = \"odds.scene/1\"\n" + bodies + effects, "test.toml", ".");
   EXPECT_TRUE(parsed.ok()) << (parsed.ok() ? "" : parsed.error().message());
   SimulationOptions options;
   options.simulated_time = true;
+  options.clock = clock;
   auto made = Simulation::make(std::move(parsed).value(), options);
   EXPECT_TRUE(made.ok()) << (made.ok() ? "" : made.error().message());
   return std::move(made).value();
@@ -149,6 +151,20 @@ INSTANTIATE_TEST_SUITE_P(Names, EveryEffect, testing::ValuesIn([] {
                            return names;
                          }()),
                          [](const auto& tested) { return tested.param; });
+
+TEST(EffectCost, TimesOfPhasesAndEffectsAreByTheClockThatIsGiven) {
+  realtime::ManualClock clock(1000);  // a microsecond from reading to reading
+  const auto simulation = simulate("[effects.virtual_coupling]\n[effects.contact]\n[effects.gravity]\n", clock.clock());
+  const RunOutcome outcome = simulation->run();
+  for (const haptics::EffectCost& cost : outcome.effects) {
+    EXPECT_EQ(cost.total_ns % 1000, 0) << cost.name;
+    EXPECT_GT(cost.total_ns, 0) << cost.name;
+  }
+  for (const haptics::TickRecord& tick : outcome.ticks) {
+    EXPECT_NEAR(tick.collision_us, std::round(tick.collision_us), 1e-9);
+    EXPECT_EQ(tick.step_us, 1.0) << "one reading before the solver, one after it";
+  }
+}
 
 TEST(EffectCost, TheSolverHasNoRowsThatNobodyAskedFor) {
   const auto rows = [](const std::string& effects) {

@@ -34,7 +34,8 @@ class EffectSet {
   /// Applies what the effects want of the world: forces, contact model, and how much the query has to find out.
   /// Effects that are switched off want nothing.
   void configure(ode::WorldOptions& options) const;
-  /// Connects with the world, which outlives the set, is prepared, and calls back at meetings from now on.
+  /// Connects with the world, which outlives the set, is prepared, and calls back at meetings from now on. Costs are
+  /// by the world's clock.
   void bind(ode::World& world);
   /// At the start of a run; costs begin anew.
   void reset() noexcept;

@@ -30,6 +30,7 @@ struct SimulationOptions {
   bool simulated_time = false;
   std::optional<double> seconds;  ///< how long to run; nothing: as the scene says
   haptics::AllocationCount allocations = nullptr;
+  realtime::Clock clock = {};    ///< of phases and effects, not queries; null: realtime::fastest_clock()
   bool contact_impulse = false;  ///< whether World::contact_impulse is wanted
   /// Given the scene's device, not yet open, says which one to use. Empty: that one.
   std::function<std::unique_ptr<haptics::Device>(std::unique_ptr<haptics::Device>)> use_device;
