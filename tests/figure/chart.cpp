@@ -83,7 +83,7 @@ std::string axes(const Panel& panel, const Scales& s) {
   for (double y = std::ceil(s.y.low / step_y - 1e-9) * step_y; y <= s.y.high + 1e-9 * step_y; y += step_y) {
     const double value = s.logarithmic ? std::pow(10.0, y) : y;
     svg += line(x0, s.at_y(value), x1, s.at_y(value), "#ddd") +
-           text(x0 - 5.0, s.at_y(value) + 4.0, "end", fmt::format("{:.4g}", value));
+           text(x0 - 5.0, s.at_y(value) + 4.0, "end", fmt::format("{:.4g}", value + 0.0));  // no minus before a zero
   }
   const double step_x = step_of(s.x);
   for (double x = std::ceil(s.x.low / step_x - 1e-9) * step_x; x <= s.x.high + 1e-9 * step_x; x += step_x) {
