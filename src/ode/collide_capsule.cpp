@@ -178,8 +178,7 @@ int collide_capsule(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, i
   }
   ContactWriter writer(o1, o2, room_for(flags, data.settings.max_contacts), contacts, skip);
   write(found, *mesh_in_world, writer);
-  if (!places.complete || limit.units == 0) count(statistics().primitive_cut_off);
-  return writer.count();
+  return limit.finish(places.complete && limit.units > 0, writer.count());
 }
 
 }  // namespace odds::ode

@@ -85,6 +85,17 @@ oddsAnswer record_of_bad_pose() noexcept {
   return record;
 }
 
+// A larger share would have been of use if it was the share that ended the search, and not the geoms' own budgets.
+Outcome outcome_of(const query::Answer& answer, const Settings& own, const Settings& settings, int limit,
+                   int given) noexcept {
+  const bool decided = answer.basis != query::Basis::budget;
+  const bool complete = decided && answer.contacts_complete;
+  if (complete && answer.verdict == query::Verdict::hit && limit > 0) return Outcome::plenty;
+  if (complete || !is_bound_by_share(own, settings)) return Outcome::finished;
+  const bool of_use = answer.verdict == query::Verdict::clear || limit == 0 || given > 0;
+  return decided && of_use ? Outcome::enough : Outcome::starved;
+}
+
 void count_basis(query::Basis basis) noexcept {
   switch (basis) {
     case query::Basis::proved:
@@ -99,6 +110,23 @@ void count_basis(query::Basis basis) noexcept {
   }
 }
 
+// A frame in which it is not this pair's turn: what is held, where the bodies are now. Nothing is asked.
+int give_held(PairEntry& entry, const math::Pose& pose_a, const math::Pose& b_in_a, bool o1_is_a,
+              ContactWriter& writer) noexcept {
+  const double size = std::min(entry.pair->a().mesh().size(), entry.pair->b().mesh().size());
+  for (const query::Contact& contact : entry.held.at(b_in_a, size)) write_contact(writer, contact, pose_a, o1_is_a);
+  const oddsAnswer before = entry.last;
+  entry.last = {};
+  entry.last.verdict = before.verdict;
+  entry.last.basis = ODDS_BUDGET;
+  entry.last.probability = before.probability;
+  entry.last.contacts = writer.count();
+  entry.last.only_held = 1;
+  current_share->report(0, writer.count(), Outcome::unknown);
+  count(statistics().contacts, static_cast<unsigned long long>(writer.count()));
+  return writer.count();
+}
+
 // Precondition: this thread holds `entry.busy`, and `entry.pair` is set.
 int answer_pair(PairEntry& entry, dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int skip) noexcept {
   const bool o1_is_a = entry.a == &own_data(o1);
@@ -110,16 +138,15 @@ int answer_pair(PairEntry& entry, dGeomID o1, dGeomID o2, int flags, dContactGeo
     entry.last = record_of_bad_pose();
     return 0;
   }
-  const Settings settings = within_share(combine(entry.a->settings, entry.b->settings));
+  const Settings own = combine(entry.a->settings, entry.b->settings);
+  const Settings settings = within_share(own);
   const int limit = room_for(flags, settings.max_contacts);
   const math::Pose b_in_a = pose_a->inverse() * *pose_b;
+  ContactWriter writer(o1, o2, limit, contacts, skip);
+  if (gives_only_held()) return give_held(entry, *pose_a, b_in_a, o1_is_a, writer);
   const query::Answer& answer = entry.pair->run(b_in_a, request_for(settings, limit));
   count_basis(answer.basis);
-  if (current_share != nullptr) {
-    current_share->spent += static_cast<unsigned long>(answer.cost.node_pairs + answer.cost.triangle_pairs);
-  }
   entry.last = record_of(answer, *pose_a);
-  ContactWriter writer(o1, o2, limit, contacts, skip);
   const std::span<const query::Contact> given = contacts_to_give(entry, answer, settings, b_in_a);
   for (const query::Contact& contact : given) write_contact(writer, contact, *pose_a, o1_is_a);
   if (given.empty() && use_cell_pair(answer, settings)) {
@@ -132,6 +159,11 @@ int answer_pair(PairEntry& entry, dGeomID o1, dGeomID o2, int flags, dContactGeo
   }
   entry.last.contacts = writer.count();
   count(statistics().contacts, static_cast<unsigned long long>(writer.count()));
+  if (current_share != nullptr) {
+    current_share->report(answer.cost.node_pairs + answer.cost.triangle_pairs, writer.count(),
+                          outcome_of(answer, own, settings, limit, writer.count()));
+    current_share->stall_us += answer.cost.stall_us;
+  }
   return writer.count();
 }
 
@@ -148,7 +180,7 @@ PairEntry* prepare_late(dGeomID o1, dGeomID o2) noexcept {
 }  // namespace
 
 int collide_mesh(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int skip) noexcept {
-  count(statistics().queries);
+  if (!gives_only_held()) count(statistics().queries);
   PairEntry* entry = pair_table().find(own_data(o1), own_data(o2));
   if (entry == nullptr) entry = prepare_late(o1, o2);
   if (entry == nullptr || !entry->pair) {

@@ -92,13 +92,12 @@ int collide_plane(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int
   const int room = room_for(flags, data.settings.max_contacts);
   const std::size_t found = select_manifold(below, local_normal, same_place * data.mesh->mesh().size(),
                                             std::span(chosen).first(static_cast<std::size_t>(room)));
-  if (limit.units == 0) count(statistics().primitive_cut_off);
   ContactWriter writer(o1, o2, room, contacts, skip);
   for (std::size_t i = 0; i < found; ++i) {
     const PreparedMesh::Vertex& vertex = data.mesh->vertices[chosen[i]];
     writer.add(*pose * vertex.position, normal, below.depth(chosen[i]), vertex.triangle, query::no_feature);
   }
-  return writer.count();
+  return limit.finish(limit.units > 0, writer.count());
 }
 
 }  // namespace odds::ode

@@ -123,24 +123,23 @@ int collide_ray(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int s
   const int most = only_one ? std::min(1, data.settings.max_contacts) : (limited ? data.settings.max_contacts : 0xffff);
   ContactWriter writer(o1, o2, room_for(flags, most), contacts, skip);
   double after = -1.0;
-  while (!writer.full()) {
+  bool cut_off = false;
+  while (!writer.full() && !cut_off) {
     const std::uint32_t triangle = mesh.triangle_tree.greatest(
         [&](std::uint32_t t) {
           const double distance = crossing(mesh.corners(t), ray);
           return distance >= 0.0 && distance > after && distance <= ray.length ? -distance : nothing;
         },
         [&](const Vec3& center, const Vec3& half) { return entry_bound(center, half, ray, after); }, limit.units);
-    const bool cut_off = limit.units == 0 || limit.time_is_up();
-    if (cut_off) count(statistics().primitive_cut_off);
+    cut_off = limit.units == 0 || limit.time_is_up();
     if (triangle == no_item) break;
     const double distance = crossing(mesh.corners(triangle), ray);
     // ODE's rule for rays: the depth is the distance; the normal is the face's, out of the mesh for g1 = ray.
     writer.add(*pose * (ray.origin + distance * ray.direction), -(pose->rotation * unit_normal(mesh.corners(triangle))),
                distance, triangle, query::no_feature);
-    if (cut_off) break;
     after = distance * (1.0 + same_crossing) + 1e-300;
   }
-  return writer.count();
+  return limit.finish(!cut_off, writer.count());
 }
 
 }  // namespace odds::ode

@@ -105,8 +105,7 @@ int collide_sphere(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, in
       }
     }
   }
-  if (!complete) count(statistics().primitive_cut_off);
-  return writer.count();
+  return limit.finish(complete, writer.count());
 }
 
 }  // namespace odds::ode

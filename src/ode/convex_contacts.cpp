@@ -345,10 +345,8 @@ int collide_convex_body(dGeomID mesh, dGeomID partner, const ConvexBody& body, i
   Limit limit(data.settings);
   const int room = room_for(flags, data.settings.max_contacts);
   ContactWriter writer(mesh, partner, room, contacts, skip);
-  if (!write_convex_contacts(*data.mesh, *mesh_in_world, *body_in_world, body, limit, writer, room)) {
-    count(statistics().primitive_cut_off);
-  }
-  return writer.count();
+  const bool complete = write_convex_contacts(*data.mesh, *mesh_in_world, *body_in_world, body, limit, writer, room);
+  return limit.finish(complete, writer.count());
 }
 
 }  // namespace odds::ode

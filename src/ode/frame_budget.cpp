@@ -1,4 +1,4 @@
-// Serving the pairs of a frame: each with its share, none begun that would overrun.
+// Serving the pairs of a frame: each whose turn it is with its share, none begun that would overrun.
 #include "ode/frame_budget.hpp"
 
 #include <algorithm>
@@ -10,35 +10,49 @@
 
 namespace {
 
-constexpr double floor_us = 0.5;  // what the least important pair gets: some ten pairs of nodes
-constexpr double floor_units = 10.0;
-constexpr double first_demand_us = 5.0;  // of a pair that nobody has met
-constexpr double units_per_us = 20.0;
-constexpr double spare = 1.5;          // a pair may need more than in the last frame
+using odds::ode::FrameMeans;
+using odds::ode::FramePair;
+using odds::ode::FrameShare;
+using odds::ode::Outcome;
+
+constexpr double least_us = 0.5;  // of a search: some ten pairs of nodes
+constexpr double least_units = 10.0;
+constexpr double first_need_us = 5.0;  // of a pair that nobody has met
+constexpr double first_need_units = 100.0;
+constexpr double most_of_frame = 0.5;  // for one pair
 constexpr double least_call_us = 0.4;  // of callback and dispatch around a query
 constexpr double most_call_us = 5.0;   // more is a stall, and teaches nothing
-constexpr double margin_us = 2.0;      // of the frame: for what the last query overshoots, and for coming back
+// Of the frame, for what the last call overshoots and for coming back: as much as one frame in a hundred needs more.
+constexpr double least_margin_us = 2.0;
+constexpr double most_margin = 0.03;  // of the frame
+constexpr double margin_step_us = 0.5;
+constexpr double margin_quantile = 0.01;
 
 }  // namespace
 
 oddsFrameBudget::oddsFrameBudget(std::size_t most_pairs)
-    : most_pairs_(most_pairs), memory_(most_pairs), call_us_(least_call_us) {
+    : most_pairs_(most_pairs),
+      memory_(most_pairs),
+      call_us_(least_call_us),
+      hold_us_(least_call_us),
+      margin_us_(least_margin_us),
+      clock_(odds::realtime::fastest_clock()) {
   candidates_.reserve(most_pairs);
 }
 
 void oddsFrameBudget::set(const odds::ode::FrameSettings& settings) noexcept {
-  if (settings.in_units() != settings_.in_units()) memory_.forget_costs();
+  if (settings.in_units() != settings_.in_units()) memory_.forget_needs();
   settings_ = settings;
 }
 
 double oddsFrameBudget::least_share() const noexcept {
-  return settings_.in_units() ? floor_units : floor_us + call_us_;
+  return settings_.in_units() ? least_units : least_us + call_us_;
 }
 
 double oddsFrameBudget::spent_us() const noexcept { return 1e-3 * static_cast<double>(clock_() - begin_ns_); }
 
 double oddsFrameBudget::left_us() const noexcept {
-  return settings_.time_us - std::min(margin_us, 0.1 * settings_.time_us) - spent_us();
+  return settings_.time_us - std::min(margin_us_, 0.1 * settings_.time_us) - spent_us();
 }
 
 double oddsFrameBudget::left() const noexcept {
@@ -46,8 +60,12 @@ double oddsFrameBudget::left() const noexcept {
 }
 
 // A query that is not begun cannot overrun.
+bool oddsFrameBudget::is_late(double call_us) const noexcept {
+  return std::isfinite(settings_.time_us) && !(left_us() > call_us);
+}
+
 bool oddsFrameBudget::is_over() const noexcept {
-  return (settings_.in_units() && !(left() > 0.0)) || (std::isfinite(settings_.time_us) && !(left_us() > call_us_));
+  return (settings_.in_units() && !(left() > 0.0)) || is_late(call_us_);
 }
 
 bool oddsFrameBudget::has_half_left() const noexcept {
@@ -79,27 +97,32 @@ void oddsFrameBudget::serve_beyond_memory(dGeomID a, dGeomID b) noexcept {
   serve(unknown, least_share());
 }
 
-void oddsFrameBudget::learn(const Candidate& candidate, double cost) noexcept {
-  odds::ode::FramePair* known = candidate.memory;
+void oddsFrameBudget::learn(const Candidate& candidate, double cost, const FrameShare& given) noexcept {
+  if (given.outcome == Outcome::starved) ++summary_.starved;
+  FramePair* known = candidate.memory;
   if (known == nullptr) return;
-  known->served = memory_.frame();
-  known->cost = cost;
+  if (known->need.learn(cost, given.outcome, means().most)) known->served = memory_.frame();
+  if (given.contacts > 0) known->touched = memory_.frame();
+  // Of one of ODE's own collisions nobody says how it went; one with a primitive states no odds.
+  known->probability = given.outcome == Outcome::unknown ? 0.5 : given.contacts > 0 ? 1.0 : 0.0;
+  known->proved = given.outcome == Outcome::finished;
+  known->touches = false;
   const odds::ode::PairEntry* answered = odds::ode::answered_pair(candidate.a, candidate.b);
-  if (answered == nullptr) {
-    known->probability = 0.5;  // with one of ODE's own classes: nobody says how it went
-    known->proved = false;
-    return;
-  }
+  if (answered == nullptr) return;
   known->probability = answered->last.probability;
   known->proved = answered->last.basis == ODDS_PROVED;
-  if (answered->last.contacts > 0) known->touched = memory_.frame();
-  // What it did not get to prove will cost more next time.
-  if (!known->proved) known->cost *= 2.0;
+  known->touches = given.contacts > 0;
 }
 
-void oddsFrameBudget::serve(const Candidate& candidate, double share) noexcept {
+void oddsFrameBudget::call(const Candidate& candidate, FrameShare& share) noexcept {
+  odds::ode::current_share = &share;
+  callback_(data_, candidate.a, candidate.b);
+  odds::ode::current_share = nullptr;
+}
+
+void oddsFrameBudget::serve(Candidate& candidate, double share) noexcept {
   const bool in_units = settings_.in_units();
-  odds::ode::FrameShare limit;
+  FrameShare limit;
   if (in_units) {
     limit.work_units = static_cast<unsigned long>(std::max(1.0, share));
     limit.us = std::max(0.1, left_us());
@@ -107,38 +130,90 @@ void oddsFrameBudget::serve(const Candidate& candidate, double share) noexcept {
     limit.us = std::max(0.1, share - call_us_);
   }
   const std::int64_t before_ns = clock_();
-  odds::ode::current_share = &limit;
-  callback_(data_, candidate.a, candidate.b);
-  odds::ode::current_share = nullptr;
+  call(candidate, limit);
   spent_units_ += static_cast<double>(limit.spent);
-  const double took_us = 1e-3 * static_cast<double>(clock_() - before_ns);
+  const double took_us = std::max(0.0, 1e-3 * static_cast<double>(clock_() - before_ns) - limit.stall_us);
   if (!in_units && took_us > limit.us) {
     const double beyond_us = std::min(took_us - limit.us, most_call_us);
     call_us_ = std::max(least_call_us, call_us_ + 0.02 * (beyond_us - call_us_));
   }
-  learn(candidate, in_units ? static_cast<double>(limit.spent) : took_us);
+  // What is far beyond the share is a stall that no query has noticed.
+  learn(candidate, in_units ? static_cast<double>(limit.spent) : std::min(took_us, limit.us + most_call_us), limit);
+  candidate.called = true;
   ++summary_.served;
 }
 
-double oddsFrameBudget::share_for(const Candidate& candidate, double after, double floor) const noexcept {
-  const double rest = left();
-  if (!(rest > 0.0)) return least_share();  // of the one that is called in any case
-  if (!std::isfinite(rest)) return rest;
-  if (settings_.sharing == ODDS_SHARE_EQUALLY) return rest / (after + 1.0);
-  const double unknown = settings_.in_units() ? first_demand_us * units_per_us : first_demand_us;
-  const double demand = candidate.memory->cost > 0.0 ? spare * candidate.memory->cost : unknown;
-  return odds::ode::share_of({rest, demand, candidate.part, after, floor});
+// No search: contacts of an earlier frame, where the bodies are now.
+void oddsFrameBudget::hold(Candidate& candidate) noexcept {
+  FrameShare limit;
+  limit.only_held = true;
+  const std::int64_t before_ns = clock_();
+  call(candidate, limit);
+  const double took_us = std::min(1e-3 * static_cast<double>(clock_() - before_ns), most_call_us);
+  hold_us_ = std::max(least_call_us, hold_us_ + 0.02 * (took_us - hold_us_));
+  candidate.memory->touches = limit.contacts > 0;
+  if (candidate.memory->touches) candidate.memory->touched = memory_.frame();
+  candidate.called = true;
+  ++summary_.held;
 }
 
-void oddsFrameBudget::serve_all() noexcept {
+FrameMeans oddsFrameBudget::means() const noexcept {
+  const bool in_units = settings_.in_units();
+  const double all = in_units ? static_cast<double>(settings_.work_units) : settings_.time_us;
+  return {.left = left(),
+          .hold = in_units ? 0.0 : hold_us_,
+          .unknown = in_units ? first_need_units : first_need_us,
+          .most = most_of_frame * all};
+}
+
+void oddsFrameBudget::serve_equally() noexcept {
   auto after = static_cast<double>(candidates_.size());
-  // Half of the frame goes to all alike, so that even what hardly matters is looked at; the other half by importance.
-  const double floor = std::max(least_share(), 0.5 * left() / std::max(1.0, after));
-  for (const Candidate& candidate : candidates_) {
-    after -= 1.0;
+  for (Candidate& candidate : candidates_) {
     // One is served even where the broad phase has taken all the time: otherwise nobody's turn would ever come.
     if (is_over() && summary_.served > 0) break;
-    serve(candidate, share_for(candidate, after, floor));
+    serve(candidate, left() > 0.0 ? left() / after : least_share());
+    after -= 1.0;
+  }
+}
+
+void oddsFrameBudget::serve_by_importance() noexcept {
+  put_in_order(candidates_, settings_, memory_.frame());
+  const FrameMeans plans = means();
+  plan(candidates_, plans);
+  for (Candidate& candidate : candidates_) {
+    if (is_over() && summary_.served > 0) break;
+    if (!candidate.planned) continue;
+    const double rest = left();
+    const double share =
+        std::isfinite(rest)
+            ? odds::ode::share_of({rest, candidate.need, candidate.kept, candidate.weight / candidate.rivals})
+            : rest;
+    // A share that buys nothing is not given, but to the first, so that nobody waits for ever. Where others took more
+    // than theirs, this one comes earlier in the next frame.
+    if (share < candidate.need && &candidate != &candidates_.front()) continue;
+    serve(candidate, rest > 0.0 ? share : least_share());
+  }
+  serve_with_rest();
+}
+
+// What was not needed goes to those whose turn it was not; then those that touch and had none keep what is held.
+void oddsFrameBudget::serve_with_rest() noexcept {
+  const double hold_us = means().hold;
+  double holding = 0.0;
+  for (const Candidate& candidate : candidates_) {
+    holding += !candidate.called && candidate.memory->touches ? hold_us : 0.0;
+  }
+  for (Candidate& candidate : candidates_) {
+    if (candidate.called || is_over()) continue;
+    const double own = candidate.memory->touches ? hold_us : 0.0;
+    const double room = left() - (holding - own);
+    if (candidate.need > room) continue;
+    holding -= own;
+    serve(candidate, odds::ode::share_of({room, candidate.need, 0.0, 0.0}));
+  }
+  for (Candidate& candidate : candidates_) {
+    if (is_late(hold_us_)) break;
+    if (!candidate.called && candidate.memory->touches) hold(candidate);
   }
 }
 
@@ -148,6 +223,11 @@ void oddsFrameBudget::summarize() noexcept {
         static_cast<int>(std::min<std::uint64_t>(memory_.frame() - candidate.memory->served, 1'000'000));
     summary_.waiting_longest = std::max(summary_.waiting_longest, waited);
   }
+  if (std::isfinite(settings_.time_us)) {
+    const double step_us = (spent_us() > settings_.time_us ? 1.0 : 0.0) - margin_quantile;
+    margin_us_ = std::clamp(margin_us_ + margin_step_us * step_us, least_margin_us,
+                            std::max(least_margin_us, most_margin * settings_.time_us));
+  }
   summary_.gross_us = spent_us();
   summary_.overshoot_us = std::max(0.0, summary_.gross_us - settings_.time_us);
   summary_.work = static_cast<unsigned long>(spent_units_);
@@ -156,7 +236,6 @@ void oddsFrameBudget::summarize() noexcept {
 void oddsFrameBudget::run(dSpaceID space, void* data, dNearCallback* callback) noexcept {
   data_ = data;
   callback_ = callback;
-  clock_ = odds::realtime::fastest_clock();
   begin_ns_ = clock_();
   spent_units_ = 0.0;
   summary_ = {};
@@ -164,7 +243,10 @@ void oddsFrameBudget::run(dSpaceID space, void* data, dNearCallback* callback) n
   memory_.begin_frame();
   odds::ode::for_each_pair(space, this, &oddsFrameBudget::collect);
   if (beyond_turn_ >= summary_.beyond_memory) beyond_turn_ = 0;
-  if (settings_.sharing == ODDS_SHARE_BY_IMPORTANCE) put_in_order(candidates_, settings_, memory_.frame());
-  serve_all();
+  if (settings_.sharing == ODDS_SHARE_EQUALLY) {
+    serve_equally();
+  } else {
+    serve_by_importance();
+  }
   summarize();
 }

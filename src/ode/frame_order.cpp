@@ -1,6 +1,8 @@
 // Which pairs of a frame come first: from how they move, where they are, and what the frames before found.
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <tuple>
 
 #include "ode/frame_budget.hpp"
 #include "ode/vectors.hpp"
@@ -44,7 +46,6 @@ void look(FrameCandidate& candidate, const FrameSettings& settings, std::uint64_
   signs.proved = known.proved;
   signs.ever_contact = known.touched > 0;
   signs.since_contact = frame - 1 - known.touched;
-  signs.waited = frame - 1 - known.served;
   constexpr double frame_s = 0.01;  // nobody says how long a frame is; only the order matters
   signs.way_share = candidate.speed * frame_s / std::max((upper - lower).norm(), 1e-9);
   if (settings.attends) {
@@ -62,17 +63,18 @@ void put_in_order(std::vector<FrameCandidate>& candidates, const FrameSettings& 
     look(candidate, settings, frame);
     fastest = std::max(fastest, candidate.speed);
   }
+  double most_important = -std::numeric_limits<double>::infinity();
   for (FrameCandidate& candidate : candidates) {
     candidate.signs.relative_speed = fastest > 0.0 ? candidate.speed / fastest : 0.0;
     candidate.importance = importance(candidate.signs);
+    most_important = std::max(most_important, candidate.importance);
+  }
+  for (FrameCandidate& candidate : candidates) {
+    candidate.turn = turn(candidate.importance, most_important, frame - 1 - candidate.memory->served);
   }
   std::sort(candidates.begin(), candidates.end(), [](const FrameCandidate& x, const FrameCandidate& y) {
-    return x.importance != y.importance ? x.importance > y.importance : x.order < y.order;
+    return std::tie(y.turn, y.importance, x.order) < std::tie(x.turn, x.importance, y.order);
   });
-  PartsOfRest parts;
-  for (auto candidate = candidates.rbegin(); candidate != candidates.rend(); ++candidate) {
-    candidate->part = parts.next(candidate->importance);
-  }
 }
 
 }  // namespace odds::ode

@@ -51,8 +51,8 @@ FramePair& FramePairs::at(dGeomID a, dGeomID b) noexcept {
   return entry;
 }
 
-void FramePairs::forget_costs() noexcept {
-  for (FramePair& entry : now_) entry.cost = 0.0;
+void FramePairs::forget_needs() noexcept {
+  for (FramePair& entry : now_) entry.need = FrameNeed();
 }
 
 }  // namespace odds::ode

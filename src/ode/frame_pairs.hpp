@@ -6,17 +6,20 @@
 #include <cstdint>
 #include <vector>
 
+#include "ode/frame_need.hpp"
+
 namespace odds::ode {
 
 struct FramePair {
   dGeomID a = nullptr;  ///< the lesser address
   dGeomID b = nullptr;
   std::uint64_t seen = 0;     ///< number of the frame that met it
-  std::uint64_t served = 0;   ///< ... of the last that called for it; of one before its first, if none did
+  std::uint64_t served = 0;   ///< ... of the last in which it had its turn; of one before its first, if it had none
   std::uint64_t touched = 0;  ///< ... of the last in which it gave contacts; 0: never
   double probability = 0.5;   ///< of a hit, at the last service
   bool proved = false;
-  double cost = 0.0;  ///< of the last service: microseconds, or work units; 0: unknown
+  bool touches = false;  ///< the last call gave contacts
+  FrameNeed need;
 };
 
 /// Finds and makes entries without allocating. A pair that a frame does not meet is forgotten with that frame. What is
@@ -32,8 +35,8 @@ class FramePairs {
   /// The entry of this pair in this frame: its own, until the next one begins. At most `most_pairs` different ones.
   [[nodiscard]] FramePair& at(dGeomID a, dGeomID b) noexcept;
 
-  /// No cost is known any more.
-  void forget_costs() noexcept;
+  /// No need is known any more.
+  void forget_needs() noexcept;
 
  private:
   // Each of a power of two, half full at most. An entry that another frame has seen is free.

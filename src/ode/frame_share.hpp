@@ -2,21 +2,50 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 
 #include "ode/geom_data.hpp"
 
 namespace odds::ode {
 
+/// How far a collision came within its share.
+enum class Outcome : std::uint8_t {
+  unknown,   ///< nobody says: it was none with a mesh
+  starved,   ///< undecided, or a hit without a contact: the share bought nothing
+  enough,    ///< decided, with contacts that are of use; cut short nevertheless
+  plenty,    ///< the same, but not cut short; less might have done
+  finished,  ///< proved clear, or a primitive's: less would have been nothing, more would change nothing
+};
+
 /// A bound in addition to the geoms' own budgets.
 struct FrameShare {
   double us = std::numeric_limits<double>::infinity();
   unsigned long work_units = 0;  ///< 0: no limit
-  unsigned long spent = 0;       ///< work units that collisions between meshes have reported
+  bool only_held = false;        ///< no search between meshes: contacts of the last one, where the bodies are now
+
+  // What collisions with meshes report; others report nothing.
+  unsigned long spent = 0;  ///< work units
+  double stall_us = 0.0;    ///< that the machine took
+  int contacts = 0;
+  Outcome outcome = Outcome::unknown;
+
+  void report(std::uint64_t units, int given, Outcome how) noexcept {
+    spent += static_cast<unsigned long>(units);
+    contacts += given;
+    outcome = how;
+  }
 };
 
 /// The calling thread's; null outside of a frame.
 inline thread_local FrameShare* current_share = nullptr;
+
+/// Whether a share, and not the geoms' own budgets, bounds what `own` came to.
+[[nodiscard]] inline bool is_bound_by_share(const Settings& own, const Settings& shared) noexcept {
+  return shared.budget_us < own.budget_us || shared.work_units != own.work_units;
+}
+
+[[nodiscard]] inline bool gives_only_held() noexcept { return current_share != nullptr && current_share->only_held; }
 
 /// A geom's or a pair's settings, within the share.
 [[nodiscard]] inline Settings within_share(Settings settings) noexcept {

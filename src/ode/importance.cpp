@@ -9,6 +9,7 @@ namespace {
 
 constexpr double base = 0.02;           // even what is proved apart may move
 constexpr double memory_frames = 20.0;  // contacts of a tenth of a second ago say little
+constexpr double spare = 1.5;           // a pair may need more than in the last frame
 
 }  // namespace
 
@@ -19,23 +20,16 @@ double importance(const PairSigns& s) noexcept {
   const double doubt = s.hit_probability * stale;
   const double likely = base + std::max(recent, doubt) + 0.1 * stale;
   const double moved = 1.0 + 2.0 * std::clamp(s.relative_speed, 0.0, 1.0);
-  return std::log2(likely * moved * s.attention) + static_cast<double>(s.waited);
+  return std::log2(likely * moved * s.attention);
 }
 
-double PartsOfRest::next(double importance) noexcept {
-  // Importances of thousands of frames have no sum that a double could hold; against the greatest of them they have.
-  sum_ = 1.0 + sum_ * std::exp2(last_ - importance);
-  last_ = importance;
-  return 1.0 / sum_;
+double turn(double importance, double most_important, std::uint64_t waited) noexcept {
+  return std::max(importance - most_important, least_in_turns) + 2.0 * std::log2(1.0 + static_cast<double>(waited));
 }
 
 double share_of(const Share& s) noexcept {
-  const double kept = std::min(s.after * s.floor, s.left);
-  const double pool = s.left - kept;
-  const double fair = pool * s.part;
-  // One pair that needs much does not leave the others with their floors, as long as there are others.
-  const double most = s.after > 0.0 ? 0.5 * pool : pool;
-  return std::clamp(std::max(fair, std::min(s.demand, most)), std::min(s.floor, s.left), s.left);
+  const double pool = std::max(0.0, s.left - s.kept);
+  return std::min(std::max(spare * s.need, s.need + std::max(0.0, pool - s.need) * s.part), pool);
 }
 
 }  // namespace odds::ode

@@ -1,4 +1,4 @@
-// How much a pair of bodies matters in a frame.
+// How much a pair of bodies matters in a frame, and what it gets.
 #pragma once
 
 #include <cstdint>
@@ -14,38 +14,34 @@ struct PairSigns {
   double relative_speed = 0.0;  ///< share of the fastest pair's of this frame, [0, 1]
   double way_share = 0.0;       ///< its way in a frame as a share of how far its boxes overlap, >= 0
   double attention = 1.0;       ///< 1 near to it, less far away, > 0
-  std::uint64_t waited = 0;     ///< frames since it was served; 0: in the last one
 };
 
 /// In powers of two: a pair of 1 more matters twice as much. Finite. A pair that touched in the last frame is at least
-/// ten times as important as one that was proved apart, stands still and is as near. Each frame of waiting adds 1,
-/// without end, so that any pair becomes the most important one in time.
+/// ten times as important as one that was proved apart, stands still and is as near.
 [[nodiscard]] double importance(const PairSigns& signs) noexcept;
 
-/// Parts of pairs in what is left, told from the least important pair to the most important one.
-class PartsOfRest {
- public:
-  /// The part, in (0, 1], of a pair's importance in the sum of its own and of all that were told before. Precondition:
-  /// `importance` is not less than theirs.
-  [[nodiscard]] double next(double importance) noexcept;
+/// So much less than the most important pair of a frame, and no less, a pair counts where turns are taken: a sixteenth.
+constexpr double least_in_turns = -4.0;
 
- private:
-  double sum_ = 0.0;  // in units of the last one
-  double last_ = 0.0;
-};
+/// Whose turn it is: the pair of the greatest value. `importance` and the greatest one, `most_important`, of this
+/// frame; `waited`: frames without service, 0: served in the last one. It grows with importance times the square of the
+/// wait, which makes turns as frequent as the root of the importance: where what an old answer costs grows with its age
+/// and its importance, that is the best use of too little time (as the index policies of Kadota et al., Scheduling
+/// Policies for Minimizing Age of Information in Broadcast Wireless Networks, 2018). As no pair counts for less than a
+/// sixteenth, none has its turns more than four times as rarely as another.
+[[nodiscard]] double turn(double importance, double most_important, std::uint64_t waited) noexcept;
 
-/// What the next pair in order of importance may spend. `left` is all that the frame has for this pair and those after
-/// it, `demand` what the pair will probably need, `part` its part of the importance from this pair on, and `after` the
-/// number of pairs that come later, each of which keeps `floor`.
+/// What the next pair in order may spend. `left` is all that the frame has for this pair and those that come after it,
+/// `need` its least useful share, `kept` the sum of the needs of those after it, and `part` its part in what is left
+/// over then.
 struct Share {
   double left = 0.0;
-  double demand = 0.0;
+  double need = 0.0;
+  double kept = 0.0;
   double part = 1.0;
-  double after = 0.0;
-  double floor = 0.0;
 };
 
-/// At least 0, at most `left`.
+/// At least `need`, if there is so much beside `kept`; never more than is left beside it.
 [[nodiscard]] double share_of(const Share& share) noexcept;
 
 }  // namespace odds::ode

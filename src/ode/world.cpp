@@ -260,7 +260,7 @@ void World::Implementation::note_answer(dGeomID a, dGeomID b, Meeting& meeting) 
   const auto basis = answer.basis == ODDS_PROVED      ? query::Basis::proved
                      : answer.basis == ODDS_ESTIMATED ? query::Basis::estimated
                                                       : query::Basis::budget;
-  ++summary.queries;
+  if (answer.only_held == 0) ++summary.queries;
   meeting.verdict = answer.verdict == ODDS_HIT ? query::Verdict::hit : query::Verdict::clear;
   meeting.basis = basis;
   meeting.probability = answer.probability;

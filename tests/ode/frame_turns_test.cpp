@@ -146,25 +146,5 @@ TEST_F(FrameTurns, CostsInMicrosecondsAreNotTakenForWork) {
   EXPECT_GE(shares.first, 90U);  // a pair whose work nobody knows yet gets far more than its part of 400
 }
 
-TEST_F(FrameTurns, AfterLongWaitsSharesAreStillShares) {
-  add_pairs(100);
-  oddsFrameBudgetSetTime(budget, no_time_us);
-  Calls calls;
-  for (int frame = 0; frame < 150; ++frame) oddsSpaceCollide(space, &calls, &count_call, budget);
-  oddsFrameBudgetSetTime(budget, dInfinity);
-  oddsFrameBudgetSetWork(budget, 10'000);
-  // Each has waited one frame longer than the next, so that it counts for as much as all that come after it.
-  std::vector<unsigned long> shares;
-  const auto note = [](void* data, dGeomID, dGeomID) {
-    static_cast<std::vector<unsigned long>*>(data)->push_back(ode::current_share->work_units);
-  };
-  oddsSpaceCollide(space, &shares, note, budget);
-  ASSERT_EQ(shares.size(), 100U);
-  for (std::size_t i = 80; i < 95; ++i) {
-    EXPECT_GE(shares[i], 3000U) << i;
-    EXPECT_LE(shares[i], 7000U) << i;
-  }
-}
-
 }  // namespace
 }  // namespace odds::test

@@ -22,8 +22,8 @@ void oddsFrameBudgetDestroy(oddsFrameBudgetID budget) ODDS_NOTHROW;
 /* Wall time of a frame's collisions, broad phase and callbacks included, > 0; dInfinity: no limit (default). */
 int oddsFrameBudgetSetTime(oddsFrameBudgetID budget, dReal microseconds) ODDS_NOTHROW;
 
-/* Work of a frame's collisions between meshes: pairs of nodes plus pairs of triangles. Same bits on every run if the
- * time is dInfinity. 0: no limit (default). */
+/* Work of a frame's collisions with meshes: pairs of nodes plus pairs of triangles; with primitives, nodes. Same bits
+ * on every run if the time is dInfinity. 0: no limit (default). */
 int oddsFrameBudgetSetWork(oddsFrameBudgetID budget, unsigned long units) ODDS_NOTHROW;
 
 /* Where somebody looks or feels, world frame; pairs near it count for more, down to a tenth far beyond `radius` metres
@@ -39,24 +39,30 @@ int oddsFrameBudgetSetSharing(oddsFrameBudgetID budget, int sharing) ODDS_NOTHRO
 /* What the last frame did. */
 typedef struct oddsFrameSummary {
   int pairs;           /* that the broad phase gave */
-  int served;          /* whose callback ran; the others found no time left, and come first in the next frame */
-  int waiting_longest; /* frames that some pair within `most_pairs` has been without service by now */
+  int served;          /* that were given a share */
+  int starved;         /* ... of these, with meshes: came to nothing within it; more is tried in the next frame */
+  int held;            /* that were given none, but touched: contacts of an earlier frame, where the bodies are now */
+  int waiting_longest; /* frames that some pair within `most_pairs` has been without a turn by now; one that starved
+                        * had none */
   int beyond_memory;   /* pairs beyond `most_pairs`: called one after the other, through several frames if need be, each
                         * with the least share, in the first half of a frame */
   double gross_us;     /* of the whole frame */
   double overshoot_us; /* beyond the budget, >= 0 */
-  unsigned long work;  /* units spent between meshes */
+  unsigned long work;  /* units spent with meshes */
 } oddsFrameSummary;
 int oddsFrameBudgetGetSummary(oddsFrameBudgetID budget, oddsFrameSummary* summary) ODDS_NOTHROW;
 
 /* dSpaceCollide (data, callback as there) with all pairs of geoms put in order first: the callback, which calls
- * dCollide once for its pair as always, is called for the most important pairs first. Each gets a share of what the
- * frame has left; what it does not use goes to the next. The share bounds the collision in addition to the geoms' own
- * budgets. Important is what probably touches, touched lately, moves fast against each other, is near to the attention,
- * or has waited long. A pair that finds no time left is not called; a body may then sink in for a frame. One pair at
- * least is called in every frame, and no pair waits for ever (by importance; equal shares let it). Spaces inside of
- * `space` are searched too, each once, and each pair of geoms is called once. A pair that the broad phase does not give
- * is forgotten. odds allocates nothing here; ODE's hash and sweep-and-prune spaces do. The last error stays as it is.
+ * dCollide once for its pair as always, is called for the most important pairs first. Important is what probably
+ * touches, touched lately, moves fast against each other, is near to the attention. No pair gets less than it needs for
+ * an answer of use, which is learned from what its collisions cost: a share that led to none is doubled, up to half of
+ * the frame. Where a frame cannot pay the needs of all, pairs take turns, by importance times the square of the frames
+ * waited, and none has its turns more than four times as rarely as another. One that has not its turn is not called,
+ * or, if it touched, gets the contacts that it had, moved on with the bodies; a body may otherwise sink in for some
+ * frames. What the needs leave over goes by importance; what a pair does not use, to the others. The share bounds the
+ * collision in addition to the geoms' own budgets. One pair at least is called in every frame. Spaces inside of `space`
+ * are searched too, each once, and each pair of geoms is called once. A pair that the broad phase does not give is
+ * forgotten. odds allocates nothing here; ODE's hash and sweep-and-prune spaces do. The last error stays as it is.
  * Returns 1, or 0 with an error. */
 int oddsSpaceCollide(dSpaceID space, void* data, dNearCallback* callback, oddsFrameBudgetID budget) ODDS_NOTHROW;
 

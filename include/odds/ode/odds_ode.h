@@ -220,6 +220,8 @@ typedef struct oddsAnswer {
   double cell_normal[3]; /* unit, into g1 */
   double cell_depth;     /* >= 0 */
   int bad_pose;          /* 1 if a pose was not finite or not rigid: no contacts, nothing tested */
+  int only_held;         /* 1 if it was not this pair's turn in a frame (odds_frame.h): nothing tested, verdict and odds
+                          * are those of before */
 } oddsAnswer;
 
 /* The last collision of a pair of two geoms of this class, in either order. 0 if they never collided. */

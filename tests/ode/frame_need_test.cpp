@@ -1,0 +1,282 @@
+// No pair gets a share that buys nothing: what pairs need is learned, and where a frame cannot pay it, they take turns.
+// The pairs here only say what they need, and move the frame's clock by what they take of their shares.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <vector>
+
+#include "odds/math/random.hpp"
+#include "odds/realtime/clock.hpp"
+#include "ode/frame_budget.hpp"
+#include "ode/frame_crowd.hpp"
+#include "ode/frame_fixture.hpp"
+#include "ode/frame_need.hpp"
+#include "ode/frame_share.hpp"
+
+namespace odds::test {
+namespace {
+
+using ode::FrameNeed;
+using ode::Outcome;
+
+TEST(FrameNeed, DoublesUntilAShareIsOfUse) {
+  FrameNeed need;
+  EXPECT_EQ(need.least_share(5.0, 100.0), 5.0);
+  EXPECT_FALSE(need.learn(5.0, Outcome::starved, 100.0));
+  EXPECT_EQ(need.least_share(5.0, 100.0), 10.0);
+  EXPECT_FALSE(need.learn(3.0, Outcome::starved, 100.0));  // had less than it needs: nothing new
+  EXPECT_EQ(need.least_share(5.0, 100.0), 10.0);
+  EXPECT_TRUE(need.is_hungry());
+  EXPECT_TRUE(need.learn(9.0, Outcome::finished, 100.0));
+  EXPECT_FALSE(need.is_hungry());
+  EXPECT_LT(need.least_share(5.0, 100.0), 10.0);
+  EXPECT_GE(need.least_share(5.0, 100.0), 9.0);
+  EXPECT_TRUE(need.learn(30.0, Outcome::finished, 100.0));
+  EXPECT_EQ(need.least_share(5.0, 100.0), 30.0);
+}
+
+TEST(FrameNeed, WhatWasMoreThanEnoughIsLearnedDownToWhatIsNot) {
+  for (const Outcome outcome : {Outcome::enough, Outcome::plenty}) {
+    FrameNeed need;
+    EXPECT_TRUE(need.learn(80.0, outcome, 100.0));
+    EXPECT_EQ(need.is_hungry(), outcome == Outcome::enough);
+    int starved = 0;
+    for (int turn = 0; turn < 200; ++turn) {
+      const double share = need.least_share(5.0, 100.0);
+      EXPECT_LE(share, 80.0);
+      const bool is_too_little = share < 20.0;
+      EXPECT_EQ(need.learn(is_too_little ? share : 80.0, is_too_little ? Outcome::starved : outcome, 100.0),
+                !is_too_little);
+      starved += is_too_little ? 1 : 0;
+    }
+    EXPECT_GE(starved, 1);
+    EXPECT_LE(starved, 6);  // of 200
+    EXPECT_LT(need.least_share(5.0, 100.0), 40.0);
+  }
+}
+
+TEST(FrameNeed, GivesUpOnceThereWasAllThatThereIs) {
+  FrameNeed need;
+  int in_a_row = 0;
+  for (double share = need.least_share(5.0, 100.0); in_a_row < 20; share = need.least_share(5.0, 100.0)) {
+    ++in_a_row;
+    EXPECT_LE(share, 100.0);
+    if (need.learn(share, Outcome::starved, 100.0)) break;
+  }
+  EXPECT_EQ(in_a_row, 6);  // 5, 10, 20, 40, 80, 100
+  EXPECT_EQ(need.least_share(5.0, 100.0), 5.0);
+}
+
+/// Pairs of spheres in the place of pairs of meshes.
+struct Actor {
+  double need = 0.0;
+  int of_use = 0;
+  int starved = 0;
+  int last_of_use = 0;  // frame
+};
+
+class FrameActors : public FrameTest {
+ protected:
+  void SetUp() override {
+    FrameTest::SetUp();
+    budget->use_clock(clock.clock());
+  }
+
+  /// In the order of `needs`; pair i lies 10 i metres from the first.
+  void add(const std::vector<double>& needs) {
+    for (const double need : needs) {
+      const double x = 10.0 * static_cast<double>(actors.size());
+      const dGeomID a = dCreateSphere(space, 1.0);
+      for (const dGeomID geom : {a, dCreateSphere(space, 1.0)}) dGeomSetPosition(geom, x, 0.0, 0.0);
+      const std::size_t place = actors.size();
+      actors.push_back({need});
+      places[a] = place;
+    }
+  }
+
+  void run(int frames) {
+    for (int i = 0; i < frames; ++i) {
+      ++frame;
+      ASSERT_EQ(oddsSpaceCollide(space, this, &FrameActors::act, budget), 1);
+      ASSERT_EQ(summary().overshoot_us, 0.0) << frame;
+      ASSERT_LE(summary().work, budget->settings().work_units);
+    }
+  }
+
+  static void act(void* self, dGeomID a, dGeomID b) {
+    auto& test = *static_cast<FrameActors*>(self);
+    Actor& actor = test.actors[test.places.at(test.places.contains(a) ? a : b)];
+    ode::FrameShare& share = *ode::current_share;
+    const bool in_units = share.work_units > 0;
+    const double had = in_units ? static_cast<double>(share.work_units) : share.us;
+    const double took = std::min(had, actor.need);
+    if (in_units) {
+      share.spent = static_cast<unsigned long>(took);
+    } else {
+      test.clock.advance(static_cast<std::int64_t>(1e3 * took) + test.call_ns);
+    }
+    share.outcome = took < actor.need ? Outcome::starved : Outcome::finished;
+    ++(took < actor.need ? actor.starved : actor.of_use);
+    if (took >= actor.need) actor.last_of_use = test.frame;
+  }
+
+  static void act_and_stall(void* self, dGeomID a, dGeomID b) {
+    act(self, a, b);
+    static_cast<FrameActors*>(self)->clock.advance(5'000'000);
+    ode::current_share->stall_us = 5'000.0;
+  }
+
+  realtime::ManualClock clock;
+  std::int64_t call_ns = 400;
+  std::vector<Actor> actors;
+  std::map<dGeomID, std::size_t> places;
+  int frame = 0;
+};
+
+std::vector<double> random_needs(std::size_t count, std::uint64_t seed, double least, double most) {
+  math::Random random(seed);
+  std::vector<double> needs(count);
+  for (double& need : needs) need = random.uniform(least, most);
+  return needs;
+}
+
+TEST_F(FrameActors, EveryPairHasAnswersOfUseWhereEqualSharesWouldGiveNone) {
+  add(std::vector<double>(100, 60.0));
+  oddsFrameBudgetSetWork(budget, 1000);  // ten for each
+  oddsFrameBudgetSetSharing(budget, ODDS_SHARE_EQUALLY);
+  run(60);
+  for (const Actor& actor : actors) EXPECT_EQ(actor.of_use, 0);
+  EXPECT_EQ(summary().waiting_longest, 60);
+  EXPECT_EQ(summary().starved, 100);
+  oddsFrameBudgetSetSharing(budget, ODDS_SHARE_BY_IMPORTANCE);
+  run(60);  // 16 of 100 in a frame
+  for (const Actor& actor : actors) EXPECT_GE(actor.of_use, 7);
+  EXPECT_LE(summary().waiting_longest, 8);
+}
+
+TEST_F(FrameActors, OnceLearnedNoShareBuysNothing) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    add(random_needs(40, seed, 1.0, 60.0));
+  }
+  oddsFrameBudgetSetTime(budget, 500.0);
+  run(40);
+  for (Actor& actor : actors) actor.starved = 0;
+  run(100);
+  for (const Actor& actor : actors) {
+    EXPECT_EQ(actor.starved, 0);
+    EXPECT_GE(actor.of_use, 8);  // all together need some eight frames
+  }
+}
+
+TEST_F(FrameActors, WhatMattersHasMoreTurnsButNobodyFourTimesFewer) {
+  add(std::vector<double>(60, 30.0));
+  oddsFrameBudgetSetTime(budget, 250.0);
+  const dReal here[3] = {0.0, 0.0, 0.0};
+  oddsFrameBudgetSetAttention(budget, here, 5.0);
+  run(50);
+  for (Actor& actor : actors) actor.of_use = 0;
+  run(400);
+  EXPECT_GT(actors.front().of_use, 2 * actors.back().of_use);
+  const auto [least, most] =
+      std::minmax_element(actors.begin(), actors.end(), [](auto& x, auto& y) { return x.of_use < y.of_use; });
+  EXPECT_LE(most->of_use, 4 * least->of_use + 4);
+}
+
+TEST_F(FrameActors, APairThatNothingSatisfiesTakesNoMoreThanSomeTurns) {
+  add(std::vector<double>(20, 20.0));
+  add({1e9, 1e9});
+  oddsFrameBudgetSetTime(budget, 250.0);
+  run(300);
+  for (std::size_t i = 0; i < 20; ++i) EXPECT_GE(actors[i].of_use, 60) << i;  // alone: 150
+  EXPECT_GT(actors[20].starved, 20);
+}
+
+TEST_F(FrameActors, AGrowingNeedIsMetAgain) {
+  add(random_needs(30, 5, 2.0, 12.0));
+  oddsFrameBudgetSetTime(budget, 300.0);
+  run(20);
+  for (Actor& actor : actors) actor.need *= 4.0;
+  run(30);
+  const int before = frame;
+  run(30);
+  for (const Actor& actor : actors) EXPECT_GT(actor.last_of_use, before);
+}
+
+TEST_F(FrameActors, AFrameDoesNotOverrunHoweverLongItsCallsTakeBesideTheirSearches) {
+  add(random_needs(80, 9, 1.0, 90.0));
+  for (const double frame_us : {20.0, 100.0, 500.0, 5000.0}) {
+    oddsFrameBudgetSetTime(budget, frame_us);
+    for (const std::int64_t around_ns : {0, 400, 1400}) {
+      call_ns = around_ns;
+      run(30);
+      EXPECT_GT(summary().served, 0);
+    }
+  }
+}
+
+TEST_F(FrameActors, TheMachinesStallsAreNotTakenForNeeds) {
+  add(std::vector<double>(10, 10.0));
+  oddsFrameBudgetSetTime(budget, 200.0);
+  run(5);
+  for (int i = 0; i < 10; ++i) oddsSpaceCollide(space, this, &FrameActors::act_and_stall, budget);
+  for (Actor& actor : actors) actor.of_use = 0;
+  run(1);
+  EXPECT_EQ(summary().served, 10);
+}
+
+class HeldInFrame : public FrameTest {};
+
+TEST_F(HeldInFrame, WhatTouchesKeepsItsContactsInFramesWithoutATurn) {
+  Crowd crowd(space, 60);
+  crowd.run(space, budget);  // without a limit
+  oddsFrameBudgetSetWork(budget, 400);
+  int held = 0;
+  for (int frame = 0; frame < 60; ++frame) {
+    crowd.run(space, budget);
+    held += summary().held;
+    EXPECT_EQ(summary().pairs, 60);
+    EXPECT_LT(summary().served, 40);
+    for (const CrowdPair& pair : crowd.pairs()) {
+      EXPECT_TRUE(pair.contacts > 0 || !pair.touches) << frame;
+    }
+  }
+  EXPECT_GT(held, 60);
+}
+
+TEST_F(HeldInFrame, HeldContactsFollowTheBodiesAndCostNoWork) {
+  const auto shape = sphere_shape(0.1);
+  const dGeomID a = mesh_geom(shape, space);
+  const dGeomID b = mesh_geom(shape, space);
+  dGeomSetPosition(b, 0.0, 0.0, 0.19);
+  ASSERT_FALSE(collide(a, b).empty());
+  oddsAnswer before;
+  ASSERT_EQ(oddsGetLastAnswer(a, b, &before), 1);
+  dGeomSetPosition(b, 0.0, 0.0, 0.189);
+  ode::FrameShare share;
+  share.only_held = true;
+  oddsStats counted;
+  oddsGetStats(&counted);
+  const auto queries = counted.queries;
+  ode::current_share = &share;
+  const auto contacts = collide(a, b);
+  ode::current_share = nullptr;
+  ASSERT_FALSE(contacts.empty());
+  EXPECT_NEAR(contacts.front().depth, 0.011, 0.002);
+  oddsAnswer answer;
+  ASSERT_EQ(oddsGetLastAnswer(a, b, &answer), 1);
+  EXPECT_EQ(answer.only_held, 1);
+  EXPECT_EQ(answer.verdict, before.verdict);
+  EXPECT_EQ(answer.contacts, static_cast<int>(contacts.size()));
+  EXPECT_EQ(answer.node_pairs, 0U);
+  EXPECT_EQ(share.spent, 0U);
+  oddsGetStats(&counted);
+  EXPECT_EQ(counted.queries, queries);
+  dGeomSetPosition(b, 0.0, 0.0, 0.5);  // far away: nothing is left of it
+  ode::current_share = &share;
+  EXPECT_TRUE(collide(a, b).empty());
+  ode::current_share = nullptr;
+}
+
+}  // namespace
+}  // namespace odds::test
