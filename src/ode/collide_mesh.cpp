@@ -88,10 +88,12 @@ oddsAnswer record_of_bad_pose() noexcept {
 // A larger share would have been of use if it was the share that ended the search, and not the geoms' own budgets.
 Outcome outcome_of(const query::Answer& answer, const Settings& own, const Settings& settings, int limit,
                    int given) noexcept {
+  if (answer.contacts_carried) return Outcome::carried;
   const bool decided = answer.basis != query::Basis::budget;
   const bool complete = decided && answer.contacts_complete;
   if (complete && answer.verdict == query::Verdict::hit && limit > 0) return Outcome::plenty;
-  if (complete || !is_bound_by_share(own, settings)) return Outcome::finished;
+  const std::uint64_t spent = answer.cost.node_pairs + answer.cost.triangle_pairs;
+  if (complete || !is_ended_by_share(own, settings, spent)) return Outcome::finished;
   const bool of_use = answer.verdict == query::Verdict::clear || limit == 0 || given > 0;
   return decided && of_use ? Outcome::enough : Outcome::starved;
 }
@@ -111,10 +113,12 @@ void count_basis(query::Basis basis) noexcept {
 }
 
 // A frame in which it is not this pair's turn: what is held, where the bodies are now. Nothing is asked.
-int give_held(PairEntry& entry, const math::Pose& pose_a, const math::Pose& b_in_a, bool o1_is_a,
-              ContactWriter& writer) noexcept {
+int give_held(PairEntry& entry, const Settings& settings, const math::Pose& pose_a, const math::Pose& b_in_a,
+              bool o1_is_a, ContactWriter& writer) noexcept {
   const double size = std::min(entry.pair->a().mesh().size(), entry.pair->b().mesh().size());
-  for (const query::Contact& contact : entry.held.at(b_in_a, size)) write_contact(writer, contact, pose_a, o1_is_a);
+  if (settings.undecided_policy == ODDS_UNDECIDED_HIT) {
+    for (const query::Contact& contact : entry.held.at(b_in_a, size)) write_contact(writer, contact, pose_a, o1_is_a);
+  }
   const oddsAnswer before = entry.last;
   entry.last = {};
   entry.last.verdict = before.verdict;
@@ -143,7 +147,7 @@ int answer_pair(PairEntry& entry, dGeomID o1, dGeomID o2, int flags, dContactGeo
   const int limit = room_for(flags, settings.max_contacts);
   const math::Pose b_in_a = pose_a->inverse() * *pose_b;
   ContactWriter writer(o1, o2, limit, contacts, skip);
-  if (gives_only_held()) return give_held(entry, *pose_a, b_in_a, o1_is_a, writer);
+  if (gives_only_held()) return give_held(entry, settings, *pose_a, b_in_a, o1_is_a, writer);
   const query::Answer& answer = entry.pair->run(b_in_a, request_for(settings, limit));
   count_basis(answer.basis);
   entry.last = record_of(answer, *pose_a);
@@ -182,6 +186,7 @@ PairEntry* prepare_late(dGeomID o1, dGeomID o2) noexcept {
 int collide_mesh(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int skip) noexcept {
   if (!gives_only_held()) count(statistics().queries);
   PairEntry* entry = pair_table().find(own_data(o1), own_data(o2));
+  if (entry == nullptr && gives_only_held()) return 0;
   if (entry == nullptr) entry = prepare_late(o1, o2);
   if (entry == nullptr || !entry->pair) {
     count(statistics().failed_pairs);

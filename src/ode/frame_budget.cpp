@@ -97,11 +97,11 @@ void oddsFrameBudget::serve_beyond_memory(dGeomID a, dGeomID b) noexcept {
   serve(unknown, least_share());
 }
 
-void oddsFrameBudget::learn(const Candidate& candidate, double cost, const FrameShare& given) noexcept {
+void oddsFrameBudget::learn(const Candidate& candidate, double share, double cost, const FrameShare& given) noexcept {
   if (given.outcome == Outcome::starved) ++summary_.starved;
   FramePair* known = candidate.memory;
   if (known == nullptr) return;
-  if (known->need.learn(cost, given.outcome, means().most)) known->served = memory_.frame();
+  if (known->need.learn(share, cost, given.outcome, means().most)) known->served = memory_.frame();
   if (given.contacts > 0) known->touched = memory_.frame();
   // Of one of ODE's own collisions nobody says how it went; one with a primitive states no odds.
   known->probability = given.outcome == Outcome::unknown ? 0.5 : given.contacts > 0 ? 1.0 : 0.0;
@@ -138,7 +138,8 @@ void oddsFrameBudget::serve(Candidate& candidate, double share) noexcept {
     call_us_ = std::max(least_call_us, call_us_ + 0.02 * (beyond_us - call_us_));
   }
   // What is far beyond the share is a stall that no query has noticed.
-  learn(candidate, in_units ? static_cast<double>(limit.spent) : std::min(took_us, limit.us + most_call_us), limit);
+  const double cost = in_units ? static_cast<double>(limit.spent) : std::min(took_us, limit.us + most_call_us);
+  learn(candidate, share, cost, limit);
   candidate.called = true;
   ++summary_.served;
 }
@@ -147,6 +148,8 @@ void oddsFrameBudget::serve(Candidate& candidate, double share) noexcept {
 void oddsFrameBudget::hold(Candidate& candidate) noexcept {
   FrameShare limit;
   limit.only_held = true;
+  limit.us = 0.1;  // of a geom without anything held, which has the address of one that had
+  limit.work_units = 1;
   const std::int64_t before_ns = clock_();
   call(candidate, limit);
   const double took_us = std::min(1e-3 * static_cast<double>(clock_() - before_ns), most_call_us);

@@ -84,7 +84,7 @@ struct oddsFrameBudget {
   void call(const Candidate& candidate, odds::ode::FrameShare& share) noexcept;
   void serve(Candidate& candidate, double share) noexcept;
   void hold(Candidate& candidate) noexcept;
-  void learn(const Candidate& candidate, double cost, const odds::ode::FrameShare& given) noexcept;
+  void learn(const Candidate& candidate, double share, double cost, const odds::ode::FrameShare& given) noexcept;
   void serve_equally() noexcept;
   void serve_by_importance() noexcept;
   void serve_with_rest() noexcept;

@@ -18,14 +18,17 @@ double FrameNeed::least_share(double unknown, double most) const noexcept {
   return std::min(need_ >= 0.0 ? need_ : unknown, most);
 }
 
-bool FrameNeed::learn(double cost, Outcome outcome, double most) noexcept {
+bool FrameNeed::learn(double share, double cost, Outcome outcome, double most) noexcept {
   hungry_ = outcome == Outcome::starved || outcome == Outcome::enough;
   if (outcome == Outcome::starved) {
-    const bool had_most = need_ >= most;
-    need_ = had_most ? nobody_knows : std::max(need_, 2.0 * cost);
-    starved_at_ = had_most ? 0.0 : std::max(starved_at_, cost);
+    // A search does nothing with a share that is smaller than its smallest piece of work.
+    const double too_little = std::max(share, cost);
+    const bool had_most = share >= most;
+    need_ = had_most ? nobody_knows : std::max(need_, 2.0 * too_little);
+    starved_at_ = had_most ? 0.0 : std::max(starved_at_, too_little);
     return had_most;
   }
+  if (outcome == Outcome::carried) return true;
   if (outcome == Outcome::enough || outcome == Outcome::plenty) {
     fall(cost);
   } else {

@@ -15,10 +15,10 @@ class FrameNeed {
   /// Whether a larger share would buy more: its last answer was cut short.
   [[nodiscard]] bool is_hungry() const noexcept { return hungry_; }
 
-  /// A collision that cost so much went like that. True: it was a turn, of use or the last of a row that `most` could
-  /// not satisfy, after which the pair begins again small; so one that needs more than there is takes no more than some
-  /// turns from the others. False: the share was too small; the next has to be twice as large.
-  bool learn(double cost, Outcome outcome, double most) noexcept;
+  /// A collision with that share cost so much and went like that. True: it was a turn, of use or the last of a row that
+  /// `most` could not satisfy, after which the pair begins again small; so one that needs more than there is takes no
+  /// more than some turns from the others. False: the share was too small; the next has to be twice as large.
+  bool learn(double share, double cost, Outcome outcome, double most) noexcept;
 
  private:
   void fall(double cost) noexcept;

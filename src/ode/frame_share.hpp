@@ -15,6 +15,7 @@ enum class Outcome : std::uint8_t {
   starved,   ///< undecided, or a hit without a contact: the share bought nothing
   enough,    ///< decided, with contacts that are of use; cut short nevertheless
   plenty,    ///< the same, but not cut short; less might have done
+  carried,   ///< contacts of an earlier search, for the bodies rest: says nothing of what a search needs
   finished,  ///< proved clear, or a primitive's: less would have been nothing, more would change nothing
 };
 
@@ -40,9 +41,11 @@ struct FrameShare {
 /// The calling thread's; null outside of a frame.
 inline thread_local FrameShare* current_share = nullptr;
 
-/// Whether a share, and not the geoms' own budgets, bounds what `own` came to.
-[[nodiscard]] inline bool is_bound_by_share(const Settings& own, const Settings& shared) noexcept {
-  return shared.budget_us < own.budget_us || shared.work_units != own.work_units;
+/// Whether a share, and not the geoms' `own` budgets, ended what was cut short after `spent` units. `shared`: both.
+[[nodiscard]] inline bool is_ended_by_share(const Settings& own, const Settings& shared, std::uint64_t spent) noexcept {
+  constexpr std::uint64_t largest_piece = 32;  // that a search does not begin if it does not fit
+  const bool units_ended = shared.work_units > 0 && spent + largest_piece >= shared.work_units;
+  return units_ended ? shared.work_units != own.work_units : shared.budget_us < own.budget_us;
 }
 
 [[nodiscard]] inline bool gives_only_held() noexcept { return current_share != nullptr && current_share->only_held; }

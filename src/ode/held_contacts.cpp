@@ -11,7 +11,7 @@ std::span<const query::Contact> HeldContacts::best_of(const query::Answer& answe
   if (answer.basis == query::Basis::proved && answer.contacts_complete) {
     // Bodies at rest hop: what is apart now by less than a hop touches in the same places again.
     if (answer.contacts.empty()) {
-      static_cast<void>(at(b_in_a, size));
+      let_go_of_overlaps(b_in_a, size);
     } else {
       keep(answer.contacts, b_in_a, true);
     }
@@ -22,6 +22,14 @@ std::span<const query::Contact> HeldContacts::best_of(const query::Answer& answe
   if (answer.contacts.empty() || (rough && better_than_rough() && !still_held.empty())) return still_held;
   keep(answer.contacts, b_in_a, !rough);
   return answer.contacts;
+}
+
+/// Bodies that are proved apart: what would overlap by what is held has not gone where its points say.
+void HeldContacts::let_go_of_overlaps(const math::Pose& b_in_a, double size) noexcept {
+  static_cast<void>(at(b_in_a, size));
+  const auto end = std::remove_if(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(count_),
+                                  [&](const query::HeldContact& h) { return h.parted(b_in_a).depth > 0.0; });
+  count_ = static_cast<std::size_t>(end - held_.begin());
 }
 
 void HeldContacts::keep(std::span<const query::Contact> found, const math::Pose& b_in_a, bool careful) noexcept {

@@ -16,14 +16,17 @@ class Limit {
  public:
   explicit Limit(const Settings& own) noexcept : clock_(realtime::fastest_clock()) {
     const Settings settings = within_share(own);
-    shared_ = is_bound_by_share(own, settings);
+    shared_time_ = settings.budget_us < own.budget_us;
+    shared_units_ = settings.work_units != own.work_units;
     if (settings.work_units > 0) units = settings.work_units;
     begun_with_ = units;
     const double ns = settings.budget_us * 1e3;
     timed_ = ns < 9e18;
     if (!timed_) return;
     end_ns_ = clock_() + static_cast<std::int64_t>(ns);
-    units = std::min(units, static_cast<std::uint64_t>(std::ceil(settings.budget_us * nodes_per_us)));
+    const auto units_of_time = static_cast<std::uint64_t>(std::ceil(settings.budget_us * nodes_per_us));
+    if (units_of_time < units) shared_units_ = shared_time_;
+    units = std::min(units, units_of_time);
     begun_with_ = units;
   }
 
@@ -33,7 +36,9 @@ class Limit {
   [[nodiscard]] int finish(bool complete, int contacts) const noexcept {
     if (!complete) count(statistics().primitive_cut_off);
     if (current_share != nullptr) {
-      current_share->report(begun_with_ - units, contacts, complete || !shared_ ? Outcome::finished : Outcome::starved);
+      const bool more_would_help = !complete && (units == 0 ? shared_units_ : shared_time_);
+      const Outcome cut_short = contacts > 0 ? Outcome::enough : Outcome::starved;
+      current_share->report(begun_with_ - units, contacts, more_would_help ? cut_short : Outcome::finished);
     }
     return contacts;
   }
@@ -45,7 +50,8 @@ class Limit {
   realtime::Clock clock_;
   std::int64_t end_ns_ = 0;
   bool timed_ = false;
-  bool shared_ = false;
+  bool shared_time_ = false;  // the frame's, not the geoms' own
+  bool shared_units_ = false;
   std::uint64_t begun_with_ = most_units;
 
  public:

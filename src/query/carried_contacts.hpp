@@ -48,7 +48,7 @@ class CarriedContacts {
   /// Pairs of triangles, the likeliest first, of which one that still meets proves the hit.
   [[nodiscard]] std::span<TrianglePair> proofs() noexcept { return std::span(proofs_).first(proof_count_); }
 
-  /// Writes the contacts at this pose. Returns their number.
+  /// Writes the contacts at this pose, in the order in which they were made. Returns their number.
   std::size_t write(const math::Pose& pose, std::span<Contact, most_contacts> contacts) const noexcept {
     for (std::size_t i = 0; i < count_; ++i) contacts[i] = held_[i].at(pose);
     return count_;

@@ -23,30 +23,30 @@ using ode::Outcome;
 TEST(FrameNeed, DoublesUntilAShareIsOfUse) {
   FrameNeed need;
   EXPECT_EQ(need.least_share(5.0, 100.0), 5.0);
-  EXPECT_FALSE(need.learn(5.0, Outcome::starved, 100.0));
+  EXPECT_FALSE(need.learn(5.0, 5.0, Outcome::starved, 100.0));
   EXPECT_EQ(need.least_share(5.0, 100.0), 10.0);
-  EXPECT_FALSE(need.learn(3.0, Outcome::starved, 100.0));  // had less than it needs: nothing new
+  EXPECT_FALSE(need.learn(3.0, 3.0, Outcome::starved, 100.0));  // had less than it needs: nothing new
   EXPECT_EQ(need.least_share(5.0, 100.0), 10.0);
   EXPECT_TRUE(need.is_hungry());
-  EXPECT_TRUE(need.learn(9.0, Outcome::finished, 100.0));
+  EXPECT_TRUE(need.learn(10.0, 9.0, Outcome::finished, 100.0));
   EXPECT_FALSE(need.is_hungry());
   EXPECT_LT(need.least_share(5.0, 100.0), 10.0);
   EXPECT_GE(need.least_share(5.0, 100.0), 9.0);
-  EXPECT_TRUE(need.learn(30.0, Outcome::finished, 100.0));
+  EXPECT_TRUE(need.learn(30.0, 30.0, Outcome::finished, 100.0));
   EXPECT_EQ(need.least_share(5.0, 100.0), 30.0);
 }
 
 TEST(FrameNeed, WhatWasMoreThanEnoughIsLearnedDownToWhatIsNot) {
   for (const Outcome outcome : {Outcome::enough, Outcome::plenty}) {
     FrameNeed need;
-    EXPECT_TRUE(need.learn(80.0, outcome, 100.0));
+    EXPECT_TRUE(need.learn(80.0, 80.0, outcome, 100.0));
     EXPECT_EQ(need.is_hungry(), outcome == Outcome::enough);
     int starved = 0;
     for (int turn = 0; turn < 200; ++turn) {
       const double share = need.least_share(5.0, 100.0);
       EXPECT_LE(share, 80.0);
       const bool is_too_little = share < 20.0;
-      EXPECT_EQ(need.learn(is_too_little ? share : 80.0, is_too_little ? Outcome::starved : outcome, 100.0),
+      EXPECT_EQ(need.learn(share, is_too_little ? share : 80.0, is_too_little ? Outcome::starved : outcome, 100.0),
                 !is_too_little);
       starved += is_too_little ? 1 : 0;
     }
@@ -62,10 +62,44 @@ TEST(FrameNeed, GivesUpOnceThereWasAllThatThereIs) {
   for (double share = need.least_share(5.0, 100.0); in_a_row < 20; share = need.least_share(5.0, 100.0)) {
     ++in_a_row;
     EXPECT_LE(share, 100.0);
-    if (need.learn(share, Outcome::starved, 100.0)) break;
+    if (need.learn(share, share, Outcome::starved, 100.0)) break;
   }
   EXPECT_EQ(in_a_row, 6);  // 5, 10, 20, 40, 80, 100
   EXPECT_EQ(need.least_share(5.0, 100.0), 5.0);
+}
+
+// A search does not begin what does not fit: of 8 units it spends none.
+TEST(FrameNeed, GrowsThoughNothingOfTheShareWasSpent) {
+  FrameNeed need;
+  EXPECT_TRUE(need.learn(5.0, 0.0, Outcome::finished, 1000.0));  // far apart
+  EXPECT_EQ(need.least_share(5.0, 1000.0), 0.0);
+  EXPECT_FALSE(need.learn(8.0, 0.0, Outcome::starved, 1000.0));
+  EXPECT_EQ(need.least_share(5.0, 1000.0), 16.0);
+  EXPECT_FALSE(need.learn(16.0, 0.0, Outcome::starved, 1000.0));
+  EXPECT_EQ(need.least_share(5.0, 1000.0), 32.0);
+}
+
+TEST(FrameNeed, BodiesThatRestStillNeedWhatASearchNeeds) {
+  FrameNeed need;
+  EXPECT_TRUE(need.learn(50.0, 50.0, Outcome::finished, 100.0));
+  for (int i = 0; i < 100; ++i) EXPECT_TRUE(need.learn(50.0, 1.0, Outcome::carried, 100.0));
+  EXPECT_EQ(need.least_share(5.0, 100.0), 50.0);
+  EXPECT_FALSE(need.is_hungry());
+}
+
+TEST(FrameNeed, OnlyWhatTheFrameEndedIsStarved) {
+  ode::Settings own;
+  own.budget_us = 100.0;
+  ode::Settings shared = own;
+  shared.work_units = 8000;
+  EXPECT_FALSE(ode::is_ended_by_share(own, shared, 2000)) << "its own 100 us were up";
+  EXPECT_TRUE(ode::is_ended_by_share(own, shared, 7990));
+  shared = own;
+  shared.budget_us = 50.0;
+  EXPECT_TRUE(ode::is_ended_by_share(own, shared, 2000));
+  own.work_units = shared.work_units = 200;
+  EXPECT_FALSE(ode::is_ended_by_share(own, shared, 199)) << "its own units were spent";
+  EXPECT_TRUE(ode::is_ended_by_share(own, shared, 100));
 }
 
 /// Pairs of spheres in the place of pairs of meshes.

@@ -99,7 +99,10 @@ TEST(HeldContacts, AHopForgetsNothing) {
   ASSERT_EQ(given.size(), 1U);
   EXPECT_EQ(given[0].normal, Vec3::UnitZ());
   EXPECT_NEAR(given[0].depth, 0.0002, 1e-12);
-  // Far apart they are let go.
+  // What a proof of being apart contradicts is let go, and so is what is far apart.
+  EXPECT_TRUE(held.best_of(clear, moved({0.01, 0, -0.0005}), 1.0).empty());
+  EXPECT_EQ(held.best_of(rough, moved({0.01, 0, -0.0005}), 1.0)[0].normal, Vec3::UnitX());
+  EXPECT_EQ(held.best_of(made, {}, 1.0).size(), 1U);
   EXPECT_TRUE(held.best_of(clear, moved({0, 0, -0.1}), 1.0).empty());
   EXPECT_EQ(held.best_of(rough, {}, 1.0)[0].normal, Vec3::UnitX());
 }

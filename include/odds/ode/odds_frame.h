@@ -23,7 +23,7 @@ void oddsFrameBudgetDestroy(oddsFrameBudgetID budget) ODDS_NOTHROW;
 int oddsFrameBudgetSetTime(oddsFrameBudgetID budget, dReal microseconds) ODDS_NOTHROW;
 
 /* Work of a frame's collisions with meshes: pairs of nodes plus pairs of triangles; with primitives, nodes. Same bits
- * on every run if the time is dInfinity. 0: no limit (default). */
+ * on every run if the time is dInfinity, and the geoms' own too. 0: no limit (default). */
 int oddsFrameBudgetSetWork(oddsFrameBudgetID budget, unsigned long units) ODDS_NOTHROW;
 
 /* Where somebody looks or feels, world frame; pairs near it count for more, down to a tenth far beyond `radius` metres
@@ -57,9 +57,10 @@ int oddsFrameBudgetGetSummary(oddsFrameBudgetID budget, oddsFrameSummary* summar
  * touches, touched lately, moves fast against each other, is near to the attention. No pair gets less than it needs for
  * an answer of use, which is learned from what its collisions cost: a share that led to none is doubled, up to half of
  * the frame. Where a frame cannot pay the needs of all, pairs take turns, by importance times the square of the frames
- * waited, and none has its turns more than four times as rarely as another. One that has not its turn is not called,
- * or, if it touched, gets the contacts that it had, moved on with the bodies; a body may otherwise sink in for some
- * frames. What the needs leave over goes by importance; what a pair does not use, to the others. The share bounds the
+ * waited, and among pairs of like need none has its turns more than four times as rarely as another. One that has not
+ * its turn is not called, or, if two meshes touched, gets the contacts that were last made of triangles, moved on with
+ * the bodies, as far as time allows (none where the policy for undecided queries is no contact); a body may otherwise
+ * sink in for some frames. What the needs leave over goes by importance; what a pair does not use, to the others. The share bounds the
  * collision in addition to the geoms' own budgets. One pair at least is called in every frame. Spaces inside of `space`
  * are searched too, each once, and each pair of geoms is called once. A pair that the broad phase does not give is
  * forgotten. odds allocates nothing here; ODE's hash and sweep-and-prune spaces do. The last error stays as it is.
