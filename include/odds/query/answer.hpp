@@ -76,11 +76,9 @@ struct Answer {
   /// Pairs of triangles that the contacts were made from. Where they are not complete, some twenty tell a direction; of
   /// fewer than that it is a guess, and a caller that has good contacts of the last tick may prefer those.
   std::uint32_t contact_pairs = 0;
-  /// They are those of an earlier run in the order of that one, moved along (Request::carry_motion); `contact_pairs` is
-  /// 0.
-  bool contacts_carried = false;
-  bool has_cell_pair = false;  ///< whether `cell_pair` is set: some pair of nodes remained undecided
-  Contact cell_pair;           ///< where the surfaces most probably meet: centroids, mean normals, depth estimate
+  bool contacts_carried = false;  ///< they are those of an earlier run, moved along (Request::carry_motion)
+  bool has_cell_pair = false;     ///< whether `cell_pair` is set: some pair of nodes remained undecided
+  Contact cell_pair;              ///< where the surfaces most probably meet: centroids, mean normals, depth estimate
   double cell_pair_probability = 0.0;  ///< of an intersection within that pair of nodes
   Cost cost;
 };

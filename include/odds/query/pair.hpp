@@ -60,8 +60,8 @@ class Pair {
 
   [[nodiscard]] const Shape& a() const noexcept;
   [[nodiscard]] const Shape& b() const noexcept;
-  /// All pairs of triangles that the last `run` found to meet, as many as `hit_capacity`; the one that proved the hit
-  /// where contacts were carried. Valid until the next run.
+  /// Pairs of triangles that the last `run` found to meet, `hit_capacity` at most (if carried, one); until the next
+  /// run.
   [[nodiscard]] std::span<const TrianglePair> crossings() const noexcept;
   /// Pairs of nodes in the bottom slice that the incremental method keeps; 1 (the roots) before its first run.
   [[nodiscard]] std::uint32_t slice_size() const noexcept;
