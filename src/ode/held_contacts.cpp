@@ -40,12 +40,6 @@ void HeldContacts::keep(std::span<const query::Contact> found, const math::Pose&
   runs_ = 0;
 }
 
-/// How far any point of B that is not farther than `reach` from `on_b` has gone at most since what is held was made.
-double HeldContacts::motion_about(const Vec3& on_b, const math::Pose& b_in_a, double reach) const noexcept {
-  const math::Pose then{made_at_.rotation, made_at_ * on_b};
-  return math::motion_bound(then, {b_in_a.rotation, b_in_a * on_b}, reach);
-}
-
 std::span<const query::Contact> HeldContacts::at(const math::Pose& b_in_a, double size) noexcept {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < count_; ++i) {
@@ -56,7 +50,7 @@ std::span<const query::Contact> HeldContacts::at(const math::Pose& b_in_a, doubl
     held_[kept++] = held;
   }
   count_ = kept;
-  rests_ = kept > 0 && motion_about(held_[0].on_b(), b_in_a, size) <= rest * size;
+  rests_ = kept > 0 && math::motion_bound_about(held_[0].on_b(), made_at_, b_in_a, size) <= rest * size;
   runs_ = std::min(runs_ + 1, most_runs + 1);
   std::sort(touching_.begin(), touching_.begin() + static_cast<std::ptrdiff_t>(kept),
             [](const query::Contact& x, const query::Contact& y) { return x.depth > y.depth; });

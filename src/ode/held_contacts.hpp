@@ -50,7 +50,6 @@ class HeldContacts {
 
  private:
   void let_go_of_overlaps(const math::Pose& b_in_a, double size) noexcept;
-  [[nodiscard]] double motion_about(const Vec3& on_b, const math::Pose& b_in_a, double reach) const noexcept;
 
   std::array<query::HeldContact, most> held_;
   std::array<query::Contact, most> touching_;

@@ -38,9 +38,7 @@ class CarriedContacts {
   /// of them has moved farther than `motion` (metres), and one of them at least still overlaps.
   [[nodiscard]] bool serve(const math::Pose& pose, int wanted, double motion, double size) const noexcept {
     if (count_ == 0 || wanted != wanted_ || !(motion > 0.0)) return false;
-    const math::Pose then{pose_.rotation, pose_ * held_[0].on_b()};
-    const math::Pose now{pose.rotation, pose * held_[0].on_b()};
-    if (!(math::motion_bound(then, now, size) <= motion)) return false;
+    if (!(math::motion_bound_about(held_[0].on_b(), pose_, pose, size) <= motion)) return false;
     return std::any_of(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(count_),
                        [&pose](const HeldContact& held) { return held.parted(pose).depth > 0.0; });
   }

@@ -41,8 +41,7 @@ class KnownDirection {
 
  private:
   [[nodiscard]] bool is_near(const math::Pose& pose, double size) const noexcept {
-    const math::Pose then{pose_.rotation, pose_ * on_b_};
-    return math::motion_bound(then, {pose.rotation, pose * on_b_}, size) <= near * size;
+    return math::motion_bound_about(on_b_, pose_, pose, size) <= near * size;
   }
 
   Vec3 normal_ = Vec3::UnitZ();

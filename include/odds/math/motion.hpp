@@ -14,4 +14,10 @@ namespace odds::math {
          (1.0 + 1e-12);
 }
 
+/// The same of a body's points within `reach` of one of them, `place` in the body's frame. Metres.
+[[nodiscard]] inline double motion_bound_about(const Vec3& place, const Pose& from, const Pose& to,
+                                               double reach) noexcept {
+  return motion_bound({from.rotation, from * place}, {to.rotation, to * place}, reach);
+}
+
 }  // namespace odds::math
