@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "odds/math/pose.hpp"
+#include "odds/math/tolerances.hpp"
 #include "odds/ode/odds_ode.h"
 #include "odds/query/request.hpp"
 #include "ode/prepared_mesh.hpp"
@@ -22,7 +23,7 @@ struct Settings {
   double p_min = 1.0;
   std::uint32_t k_min = 10;
   int max_contacts = 8;
-  double carry_motion = 1e-5;
+  double carry_motion = tolerances::resting_motion;
   query::Method method = query::Method::time_critical;
   query::EstimatorKind estimator = query::EstimatorKind::kinematic;
   int undecided_policy = ODDS_UNDECIDED_HIT;

@@ -88,6 +88,9 @@ inline constexpr double lump_depth = 1000.0;
 /// then holds up what rests on it, and a wrong direction moves a body by no more than this in a few steps.
 /// Test: StarvedCrate.DoesNotSinkIn, StarvedCrate.IsNeverThrown.
 inline constexpr double unmeasured_depth = 1e-4;
+/// Of the smaller body's size: bodies in ODE that have moved by less keep their contacts (Request::carry_motion).
+/// Stacks drifted as little with it as without, and ten times as far with 1e-4. Test: Bricks.CreepingAddsUp.
+inline constexpr double resting_motion = 1e-5;
 /// Cosine below which a surface is a wall, whose slope tells nothing of where an overlap gets deeper.
 inline constexpr double steep = 0.05;
 /// An overlap that changes by less than this part of itself across the patch is level.

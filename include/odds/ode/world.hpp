@@ -9,6 +9,7 @@
 
 #include "odds/math/error.hpp"
 #include "odds/math/pose.hpp"
+#include "odds/math/tolerances.hpp"
 #include "odds/ode/meeting.hpp"
 #include "odds/query/answer.hpp"
 #include "odds/query/request.hpp"
@@ -44,7 +45,7 @@ struct WorldOptions {
   [[nodiscard]] static query::Request with_contacts(int count) {
     query::Request request;
     request.max_contacts = count;
-    request.carry_motion = 1e-5;
+    request.carry_motion = tolerances::resting_motion;
     return request;
   }
 
