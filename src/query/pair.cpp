@@ -290,7 +290,7 @@ bool carry_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, co
   const double size = std::min(pair.a->mesh().size(), pair.b->mesh().size());
   if (!pair.carried.serve(pose_b_in_a, request.max_contacts, request.carry_motion * size, size)) return false;
   for (TrianglePair& proof : pair.carried.proofs()) {
-    if (!spending.allows(1)) return false;
+    if (!spending.allows(1) || !spending.may_go_on_after(2)) return false;
     spending.spend_triangle_pairs(1);
     if (!meshes.meet(proof)) continue;
     std::swap(proof, pair.carried.proofs().front());  // the next run's first
