@@ -80,7 +80,9 @@ Result<std::unique_ptr<SamePoses>> SamePoses::make(const Scene& scene, const std
   leads.use_device = [heard = all->hand_](std::unique_ptr<haptics::Device> device) -> std::unique_ptr<haptics::Device> {
     return std::make_unique<Listener>(std::move(device), heard);
   };
-  Result<Run> leader = make_run(scene, query::Budget::unlimited(), leads);
+  Scene exact = scene;
+  exact.query.carry_motion = 0.0;
+  Result<Run> leader = make_run(std::move(exact), query::Budget::unlimited(), leads);
   if (!leader) return leader.error();
   all->leader_ = std::move(leader).value();
   all->leader_.simulation->device()->enable_forces(true);

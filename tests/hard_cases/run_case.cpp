@@ -69,7 +69,8 @@ class Oracle {
 };
 
 Result<Scene> scene_of(const HardCase& hard_case, const Budget& budget, double seconds, const std::string& folder) {
-  const std::string query = budget.work_units == 0 ? "" : fmt::format("[query]\nwork_units = {}\n", budget.work_units);
+  const std::string query = budget.work_units == 0 ? std::string("[query]\ncarry_motion = 0\n")
+                                                   : fmt::format("[query]\nwork_units = {}\n", budget.work_units);
   return scene::parse_scene(
       fmt::format("format = \"odds.scene/1\"\n[loop]\nseconds = {}\n{}{}", seconds, query, hard_case.scene),
       hard_case.name + ".toml", folder);
