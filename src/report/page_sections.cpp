@@ -138,8 +138,8 @@ std::string page_answers(const RunSummary& s, bool charts) {
 std::string page_forces(const RunSummary& s, bool charts) {
   std::string html = fmt::format(
       "<h2 id=\"forces\">Force and contact</h2>\n<p>Largest force {:.3g} N, largest torque {:.3g} N·m, deepest contact "
-      "{:.3g} mm, "
-      "at most {} contact points. Force and torque as sent to the device, in the world frame, on the hand.</p>\n",
+      "{:.3g} mm, at most {} contact points. Force and torque as sent to the device, in the world frame, on the "
+      "hand.</p>\n",
       s.largest_force_n, s.largest_torque_nm, s.deepest_m * 1e3, s.most_contacts);
   if (!charts) return html;
   html += time_line("chart-force", "Force",

@@ -60,11 +60,11 @@ int oddsFrameBudgetGetSummary(oddsFrameBudgetID budget, oddsFrameSummary* summar
  * waited, and among pairs of like need none has its turns more than four times as rarely as another. One that has not
  * its turn is not called, or, if two meshes touched, gets the contacts that were last made of triangles, moved on with
  * the bodies, as far as time allows (none where the policy for undecided queries is no contact); a body may otherwise
- * sink in for some frames. What the needs leave over goes by importance; what a pair does not use, to the others. The share bounds the
- * collision in addition to the geoms' own budgets. One pair at least is called in every frame. Spaces inside of `space`
- * are searched too, each once, and each pair of geoms is called once. A pair that the broad phase does not give is
- * forgotten. odds allocates nothing here; ODE's hash and sweep-and-prune spaces do. The last error stays as it is.
- * Returns 1, or 0 with an error. */
+ * sink in for some frames. What the needs leave over goes by importance; what a pair does not use, to the others. The
+ * share bounds the collision in addition to the geoms' own budgets. One pair at least is called in every frame. Spaces
+ * inside of `space` are searched too, each once, and each pair of geoms is called once. A pair that the broad phase
+ * does not give is forgotten. odds allocates nothing here; ODE's hash and sweep-and-prune spaces do. The last error
+ * stays as it is. Returns 1, or 0 with an error. */
 int oddsSpaceCollide(dSpaceID space, void* data, dNearCallback* callback, oddsFrameBudgetID budget) ODDS_NOTHROW;
 
 #ifdef __cplusplus
