@@ -24,7 +24,7 @@ struct Settings {
   std::uint32_t k_min = 10;
   int max_contacts = 8;
   double carry_motion = tolerances::resting_motion;
-  query::Method method = query::Method::time_critical;
+  query::Method method = query::Method::incremental;
   query::EstimatorKind estimator = query::EstimatorKind::kinematic;
   int undecided_policy = ODDS_UNDECIDED_HIT;
   double undecided_probability = 0.5;

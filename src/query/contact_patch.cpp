@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <vector>
 
 #include "odds/math/tolerances.hpp"
@@ -16,6 +15,7 @@
 #include "query/patch_select.hpp"
 #include "query/patch_watch.hpp"
 #include "query/patch_witnesses.hpp"
+#include "query/spread_step.hpp"
 
 namespace odds::query {
 namespace {
@@ -49,14 +49,6 @@ struct Patch {
   patch::Chosen chosen;
   bool dropped = false;
 };
-
-/// A step through 0 .. count-1 that visits all, spread out from the start, so that what a short budget leaves is a
-/// sample.
-std::size_t spread_step(std::size_t count) noexcept {
-  auto step = static_cast<std::size_t>(0.618 * static_cast<double>(count));
-  while (step > 1 && std::gcd(step, count) != 1) --step;
-  return std::max<std::size_t>(step, 1);
-}
 
 /// Centroid of the surface that the rim spans, which unlike the mean of the rim does not care how finely it is cut.
 Vec3 span_centre(const patch::Rim& rim, std::span<const std::uint32_t> indices, const Vec3& middle,
@@ -133,10 +125,11 @@ struct PatchBuilder::Scratch {
 
 void PatchBuilder::Scratch::place_pairs(const PatchInput& input, Watch& watch) noexcept {
   const std::size_t count = std::min(input.hits.size(), pairs.size());
+  const std::size_t taken = std::min<std::size_t>(count, input.most_pairs);
   const std::size_t step = count > 0 ? spread_step(count) : 1;
   std::size_t next = 0;
   pair_count = 0;
-  for (std::size_t i = 0; i < count; ++i, next = (next + step) % count) {
+  for (std::size_t i = 0; i < taken; ++i, next = (next + step) % count) {
     if (patch::place(input, input.hits[next], pairs[pair_count])) ++pair_count;
     if (watch.late(i) && pair_count >= least_pairs) break;
   }

@@ -21,21 +21,28 @@ namespace {
 // A pair of triangles in a patch takes 0.3 us, half of it to be found; rays and choice some 25 us whatever their
 // number.
 constexpr double hits_per_microsecond = 3.0;
+constexpr double found_hits_per_microsecond = 6.0;
 constexpr double patch_base_us = 25.0;
 // Fewer may leave a gap in the rim of even two boxes, and the direction of a patch needs all of its rim.
 constexpr double least_hits = 64.0;
+constexpr double most_hits = 65536.0;
 // What a patch takes from hearing of the deadline to its end: a ray or two, and one made hastily of what there is.
 constexpr std::int64_t patch_finish_ns = 6500;
 constexpr std::int64_t hasty_finish_ns = 6500;   ///< of one that is hasty from the start
 constexpr std::int64_t single_finish_ns = 3000;  ///< of a single contact
 constexpr std::int64_t rough_finish_ns = 1500;   ///< of one more rough contact, their direction, and writing the answer
 
+/// Pairs of triangles that a patch has time for.
+std::uint32_t hits_in(double microseconds, double per_microsecond) noexcept {
+  return static_cast<std::uint32_t>(
+      std::clamp(per_microsecond * (microseconds - patch_base_us), least_hits, most_hits));
+}
+
 /// Hits that are wanted: one proves; a patch takes as many as its making has time for.
 std::uint32_t wanted_hits(const Request& request) noexcept {
   if (request.max_contacts <= 1) return 1;
   if (!std::isfinite(request.budget.microseconds)) return no_feature;
-  const double for_hits_us = request.budget.microseconds - patch_base_us;
-  return static_cast<std::uint32_t>(std::clamp(hits_per_microsecond * for_hits_us, least_hits, 65536.0));
+  return hits_in(request.budget.microseconds, hits_per_microsecond);
 }
 
 /// A pose or request that no query can be run with: answered as undecided, never as a NaN.
@@ -62,6 +69,9 @@ void remember_witness(Pair::Implementation& pair) noexcept {
   if (pair.has_witness) pair.witness = pair.hits.pairs().front();
 }
 
+/// Only a search from the roots, the likeliest pair first, may end on probability.
+bool by_probability(const Request& request) noexcept { return request.polygon_free || request.p_min < 1.0; }
+
 template <volume::BoundingVolume V>
 SearchResult search(const Encounter<V>& encounter, const PosedMeshes& meshes, const Request& request,
                     Pair::Implementation& pair, Spending& spending) noexcept {
@@ -71,10 +81,12 @@ SearchResult search(const Encounter<V>& encounter, const PosedMeshes& meshes, co
   if (!encounter.volumes_overlap(0, 0)) return result;
   const std::uint32_t wanted = wanted_hits(request);
   if (request.method == Method::exact && !request.polygon_free) {
+    result.method = Method::exact;
     search_depth_first(encounter, {0, 0, 0.0F}, wanted, pair.hits, spending, result);
     return result;
   }
-  if (request.method == Method::incremental && !request.polygon_free) {
+  if (request.method == Method::incremental && !by_probability(request)) {
+    result.method = Method::incremental;
     if (witness_suffices(meshes, wanted, pair, spending, result)) return result;
     pair.slice.search(encounter, wanted, pair.hits, spending, result);
     remember_witness(pair);
@@ -89,16 +101,21 @@ SearchResult search(const wide::Encounter& encounter, const PosedMeshes& meshes,
   if (encounter.far_apart()) return result;
   const std::uint32_t wanted = wanted_hits(request);
   wide::Task task{encounter, request, wanted, pair.queue, pair.hits, spending, result};
-  if (request.polygon_free || request.method == Method::time_critical) {
-    pair.wide->time_critical(task);
-    return result;
-  }
-  if (request.method == Method::exact) {
+  if (request.method == Method::exact && !request.polygon_free) {
+    result.method = Method::exact;
     pair.wide->depth_first(task, tree::WideTree::root, tree::WideTree::root);
     return result;
   }
+  if (request.method == Method::time_critical || by_probability(request) ||
+      (request.budget.is_limited() && pair.front.pauses())) {
+    pair.wide->time_critical(task);
+    return result;
+  }
+  result.method = Method::incremental;
   if (witness_suffices(meshes, wanted, pair, spending, result)) return result;
   pair.front.move_to(meshes.pose(), encounter.b().reach());
+  task.sample = wanted;
+  if (wanted > 1) task.wanted = no_feature;
   pair.wide->incremental(task, pair.front);
   remember_witness(pair);
   return result;
@@ -217,6 +234,7 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, Pro
     input.previous_position = &pair.previous_position;
   }
   input.known_normal = known_normal;
+  input.most_pairs = hits_in(spending.left_us(), found_hits_per_microsecond);
   input.max_contacts = request.max_contacts;
   if (request.max_contacts > 1) {  // a single contact is asked for its speed
     input.probe_a = {&probe_depth, pair.a.get()};
@@ -229,7 +247,9 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, Pro
   pair.answer.contact_pairs = pair.patches.pairs_used();
   // As many hits as there was time for are a part of them; as many as were asked for, or as are kept, are what was
   // asked.
-  const bool part = ended == Progressed::enough && request.max_contacts > 1 && pair.hits.size() < pair.hits.capacity();
+  const bool part =
+      request.max_contacts > 1 &&
+      ((ended == Progressed::enough && pair.hits.size() < pair.hits.capacity()) || pair.hits.size() > input.most_pairs);
   pair.answer.contacts_complete = pair.patches.finished() && ended != Progressed::spent && !part;
   // A finished patch of a part of the rim has measured its depth, and errs seldom; a hasty one has not.
   const bool measured = pair.patches.finished() && pair.known_depth.known();
@@ -270,7 +290,7 @@ void forecast(const Met& met, const SearchResult& result, const Request& request
   float cell_probability = 0.0F;
   if (!result.shortlist.empty() && pair.hits.empty()) {
     const NodePair& likeliest = result.shortlist.highest();
-    const AnswerOdds& odds = answer_odds[odds_index(pair.a->volume(), request.estimator, request.method)];
+    const AnswerOdds& odds = answer_odds[odds_index(pair.a->volume(), request.estimator, result.method)];
     cell_probability = met.probability(likeliest.a, likeliest.b);
     undecided =
         pair.recalibration(probability_of_hit(odds, remains_of(met, result, spending.so_far(), cell_probability)));

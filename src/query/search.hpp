@@ -14,10 +14,11 @@ inline constexpr std::size_t stack_capacity = 2 * tree::deepest_level + 2;
 /// What a search found besides the hits.
 struct SearchResult {
   Progressed ended = Progressed::finished;
-  bool estimated_hit = false;  ///< k_min pairs reached p_min, or a polygon-free leaf pair was judged a hit
-  float estimate = 0.0F;       ///< the greatest probability that such a pair had
-  std::uint32_t open = 0;      ///< pairs of nodes that were left undecided
-  Shortlist shortlist;         ///< the likeliest of them
+  bool estimated_hit = false;             ///< k_min pairs reached p_min, or a polygon-free leaf pair was judged a hit
+  float estimate = 0.0F;                  ///< the greatest probability that such a pair had
+  std::uint32_t open = 0;                 ///< pairs of nodes that were left undecided
+  Shortlist shortlist;                    ///< the likeliest of them
+  Method method = Method::time_critical;  ///< the order that was followed
 };
 
 /// Notes a pair that is left undecided. The likeliest come first; what finds no room is only counted.

@@ -81,6 +81,11 @@ class Spending {
     if (timed_) contacts_deadline_ns_ = deadline_ns_ - finishing_ns;
   }
   [[nodiscard]] bool may_make_contacts() noexcept { return poll() < contacts_deadline_ns_; }
+  /// Microseconds until the deadline, which may be past; infinite without one.
+  [[nodiscard]] double left_us() noexcept {
+    if (!timed_) return std::numeric_limits<double>::infinity();
+    return static_cast<double>(deadline_ns_ - poll()) * 1e-3;
+  }
 
   /// From the moment that the search was told to stop for want of time until `close`; 0: it was not.
   [[nodiscard]] std::int64_t ending_ns() const noexcept { return ending_ns_; }

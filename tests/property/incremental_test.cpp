@@ -63,6 +63,72 @@ TEST_P(Incremental, SurvivesABudgetThatEndsItAnywhere) {
   }
 }
 
+/// Two spheres with waves that overlap, or nearly.
+math::Pose close_pose(double distance) { return {Mat3::Identity(), Vec3(distance, 0.1, 0)}; }
+
+TEST_P(Incremental, WithContactsSurvivesABudgetThatEndsItAnywhere) {
+  const auto [kind, capacity] = GetParam();
+  const auto shape = Shape::build(testing::wavy_sphere(16), {.volume = kind}).value();
+  auto kept = std::move(Pair::make(shape, shape, {.slice_capacity = capacity})).value();
+  auto fresh = std::move(Pair::make(shape, shape)).value();
+  for (std::uint64_t units = 1; units < 600; ++units) {
+    const math::Pose pose = close_pose(2.1 - 5e-4 * static_cast<double>(units));
+    const Answer a =
+        kept.run(pose, {.method = Method::incremental, .budget = Budget::work(units), .max_contacts = most_contacts});
+    EXPECT_LE(a.cost.node_pairs + a.cost.triangle_pairs, units);
+    if (a.basis == Basis::proved) {
+      ASSERT_EQ(a.verdict, fresh.run(pose, {.method = Method::exact}).verdict) << units;
+    }
+  }
+}
+
+TEST_P(Incremental, InTimeNeverProvesWhatIsNotSo) {
+  const auto [kind, capacity] = GetParam();
+  const auto shape = Shape::build(testing::wavy_sphere(16), {.volume = kind}).value();
+  auto kept = std::move(Pair::make(shape, shape, {.slice_capacity = capacity})).value();
+  auto fresh = std::move(Pair::make(shape, shape)).value();
+  // A clock that jumps over the deadline after some looks: everywhere in turn.
+  struct Jumping {
+    std::int64_t now = 0;
+    int looks = 0;
+  } clock;
+  for (int looks = 1; looks < 400; ++looks) {
+    const math::Pose pose = close_pose(2.02 + 1e-5 * (looks % 7));
+    clock.looks = looks;
+    Request request{.method = Method::incremental, .budget = Budget::time(50.0), .max_contacts = most_contacts};
+    request.budget.clock = {[](void* state) noexcept {
+                              auto& jumping = *static_cast<Jumping*>(state);
+                              jumping.now += --jumping.looks == 0 ? 1'000'000 : 1;
+                              return jumping.now;
+                            },
+                            &clock};
+    const Answer a = kept.run(pose, request);
+    if (a.basis == Basis::proved) {
+      ASSERT_EQ(a.verdict, fresh.run(pose, {.method = Method::exact}).verdict) << looks;
+    }
+  }
+}
+
+TEST(IncrementalRuns, TakeUpWhereTheLastOneWasEnded) {
+  const auto shape = Shape::build(testing::wavy_sphere(40), {.volume = volume::Kind::wide}).value();
+  auto pair = std::move(Pair::make(shape, shape)).value();
+  double distance = 2.2;
+  while (pair.run(close_pose(distance - 1e-3), {.method = Method::exact}).verdict == Verdict::clear) distance -= 1e-3;
+  const math::Pose apart = close_pose(distance);
+  const Answer whole = pair.run(apart, {.method = Method::exact});
+  const std::uint64_t work = whole.cost.node_pairs + whole.cost.triangle_pairs;
+  ASSERT_GT(work, 200U);
+  const std::uint64_t units = work / 5;
+  pair.reset();
+  int runs = 1;
+  while (runs < 30 &&
+         pair.run(apart, {.method = Method::incremental, .budget = Budget::work(units)}).basis != Basis::proved) {
+    ++runs;
+  }
+  EXPECT_GT(runs, 2);
+  EXPECT_LT(runs, 12) << "a fifth of the work a run";
+}
+
 INSTANTIATE_TEST_SUITE_P(AllVolumes, Incremental,
                          ::testing::Combine(::testing::ValuesIn(testing::all_kinds()), ::testing::Values(64U, 16384U)),
                          [](const auto& tested) {

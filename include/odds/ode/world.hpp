@@ -44,6 +44,7 @@ enum class Solver : std::uint8_t {
 struct WorldOptions {
   [[nodiscard]] static query::Request with_contacts(int count) {
     query::Request request;
+    request.method = query::Method::incremental;
     request.max_contacts = count;
     request.carry_motion = tolerances::resting_motion;
     return request;

@@ -59,9 +59,10 @@ struct PatchInput {
   const Vec3* previous_position = nullptr;  ///< where that contact was, in A's frame, or null
   /// Direction of the last patch of bodies that have hardly moved since, or null: that of a patch made in a hurry.
   const Vec3* known_normal = nullptr;
-  int max_contacts = 4;  ///< 1 .. most_contacts (clamped)
-  DepthProbe probe_a;    ///< optional
-  DepthProbe probe_b;    ///< optional
+  std::uint32_t most_pairs = 65536;  ///< of the hits; of more, a sample is taken that is spread over all
+  int max_contacts = 4;              ///< 1 .. most_contacts (clamped)
+  DepthProbe probe_a;                ///< optional
+  DepthProbe probe_b;                ///< optional
 };
 
 /// Makes contacts: at most eight, one normal per patch, the deepest first, then those that span the largest area, so

@@ -64,9 +64,7 @@ class DepthFirst {
   void go_elsewhere() noexcept {
     if (task_.hits.size() == hits_ || open_.size < 2 || open_.size > wide_stack_capacity) return;
     hits_ = task_.hits.size();
-    constexpr std::uint64_t golden = 0x9E3779B9U;  // of 2^32: no index comes again soon
-    const std::uint64_t fraction = (hits_ * golden) & 0xFFFFFFFFU;
-    open_.bring_up<ranked>(static_cast<std::size_t>((fraction * (open_.size - 1)) >> 32U));
+    open_.bring_up<ranked>(elsewhere(hits_, open_.size - 1));
   }
 
   /// The deepest overlap is pushed last and so visited first: it is where a hit is found soonest.

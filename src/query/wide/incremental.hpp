@@ -1,6 +1,10 @@
 // The incremental search: from a kinetic front.
 #pragma once
 
+#include <algorithm>
+#include <limits>
+
+#include "query/spread_step.hpp"
 #include "query/wide/opening.hpp"
 
 namespace odds::query::wide {
@@ -12,8 +16,8 @@ class Incremental {
  public:
   static void run(Task& task, KineticFront& front) noexcept {
     Incremental search(task, front);
-    search.run();
-    front.note_end();
+    search.outcome_.resume_at = search.run();
+    front.note_end(search.outcome_);
   }
 
  private:
@@ -22,28 +26,86 @@ class Incremental {
 
   Incremental(Task& task, KineticFront& front) noexcept : task_(task), met_(task.encounter), front_(front) {}
 
-  void run() noexcept {
+  /// The entries that met, then the others from where the last search stopped. Returns where this one stopped.
+  std::uint32_t run() noexcept {
     const std::uint32_t kept = front_.size();
-    for (std::uint32_t i = 0; i < kept; ++i) {
+    const std::uint32_t crossing = front_.crossing();
+    const std::uint32_t middle = std::clamp(front_.resume_at(), crossing, kept);
+    const bool all = look_at_crossing(crossing);
+    if (task_.result.ended == Progressed::spent) {
+      leave_rest_open(middle, kept);
+      return middle;
+    }
+    std::uint32_t stopped = look_at(middle, kept);
+    if (stopped == kept) {
+      stopped = look_at(crossing, middle);
+      outcome_.explored = stopped == middle && task_.result.ended != Progressed::spent;
+    }
+    if (!all && task_.result.ended == Progressed::finished) {
+      task_.result.ended = task_.hits.empty() ? Progressed::spent : Progressed::enough;
+    }
+    return stopped;
+  }
+
+  /// In an order that is spread over all, so that an early end leaves a sample of the rim. False if not all were looked
+  /// at.
+  bool look_at_crossing(std::uint32_t count) noexcept {
+    const auto step = static_cast<std::uint32_t>(spread_step(count));
+    for (std::uint32_t k = 0, i = 0; k < count; ++k, i = (i + step) % count) {
+      if (task_.hits.size() >= task_.sample) {
+        if (!front_.is_fresh()) last_unit_ = spent() + spent() / 2;
+        return false;
+      }
+      if (!may_go_on() || !look_at(i)) return false;
+      ++outcome_.looked_at;
+      if (front_.entry(i).met) ++outcome_.still_met;
+    }
+    return true;
+  }
+
+  [[nodiscard]] std::uint64_t spent() const noexcept {
+    const Cost& cost = task_.spending.so_far();
+    return cost.node_pairs + cost.triangle_pairs;
+  }
+
+  /// Returns the first entry that was not done with, or `end`.
+  std::uint32_t look_at(std::uint32_t begin, std::uint32_t end) noexcept {
+    for (std::uint32_t i = begin; i < end && task_.result.ended != Progressed::spent; ++i) {
       if (!front_.expired(i)) {
         if (i % entries_between_polls == entries_between_polls - 1 && !task_.spending.may_go_on()) {
           task_.result.ended = Progressed::spent;
-          return leave_rest_open(i + 1, kept);
+          leave_rest_open(i + 1, end);
+          return i + 1;
         }
         continue;
       }
-      if (!may_go_on()) return leave_rest_open(i, kept);
-      KineticFront::Entry& entry = front_.entry(i);
-      if (met_.are_leaves(entry.a, entry.b)) {
-        front_.set_expiry(i, KineticFront::at_once);
-        double expiry = KineticFront::at_once;
-        if (!test_leaves(entry.a, entry.b, expiry)) return leave_rest_open(i + 1, kept);
-        front_.set_expiry(i, expiry);
-      } else {
-        front_.set_expiry(i, open(entry));
+      if (spent() >= last_unit_) return i;
+      if (!may_go_on()) {
+        leave_rest_open(i, end);
+        return i;
       }
-      if (!go_down()) return leave_rest_open(i + 1, kept);
+      if (!look_at(i)) {
+        leave_rest_open(i + 1, end);
+        return i;
+      }
     }
+    return end;
+  }
+
+  /// Tests one entry anew and goes down from it. False ends the search.
+  bool look_at(std::uint32_t i) noexcept {
+    KineticFront::Entry& entry = front_.entry(i);
+    if (!met_.are_leaves(entry.a, entry.b)) {
+      front_.set_expiry(i, open(entry));
+      return go_down();
+    }
+    front_.set_expiry(i, KineticFront::at_once);
+    double expiry = KineticFront::at_once;
+    const std::size_t hits = task_.hits.size();
+    const bool goes_on = test_leaves(entry.a, entry.b, expiry);
+    front_.set_met(i, task_.hits.size() > hits || (!goes_on && entry.met));
+    if (goes_on) front_.set_expiry(i, expiry);
+    return goes_on;
   }
 
   /// Notes what has expired and was not looked at, among the next of the `kept` ones.
@@ -67,8 +129,14 @@ class Incremental {
   double open(KineticFront::Entry& entry) noexcept {
     const Expanded<L> expanded = expand<L>(met_, {{entry.a, entry.b}});
     task_.spending.spend_node_pairs(wide_lanes);
-    stack_.add<false>(expanded, expanded.lanes & ~entry.opened);
-    entry.opened |= expanded.lanes;
+    const unsigned lanes = expanded.lanes & ~static_cast<unsigned>(entry.opened);
+    // Taken first is what comes last: leaves, then the deepest overlap, where a hit is found soonest.
+    const unsigned inner = lanes & ~expanded.leaf_lanes;
+    const unsigned deepest = 1U << L::least(expanded.gaps);
+    stack_.add<false>(expanded, inner & ~deepest);
+    stack_.add<false>(expanded, inner & deepest);
+    stack_.add<false>(expanded, lanes & expanded.leaf_lanes);
+    entry.opened = static_cast<std::uint16_t>(entry.opened | expanded.lanes);
     alignas(64) float gap[wide_lanes];
     L::store(gap, expanded.gaps);
     float least = 1e30F;  // empty lanes are farther
@@ -85,16 +153,26 @@ class Incremental {
       const SlotPair pair = stack_.take();
       KineticFront::Entry entry{pair.of[0], pair.of[1], 0};
       double expiry = KineticFront::at_once;
+      const std::size_t hits = task_.hits.size();
       bool goes_on = true;
       if (met_.are_leaves(entry.a, entry.b)) {
         goes_on = test_leaves(entry.a, entry.b, expiry);
       } else {
         expiry = open(entry);
       }
+      entry.met = task_.hits.size() > hits;
       front_.add(entry, expiry);
       if (!goes_on) return leave();
+      if (entry.met && task_.wanted > 1) go_elsewhere();
     }
     return true;
+  }
+
+  /// After a hit, to an open pair that follows no order, as DepthFirst does: what is found until an early end comes
+  /// from all over the rim. Going down from there needs as much room again at most.
+  void go_elsewhere() noexcept {
+    if (stack_.size < 2 || stack_.size > wide_stack_capacity) return;
+    stack_.bring_up<false>(elsewhere(task_.hits.size(), stack_.size - 1));
   }
 
   bool leave() noexcept {
@@ -114,12 +192,12 @@ class Incremental {
   }
 
   bool test_leaves(Slot a, Slot b, double& expiry) noexcept {
-    const std::size_t hits = task_.hits.size();
-    if (!visit_leaves<L>(task_, a, b)) {
+    const LeafPairs pairs = compare_leaves<L>(task_, a, b);
+    if (!visit_triangles(task_, a, b, pairs)) {
       if (task_.result.ended == Progressed::spent) leave_open<L>(task_, {a, b, unranked});
       return false;
     }
-    if (task_.hits.size() == hits) {
+    if (pairs.rows == 0) {  // else there is no gap that single precision can see
       const float gap = gap_of_leaves(a, b);
       if (gap > 0.0F) expiry = front_.travelled() + static_cast<double>(gap);
     }
@@ -135,7 +213,9 @@ class Incremental {
   Task& task_;
   const Encounter& met_;
   KineticFront& front_;
-  Slot slots_[2][wide_stack_capacity];
+  KineticFront::Outcome outcome_;
+  std::uint64_t last_unit_ = std::numeric_limits<std::uint64_t>::max();  ///< for what is not yet known to meet
+  Slot slots_[2][2 * wide_stack_capacity];
   SlotPairs stack_{{slots_[0], slots_[1]}};
 };
 

@@ -2,8 +2,11 @@
 // move before each must be tested again.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "odds/math/motion.hpp"
@@ -16,24 +19,39 @@ namespace odds::query::wide {
 /// instead of a test at every call. A pair that was found apart by a gap stays apart until some point of B has moved by
 /// that gap; `travelled` sums up bounds of that motion, and an entry is looked at only once `travelled` reaches its
 /// expiry. What was not looked into, because the search ended early, expires at once. Fixed capacity.
+///
+/// The pairs of leaves that met in the last search stand first: surfaces that cross go on crossing, so that even a
+/// search that is soon ended finds most of the rim, and the others wait their turn from where the last search stopped.
 class KineticFront {
  public:
   struct Entry {
     tree::Slot a = 0;
     tree::Slot b = 0;
-    std::uint32_t opened = 0;  ///< bits of the lanes below which other entries are
+    std::uint16_t opened = 0;  ///< bits of the lanes below which other entries are
+    bool met = false;          ///< two leaves with triangles that met when they were last looked at
   };
   static constexpr double at_once = -std::numeric_limits<double>::infinity();
 
   explicit KineticFront(std::uint32_t capacity) : entries_(capacity), expiries_(capacity) {}
 
-  void reset() noexcept { size_ = 0; }
+  void reset() noexcept {
+    size_ = 0;
+    crossing_ = 0;
+    resume_at_ = 0;
+  }
 
-  /// Notes where B stands now; `reach` bounds the distance of B's surface from its tree's origin. Starts from the roots
-  /// if there is nothing yet, if the last search found no room, or if much of what is kept is of no use any more.
+  /// Whether it is better left alone in this run, within a limit: it was given up a while ago.
+  [[nodiscard]] bool pauses() noexcept {
+    if (pause_ == 0) return false;
+    --pause_;
+    return true;
+  }
+  /// Notes where B stands now;  /// Notes where B stands now;  /// Notes where B stands now; `reach` bounds the
+  /// distance of B's surface from its tree's origin. Starts from the roots if there is nothing yet, if the last search
+  /// found no room, or if much of what is kept is of no use any more.
   void move_to(const math::Pose& pose, double reach) noexcept {
-    if (size_ == 0 || overflowed_ || size_ > 2 * fresh_size_ + least_size) {
-      size_ = 0;
+    if (size_ == 0 || overflowed_ || (!fresh_ && size_ > 2 * fresh_size_ + least_size)) {
+      reset();
       overflowed_ = false;
       fresh_ = true;
       travelled_ = 0.0;
@@ -43,13 +61,46 @@ class KineticFront {
     }
     pose_ = pose;
   }
-  /// A search from the roots has ended: what it left is the measure of what is worth keeping.
-  void note_end() noexcept {
+  /// How a search from a front went.
+  struct Outcome {
+    std::uint32_t resume_at = 0;  ///< where the next one begins, after the entries that met
+    bool explored = false;        ///< nothing is left that had expired
+    std::uint32_t looked_at = 0;  ///< of the entries that met before
+    std::uint32_t still_met = 0;
+  };
+  /// A search has ended. The first to leave nothing unexplored after one from the roots leaves what is the measure of
+  /// what is worth keeping.
+  void note_end(const Outcome& outcome) noexcept {
     if (fresh_) fresh_size_ = size_;
-    fresh_ = false;
+    fresh_ = fresh_ && !outcome.explored;
+    if (is_no_use(outcome)) return give_up();
+    for (std::uint32_t i = 0; i < crossing_;) {
+      if (entries_[i].met) {
+        ++i;
+      } else {
+        swap(i, --crossing_);
+      }
+    }
+    if (newly_met_ <= new_.size()) {
+      for (std::uint32_t k = 0; k < newly_met_; ++k) bring_forward(new_[k]);
+    } else {
+      for (std::uint32_t i = crossing_; i < size_; ++i) bring_forward(i);
+    }
+    newly_met_ = 0;
+    resume_at_ = outcome.resume_at;
   }
 
+  /// Whether no search has finished since the last one from the roots: there may be more that meets.
+  [[nodiscard]] bool is_fresh() const noexcept { return fresh_; }
   [[nodiscard]] std::uint32_t size() const noexcept { return size_; }
+  /// How many entries, from the first on, met in the last search.
+  [[nodiscard]] std::uint32_t crossing() const noexcept { return crossing_; }
+  [[nodiscard]] std::uint32_t resume_at() const noexcept { return resume_at_; }
+  /// Whether the two leaves of an entry have triangles that meet.
+  void set_met(std::uint32_t index, bool met) noexcept {
+    if (met && !entries_[index].met) note_new(index);
+    entries_[index].met = met;
+  }
   [[nodiscard]] double travelled() const noexcept { return travelled_; }
   [[nodiscard]] bool expired(std::uint32_t index) const noexcept { return !(travelled_ < expiries_[index]); }
   [[nodiscard]] Entry& entry(std::uint32_t index) noexcept { return entries_[index]; }
@@ -60,17 +111,61 @@ class KineticFront {
       overflowed_ = true;  // searched, but not kept: the next search starts from the roots
       return;
     }
+    if (entry.met) note_new(size_);
     entries_[size_] = entry;
     expiries_[size_++] = expiry;
   }
 
  private:
   static constexpr std::uint32_t least_size = 64;
+  static constexpr std::uint32_t first_pause = 64;
+  static constexpr std::uint32_t longest_pause = 8192;
+
+  void swap(std::uint32_t i, std::uint32_t j) noexcept {
+    std::swap(entries_[i], entries_[j]);
+    std::swap(expiries_[i], expiries_[j]);
+  }
+  /// Where most runs end with something unexplored, and what met does not meet for long, the likeliest pairs from the
+  /// roots tell more. Means over some 16 runs.
+  [[nodiscard]] bool is_no_use(const Outcome& outcome) noexcept {
+    constexpr double weight = 1.0 / 16.0;
+    explored_ += weight * ((outcome.explored ? 1.0 : 0.0) - explored_);
+    if (outcome.looked_at > 0) {
+      const double still = static_cast<double>(outcome.still_met) / static_cast<double>(outcome.looked_at);
+      still_met_ += weight * (still - still_met_);
+    }
+    if (explored_ > 0.9) next_pause_ = first_pause;
+    return explored_ < 0.5 && still_met_ < 0.95;
+  }
+  /// Longer each time, until it is of use again.
+  void give_up() noexcept {
+    reset();
+    newly_met_ = 0;
+    explored_ = 0.75;  // on trial: soon given up again, or trusted
+    still_met_ = 1.0;
+    pause_ = next_pause_;
+    next_pause_ = std::min(2 * next_pause_, longest_pause);
+  }
+  void note_new(std::uint32_t index) noexcept {
+    if (newly_met_ < new_.size()) new_[newly_met_] = index;
+    ++newly_met_;
+  }
+  void bring_forward(std::uint32_t i) noexcept {
+    if (i >= crossing_ && entries_[i].met) swap(i, crossing_++);
+  }
 
   std::vector<Entry> entries_;
   std::vector<double> expiries_;
   std::uint32_t size_ = 0;
   std::uint32_t fresh_size_ = 0;
+  std::uint32_t crossing_ = 0;
+  std::uint32_t resume_at_ = 0;
+  std::uint32_t newly_met_ = 0;
+  double explored_ = 1.0;    ///< share of runs
+  double still_met_ = 1.0;   ///< share of entries that met, one run later
+  std::uint32_t pause_ = 0;  ///< runs
+  std::uint32_t next_pause_ = first_pause;
+  std::array<std::uint32_t, 64> new_{};  ///< the first of them; of more, all entries are looked through
   bool fresh_ = false;
   bool overflowed_ = false;
   double travelled_ = 0.0;

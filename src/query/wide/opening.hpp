@@ -13,21 +13,26 @@ inline constexpr std::size_t wide_stack_capacity = 2 * wide_lanes * 2 * (tree::d
 /// Work units between two looks at the clock: some 100 ns.
 inline constexpr std::uint32_t units_between_polls = 16;
 
-/// Tests all triangles of two leaves. False ends the search (the result says why).
+/// The triangles of two leaves that may meet.
 template <class L>
-ODDS_LANES_INLINE bool visit_leaves(Task& task, Slot slot_a, Slot slot_b) noexcept {
+[[nodiscard]] ODDS_LANES_INLINE LeafPairs compare_leaves(Task& task, Slot slot_a, Slot slot_b) noexcept {
   const Encounter& met = task.encounter;
-  const PlacedLeaf in_a = met.leaf(0, slot_a);
-  const PlacedLeaf in_b = met.leaf(1, slot_b);
   float shift[3];
   met.shift(slot_a, slot_b, shift);
-  const LeafPairs pairs = leaf_pairs<L>(in_a, in_b, met.turn_into(0), shift, met.margin());
+  const LeafPairs pairs =
+      leaf_pairs<L>(met.leaf(0, slot_a), met.leaf(1, slot_b), met.turn_into(0), shift, met.margin());
   task.spending.spend_triangle_pairs(pairs.tested);
+  return pairs;
+}
+
+/// Tests them exactly. False ends the search (the result says why).
+ODDS_LANES_INLINE bool visit_triangles(Task& task, Slot slot_a, Slot slot_b, const LeafPairs& pairs) noexcept {
+  const Encounter& met = task.encounter;
   for (unsigned rows = pairs.rows; rows != 0; rows &= rows - 1U) {
     const auto row = static_cast<unsigned>(std::countr_zero(rows));
     for (unsigned lanes = pairs.lanes_a[row]; lanes != 0; lanes &= lanes - 1U) {
-      const std::uint32_t a = in_a.leaf.triangle[std::countr_zero(lanes)];
-      const std::uint32_t b = in_b.leaf.triangle[row];
+      const std::uint32_t a = met.leaf(0, slot_a).leaf.triangle[std::countr_zero(lanes)];
+      const std::uint32_t b = met.leaf(1, slot_b).leaf.triangle[row];
       if (!task.spending.allows(1) || !task.spending.may_go_on()) {
         task.result.ended = Progressed::spent;
         return false;
@@ -43,6 +48,12 @@ ODDS_LANES_INLINE bool visit_leaves(Task& task, Slot slot_a, Slot slot_b) noexce
     }
   }
   return true;
+}
+
+/// Tests all triangles of two leaves. False ends the search (the result says why).
+template <class L>
+ODDS_LANES_INLINE bool visit_leaves(Task& task, Slot slot_a, Slot slot_b) noexcept {
+  return visit_triangles(task, slot_a, slot_b, compare_leaves<L>(task, slot_a, slot_b));
 }
 
 /// Two slots, by side.
@@ -139,5 +150,12 @@ struct SlotPairs {
     return {{of[0][size], of[1][size]}};
   }
 };
+
+/// An index below `count` that follows no order: the golden section of the number of hits so far.
+[[nodiscard]] inline std::size_t elsewhere(std::size_t hits, std::size_t count) noexcept {
+  constexpr std::uint64_t golden = 0x9E3779B9U;  // of 2^32: no index comes again soon
+  const std::uint64_t fraction = (hits * golden) & 0xFFFFFFFFU;
+  return static_cast<std::size_t>((fraction * count) >> 32U);
+}
 
 }  // namespace odds::query::wide

@@ -23,6 +23,9 @@ struct Task {
   HitList& hits;  ///< triangles by their indices in the meshes
   Spending& spending;
   SearchResult& result;
+  /// Of the incremental search: as many hits of what met before stand for all of it. The rest of its time goes to what
+  /// may have begun to meet.
+  std::uint32_t sample = no_feature;
 };
 
 /// The same for the distance.

@@ -1,0 +1,94 @@
+// What a kinetic front keeps between runs: the pairs that met stand first, and a front that does not help rests.
+#include "query/wide/kinetic_front.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace odds::query::wide {
+namespace {
+
+constexpr double reach = 1.0;
+
+/// A front of `size` entries whose slots of A are their numbers, after a run from the roots.
+KineticFront filled(std::uint32_t size) {
+  KineticFront front(size + 8);
+  front.move_to({}, reach);
+  for (std::uint32_t i = 1; i < size; ++i) front.add({i, 0, 0}, 1.0);
+  front.note_end({.explored = true});
+  return front;
+}
+
+std::set<tree::Slot> slots(KineticFront& front, std::uint32_t count) {
+  std::set<tree::Slot> found;
+  for (std::uint32_t i = 0; i < count; ++i) found.insert(front.entry(i).a);
+  return found;
+}
+
+TEST(KineticFront, WhatMetStandsFirst) {
+  KineticFront front = filled(100);
+  for (const std::uint32_t i : {7U, 40U, 99U}) front.set_met(i, true);
+  front.note_end({.explored = true});
+  ASSERT_EQ(front.crossing(), 3U);
+  EXPECT_EQ(slots(front, 3), (std::set<tree::Slot>{7, 40, 99}));
+  EXPECT_EQ(slots(front, front.size()).size(), 100U) << "an entry was lost or doubled";
+}
+
+TEST(KineticFront, WhatMeetsNoMoreStandsBehind) {
+  KineticFront front = filled(100);
+  for (const std::uint32_t i : {7U, 40U, 99U}) front.set_met(i, true);
+  front.note_end({.explored = true});
+  std::uint32_t parted = 0;
+  while (front.entry(parted).a != 40) ++parted;
+  front.set_met(parted, false);
+  front.set_met(50, true);
+  const tree::Slot newly = front.entry(50).a;
+  front.note_end({.explored = true});
+  ASSERT_EQ(front.crossing(), 3U);
+  EXPECT_EQ(slots(front, 3), (std::set<tree::Slot>{7, 99, newly}));
+  EXPECT_EQ(slots(front, front.size()).size(), 100U);
+}
+
+TEST(KineticFront, ManyThatMeetAtOnceAllStandFirst) {
+  KineticFront front = filled(400);
+  for (std::uint32_t i = 100; i < 300; ++i) front.set_met(i, true);
+  front.note_end({.explored = true});
+  ASSERT_EQ(front.crossing(), 200U);
+  const std::set<tree::Slot> first = slots(front, 200);
+  EXPECT_EQ(*first.begin(), 100U);
+  EXPECT_EQ(*first.rbegin(), 299U);
+}
+
+TEST(KineticFront, RestsWhereItNeitherEndsNorLasts) {
+  KineticFront front = filled(100);
+  int runs = 0;
+  while (!front.pauses() && runs < 1000) {
+    front.move_to({}, reach);
+    front.note_end({.explored = false, .looked_at = 10, .still_met = 7});
+    ++runs;
+  }
+  EXPECT_GT(runs, 5) << "one bad run is no reason";
+  EXPECT_LT(runs, 50);
+  EXPECT_EQ(front.size(), 0U) << "what it knew is old when it comes back";
+  int rest = 1;
+  while (front.pauses()) ++rest;
+  for (int again = 0; again < runs; ++again) {
+    front.move_to({}, reach);
+    front.note_end({.explored = false, .looked_at = 10, .still_met = 7});
+  }
+  int longer = 0;
+  while (front.pauses()) ++longer;
+  EXPECT_GT(longer, rest);
+}
+
+TEST(KineticFront, StaysWhereWhatMetGoesOnMeeting) {
+  KineticFront front = filled(100);
+  for (int run = 0; run < 200; ++run) {
+    front.move_to({}, reach);
+    front.note_end({.explored = false, .looked_at = 40, .still_met = 40});
+    ASSERT_FALSE(front.pauses()) << run;
+  }
+}
+
+}  // namespace
+}  // namespace odds::query::wide
