@@ -117,7 +117,7 @@ TEST_F(GeomTest, SettingsHaveTheDocumentedDefaultsAndKeepWhatIsSet) {
   EXPECT_EQ(dGeomOddsMeshGetPMin(geom), 1);
   EXPECT_EQ(dGeomOddsMeshGetKMin(geom), 10);
   EXPECT_EQ(dGeomOddsMeshGetMaxContacts(geom), 8);
-  EXPECT_EQ(dGeomOddsMeshGetMethod(geom), ODDS_METHOD_TIME_CRITICAL);
+  EXPECT_EQ(dGeomOddsMeshGetMethod(geom), ODDS_METHOD_INCREMENTAL);
   EXPECT_EQ(dGeomOddsMeshGetEstimator(geom), ODDS_ESTIMATOR_KINEMATIC);
   EXPECT_EQ(dGeomOddsMeshGetUndecidedPolicy(geom), ODDS_UNDECIDED_HIT);
   EXPECT_EQ(dGeomOddsMeshGetUndecidedProbability(geom), 0.5);
