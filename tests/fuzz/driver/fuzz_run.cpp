@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <charconv>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
@@ -23,6 +24,28 @@ extern "C" void report_hang(int) {
   (void)!write(STDERR_FILENO, "\n", 1);
   _exit(1);
 }
+
+/// A line on stderr from time to time: short runs say nothing, long ones how long they will take.
+class Progress {
+ public:
+  explicit Progress(std::uint64_t count) : count_(count) {}
+
+  void show(std::uint64_t done) {
+    const auto now = std::chrono::steady_clock::now();
+    if (now - last_ < std::chrono::seconds(10)) return;
+    last_ = now;
+    const double passed_s = std::chrono::duration<double>(now - start_).count();
+    const double left_s = passed_s / static_cast<double>(done) * static_cast<double>(count_ - done);
+    std::fprintf(stderr, "%llu of %llu inputs (%.1f %%) after %.0f s, %.0f s to go\n",
+                 static_cast<unsigned long long>(done), static_cast<unsigned long long>(count_),
+                 100.0 * static_cast<double>(done) / static_cast<double>(count_), passed_s, left_s);
+  }
+
+ private:
+  std::uint64_t count_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::chrono::steady_clock::time_point last_ = start_;
+};
 
 }  // namespace
 
@@ -48,11 +71,16 @@ bool read_options(int argc, char** argv, bool has_seeds, RunOptions& options) {
 bool run_inputs(const RunOptions& options, unsigned hang_s, const std::string& failure_file,
                 const std::function<Judged(std::uint64_t n)>& judge) {
   constexpr std::uint64_t inputs_per_alarm = 64;  // a system call for each would be felt
+  Progress progress(options.count);
   std::signal(SIGALRM, &report_hang);
   for (std::uint64_t n = options.first; n < options.first + options.count; ++n) {
     std::snprintf(current, sizeof current, "%llu of seed %llu", static_cast<unsigned long long>(n),
                   static_cast<unsigned long long>(options.seed));
-    if ((n - options.first) % inputs_per_alarm == 0) alarm(hang_s);
+    const std::uint64_t done = n - options.first;
+    if (done % inputs_per_alarm == 0) {
+      alarm(hang_s);
+      if (done > 0) progress.show(done);
+    }
     const Judged judged = judge(n);
     if (judged.wrong.empty()) continue;
     std::ofstream(failure_file, std::ios::binary) << judged.content;

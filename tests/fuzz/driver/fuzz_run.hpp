@@ -25,7 +25,8 @@ struct Judged {
 };
 
 /// Judges the inputs one after the other. An input on which more than `hang_s` seconds pass ends the program; one with
-/// something wrong is written to `failure_file` and ends the run. Both are named on stderr. True if all are good.
+/// something wrong is written to `failure_file` and ends the run. Both are named on stderr; so is, every ten seconds,
+/// how far the run is. True if all are good.
 [[nodiscard]] bool run_inputs(const RunOptions& options, unsigned hang_s, const std::string& failure_file,
                               const std::function<Judged(std::uint64_t n)>& judge);
 
