@@ -182,7 +182,7 @@ int compare(const CompareArguments& arguments) {
 void add_compare(CLI::App& app, Action& action) {
   auto arguments = std::make_shared<CompareArguments>();
   CLI::App* command = app.add_subcommand(
-      "compare", "one scene under several budgets in simulated time: force error, noise and onset of contact");
+      "compare", "Compare one scene under several budgets in simulated time: force error, noise and onset of contact");
   command->add_option("scene", arguments->scene, "the scene, a TOML file with a device")->required();
   command->add_option("--budgets-us", arguments->budgets_us, "of a query, microseconds, as 20 work units each")
       ->delimiter(',')

@@ -53,7 +53,7 @@ int explain(const ExplainArguments& arguments) {
 void add_explain(CLI::App& app, Action& action) {
   auto arguments = std::make_shared<ExplainArguments>();
   CLI::App* command =
-      app.add_subcommand("explain", "which effects a scene has on, which line asked, what each costs per tick");
+      app.add_subcommand("explain", "Show which effects a scene has on, which line asked, what each costs per tick");
   command->add_option("scene", arguments->scene, "the scene, a TOML file")->required();
   command->add_option("--samples", arguments->samples, "ticks at which the costs are measured")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000}))

@@ -53,7 +53,7 @@ int import_scene(const ImportArguments& arguments) {
 
 void add_import(CLI::App& app, Action& action) {
   auto arguments = std::make_shared<ImportArguments>();
-  CLI::App* command = app.add_subcommand("import", "make a scene from a URDF or SDFormat description");
+  CLI::App* command = app.add_subcommand("import", "Make a scene from a URDF or SDFormat description");
   command->add_option("description", arguments->description, "a URDF or SDFormat file")->required();
   command->add_option("--out", arguments->out, "folder for scene.toml and its meshes")->capture_default_str();
   command->add_option("--package", arguments->packages,

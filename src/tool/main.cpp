@@ -3,10 +3,12 @@
 
 #include <cstdio>
 #include <exception>
+#include <string>
 
 #include "tool/command.hpp"
 #include "tool/one_line.hpp"
 #include "tool/standard_streams.hpp"
+#include "tool/usage_error.hpp"
 
 namespace odds::tool {
 
@@ -30,6 +32,7 @@ int main(int argc, char** argv) {
   odds::tool::occupy_closed_streams();
   CLI::App app{"odds: mesh collision inside a hard microsecond budget, with a probability where proof did not fit"};
   app.require_subcommand(1);
+  app.set_version_flag("--version", std::string("odds ") + ODDS_VERSION, "Print the version and exit");
   odds::tool::Action action;
   odds::tool::add_inspect(app, action);
   odds::tool::add_build(app, action);
@@ -43,6 +46,11 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& parse_error) {
+    const std::string unknown = parse_error.get_exit_code() == 0 ? "" : odds::tool::unknown_word(app);
+    if (!unknown.empty()) {
+      fmt::print(stderr, "{}\nRun with --help for more information.\n", unknown);
+      return odds::tool::exit_usage;
+    }
     if (app.exit(parse_error) != 0) return odds::tool::exit_usage;
     return odds::tool::with_output_written(odds::tool::exit_good);
   }

@@ -135,7 +135,7 @@ int run(const RunArguments& arguments) {
 
 void add_run(CLI::App& app, Action& action) {
   auto arguments = std::make_shared<RunArguments>();
-  CLI::App* command = app.add_subcommand("run", "run the haptic loop on a scene and report its latencies and forces");
+  CLI::App* command = app.add_subcommand("run", "Run the haptic loop on a scene and report its latencies and forces");
   command->add_option("scene", arguments->scene, "the scene, a TOML file")->required();
   command->add_option("--seconds", arguments->seconds, "how long to run (default: as the scene says)")
       ->check(positive_and_finite());

@@ -70,6 +70,26 @@ TEST_F(HostileUse, AnEmptyNameOfAnOutputIsRefusedAndLeavesNothing) {
   EXPECT_EQ(files(), before);
 }
 
+TEST_F(HostileUse, AMistypedCommandOrOptionIsNamedWithTheNearest) {
+  const std::vector<std::pair<std::string, std::string>> mistyped = {
+      {"inspekt made:box", "'inspekt' is no command of odds; did you mean 'inspect'?"},
+      {"--verson", "'--verson' is no command of odds; did you mean '--version'?"},
+      {"xyzzyxyzzy", "'xyzzyxyzzy' is no command of odds\n"},
+      {"inspect made:box --jsn", "'--jsn' is no argument of odds inspect; did you mean '--json'?"},
+      {"inspect made:box made:gear", "'made:gear' is no argument of odds inspect\n"}};
+  for (const auto& [line, sentence] : mistyped) {
+    const Ran ran = run_tool(folder, line);
+    EXPECT_EQ(ran.status, 2) << line;
+    EXPECT_TRUE(ran.errors.starts_with(sentence)) << ran.errors;
+  }
+  const Ran nothing = run_tool(folder, "");
+  EXPECT_EQ(nothing.status, 2);
+  EXPECT_NE(nothing.errors.find("A subcommand is required"), std::string::npos) << nothing.errors;
+  const Ran version = run_tool(folder, "--version");
+  EXPECT_EQ(version.status, 0);
+  EXPECT_TRUE(version.output.starts_with("odds 0.")) << version.output;
+}
+
 TEST_F(HostileUse, AFullOrClosedStandardOutputIsAnError) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full";
   // The tool's own redirections come before those that the test appends, so that each stands in a shell of its own.
