@@ -50,6 +50,8 @@ bool Renderer::begin() noexcept {
   pairs_left_out_ = 0;
   frame_overshoot_us_ = 0.0;
   effects_->reset();
+  world_->abandon_step();
+  parts_done_ = 0;
   if (!hand_) return true;
   DeviceState state;
   if (!hand_->device->read(0, state) || !finite(state)) return false;
@@ -118,8 +120,23 @@ std::uint32_t Renderer::steps_needed() const noexcept {
   return static_cast<std::uint32_t>(std::clamp(wanted, 1.0, static_cast<double>(substeps_.most)));
 }
 
+// Effects act once in a step: forces stay on the bodies until the last part solves.
+void Renderer::step_part(TickView& tick) noexcept {
+  if (parts_done_ == 0) {
+    parts_ = {};
+    effects_->before_step(tick);
+  }
+  last_step_ = world_->step();
+  parts_.add(last_step_);
+  if (++parts_done_ < world_->options().parts) return;
+  parts_done_ = 0;
+  tick.step = &parts_;
+  effects_->after_step(tick);
+}
+
 // The hand's way since the last tick is walked in as many pieces, so that the tool meets what lies on it.
 void Renderer::step_world(TickView& tick) noexcept {
+  if (world_->options().parts > 1) return step_part(tick);
   const std::uint32_t steps = steps_needed();
   if (steps == 1) {
     effects_->before_step(tick);

@@ -19,9 +19,10 @@ constexpr double least_us = 0.5;  // of a search: some ten pairs of nodes
 constexpr double least_units = 10.0;
 constexpr double first_need_us = 5.0;  // of a pair that nobody has met
 constexpr double first_need_units = 100.0;
-constexpr double most_of_frame = 0.5;  // for one pair
-constexpr double least_call_us = 0.4;  // of callback and dispatch around a query
-constexpr double most_call_us = 5.0;   // more is a stall, and teaches nothing
+constexpr double most_of_frame = 0.5;    // for one pair
+constexpr double worth_beginning = 0.5;  // of a share: where a part has less left, the next one gives it
+constexpr double least_call_us = 0.4;    // of callback and dispatch around a query
+constexpr double most_call_us = 5.0;     // more is a stall, and teaches nothing
 // Of the frame, for what the last call overshoots and for coming back: as much as one frame in a hundred needs more.
 constexpr double least_margin_us = 2.0;
 constexpr double most_margin = 0.03;  // of the frame
@@ -57,6 +58,11 @@ double oddsFrameBudget::left_us() const noexcept {
 
 double oddsFrameBudget::left() const noexcept {
   return settings_.in_units() ? static_cast<double>(settings_.work_units) - spent_units_ : left_us();
+}
+
+double oddsFrameBudget::left_with_parts_to_come() const noexcept {
+  const double part = settings_.in_units() ? static_cast<double>(settings_.work_units) : settings_.time_us;
+  return is_last_part() ? left() : left() + part * (settings_.parts - part_);
 }
 
 // A query that is not begun cannot overrun.
@@ -163,8 +169,8 @@ void oddsFrameBudget::hold(Candidate& candidate) noexcept {
 FrameMeans oddsFrameBudget::means() const noexcept {
   const bool in_units = settings_.in_units();
   const double all = in_units ? static_cast<double>(settings_.work_units) : settings_.time_us;
-  return {.left = left(),
-          .hold = in_units ? 0.0 : hold_us_,
+  return {.left = left_with_parts_to_come(),
+          .hold = in_units || !is_last_part() ? 0.0 : hold_us_,
           .unknown = in_units ? first_need_units : first_need_us,
           .most = most_of_frame * all};
 }
@@ -181,22 +187,26 @@ void oddsFrameBudget::serve_equally() noexcept {
 
 void oddsFrameBudget::serve_by_importance() noexcept {
   put_in_order(candidates_, settings_, memory_.frame());
+  bool served_in_part = false;
   const FrameMeans plans = means();
   plan(candidates_, plans);
   for (Candidate& candidate : candidates_) {
     if (is_over() && summary_.served > 0) break;
     if (!candidate.planned) continue;
-    const double rest = left();
-    const double share =
+    const double rest = left_with_parts_to_come();
+    double share =
         std::isfinite(rest)
             ? odds::ode::share_of({rest, candidate.need, candidate.kept, candidate.weight / candidate.rivals})
             : rest;
     // A share that buys nothing is not given, but to the first, so that nobody waits for ever. Where others took more
     // than theirs, this one comes earlier in the next frame.
     if (share < candidate.need && &candidate != &candidates_.front()) continue;
-    serve(candidate, rest > 0.0 ? share : least_share());
+    if (!is_last_part() && served_in_part && left() < std::max(candidate.need, worth_beginning * share)) continue;
+    share = std::min(share, left());
+    serve(candidate, share > 0.0 ? share : least_share());
+    served_in_part = true;
   }
-  serve_with_rest();
+  if (is_last_part()) serve_with_rest();
 }
 
 // What was not needed goes to those whose turn it was not; then those that touch and had none keep what is held.
@@ -236,16 +246,25 @@ void oddsFrameBudget::summarize() noexcept {
   summary_.work = static_cast<unsigned long>(spent_units_);
 }
 
-void oddsFrameBudget::run(dSpaceID space, void* data, dNearCallback* callback) noexcept {
-  data_ = data;
-  callback_ = callback;
-  begin_ns_ = clock_();
-  spent_units_ = 0.0;
+void oddsFrameBudget::find_pairs(dSpaceID space) noexcept {
   summary_ = {};
   candidates_.clear();
   memory_.begin_frame();
   odds::ode::for_each_pair(space, this, &oddsFrameBudget::collect);
   if (beyond_turn_ >= summary_.beyond_memory) beyond_turn_ = 0;
+}
+
+void oddsFrameBudget::run(dSpaceID space, void* data, dNearCallback* callback) noexcept {
+  data_ = data;
+  callback_ = callback;
+  begin_ns_ = clock_();
+  spent_units_ = 0.0;
+  if (part_ == 0) {
+    find_pairs(space);
+  } else {
+    std::erase_if(candidates_, [](const Candidate& candidate) { return candidate.called; });
+  }
+  part_ = (part_ + 1) % settings_.parts;
   if (settings_.sharing == ODDS_SHARE_EQUALLY) {
     serve_equally();
   } else {

@@ -23,6 +23,7 @@ struct FrameSettings {
   Vec3 attention = Vec3::Zero();
   double attention_radius = 1.0;
   int sharing = ODDS_SHARE_BY_IMPORTANCE;
+  int parts = 1;
 
   [[nodiscard]] bool in_units() const noexcept { return work_units > 0; }
 };
@@ -74,12 +75,17 @@ struct oddsFrameBudget {
   void use_clock(odds::realtime::Clock clock) noexcept { clock_ = clock; }
   [[nodiscard]] const oddsFrameSummary& summary() const noexcept { return summary_; }
 
+  /// A frame, or its next part.
   void run(dSpaceID space, void* data, dNearCallback* callback) noexcept;
+  /// The next run begins a frame.
+  void begin_anew() noexcept { part_ = 0; }
 
  private:
   using Candidate = odds::ode::FrameCandidate;
 
   static void collect(void* self, dGeomID a, dGeomID b) noexcept;
+  void find_pairs(dSpaceID space) noexcept;
+  [[nodiscard]] bool is_last_part() const noexcept { return part_ == 0; }
   void serve_beyond_memory(dGeomID a, dGeomID b) noexcept;
   void call(const Candidate& candidate, odds::ode::FrameShare& share) noexcept;
   void serve(Candidate& candidate, double share) noexcept;
@@ -94,6 +100,7 @@ struct oddsFrameBudget {
   [[nodiscard]] double spent_us() const noexcept;
   [[nodiscard]] double left_us() const noexcept;
   [[nodiscard]] double left() const noexcept;
+  [[nodiscard]] double left_with_parts_to_come() const noexcept;
   [[nodiscard]] bool is_late(double call_us) const noexcept;
   [[nodiscard]] bool is_over() const noexcept;
   [[nodiscard]] bool has_half_left() const noexcept;
@@ -111,6 +118,7 @@ struct oddsFrameBudget {
   odds::realtime::Clock clock_;
 
   // Of the frame under way.
+  int part_ = 0;  // the next one; 0: of the next frame
   void* data_ = nullptr;
   dNearCallback* callback_ = nullptr;
   std::int64_t begin_ns_ = 0;

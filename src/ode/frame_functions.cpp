@@ -72,6 +72,14 @@ int oddsFrameBudgetSetSharing(oddsFrameBudgetID budget, int sharing) noexcept {
   return change_settings(budget, [&](auto& settings) { settings.sharing = sharing; });
 }
 
+int oddsFrameBudgetSetParts(oddsFrameBudgetID budget, int parts) noexcept {
+  if (budget == nullptr || parts < 1 || parts > 1024) {
+    return refuse("oddsFrameBudgetSetParts: needs a budget, and 1 .. 1024 parts");
+  }
+  budget->begin_anew();
+  return change_settings(budget, [&](auto& settings) { settings.parts = parts; });
+}
+
 int oddsFrameBudgetGetSummary(oddsFrameBudgetID budget, oddsFrameSummary* summary) noexcept {
   if (budget == nullptr || summary == nullptr) {
     return refuse("oddsFrameBudgetGetSummary: the budget or the place for the summary is null");

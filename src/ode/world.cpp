@@ -69,7 +69,9 @@ struct World::Implementation {
   dJointGroupID contacts = nullptr;
   std::vector<std::unique_ptr<Body>> bodies;
   std::uint32_t dynamic_bodies = 0;
-  StepSummary summary;  // of the step under way
+  StepSummary summary;              // of the call of step() under way
+  std::uint32_t part = 0;           // of a step: the next one
+  std::uint32_t contacts_made = 0;  // of the step under way
   MeetingHook hook;
   FrameBudget frame;
   dGeomID attention = nullptr;    // the body that a hand holds
@@ -218,6 +220,7 @@ void World::Implementation::warm_up_solver() {
   for (const std::uint32_t count :
        {std::min(most_solved, options.max_contacts_per_step), options.max_contacts_per_step}) {
     summary = {};
+    contacts_made = 0;
     for (std::uint32_t i = 0; i < count; ++i) contact_at(i);
     if (count <= most_solved) {
       options.solver == Solver::exact ? dWorldStep(world, options.step_s) : dWorldQuickStep(world, options.step_s);
@@ -225,6 +228,7 @@ void World::Implementation::warm_up_solver() {
     dJointGroupEmpty(contacts);
   }
   options.contact = asked;
+  contacts_made = 0;
   for (std::size_t i = 0; i < bodies.size(); ++i) place(*bodies[i], before[i]);
 }
 
@@ -276,13 +280,14 @@ void World::Implementation::note_answer(dGeomID a, dGeomID b, Meeting& meeting) 
 }
 
 void World::Implementation::add_contact(const ContactPoint& point, const dContactGeom& found, dBodyID a, dBodyID b) {
-  if (!can_be_solved(point) || summary.contacts >= options.max_contacts_per_step) {
+  if (!can_be_solved(point) || contacts_made >= options.max_contacts_per_step) {
     ++summary.contacts_left_out;
     return;
   }
   const dContact contact = contact_rows(point, found, options.step_s);
   dJointAttach(dJointCreateContact(world, contacts, &contact), a, b);
   ++summary.contacts;
+  ++contacts_made;
   const Surface& surface = point.surface;
   summary.friction_rows += surface.friction > 0.0 ? 2U : 0U;
   summary.angular_rows += (surface.rolling_m > 0.0 ? 2U : 0U) + (surface.spinning_m > 0.0 ? 1U : 0U);
@@ -415,12 +420,20 @@ std::optional<Error> World::prepare() {
 StepSummary World::step() noexcept {
   Implementation& self = *implementation_;
   self.summary = {};
+  const std::uint32_t parts = self.options.parts;
+  const bool solves = self.part + 1 == parts;
+  const bool collides = parts == 1 || !solves;
   const std::int64_t start_ns = self.options.clock();
-  if (self.options.contact.enabled) {
-    collide_frame(self.space, &self, &Implementation::near, self.frame.get(), self.attention, self.summary);
+  if (collides && self.options.contact.enabled) {
+    const bool is_last_part = self.part + 2 >= parts;
+    collide_frame(self.space, &self, &Implementation::near, self.frame.get(), self.attention, is_last_part,
+                  self.summary);
   }
+  self.part = solves ? 0 : self.part + 1;
   const std::int64_t collided_ns = self.options.clock();
   self.summary.collision_us = 1e-3 * static_cast<double>(collided_ns - start_ns);
+  if (!solves) return self.summary;
+  self.contacts_made = 0;
   if (self.dynamic_bodies == 0) return self.summary;
   const double h = self.options.step_s;
   const bool measures = self.options.contact_work && self.momenta.size() == self.bodies.size();
@@ -435,6 +448,15 @@ StepSummary World::step() noexcept {
   }
   self.summary.step_us = 1e-3 * static_cast<double>(self.options.clock() - collided_ns);
   return self.summary;
+}
+
+void World::abandon_step() noexcept {
+  Implementation& self = *implementation_;
+  if (self.part == 0) return;
+  dJointGroupEmpty(self.contacts);
+  self.contacts_made = 0;
+  self.part = 0;
+  if (self.frame) oddsFrameBudgetSetParts(self.frame.get(), frame_parts(self.options));
 }
 
 void World::set_coupling(BodyId id, const Coupling& coupling) noexcept {

@@ -19,14 +19,15 @@ Result<FrameBudget> make_frame_budget(const WorldOptions& options, std::size_t b
   FrameBudget budget(oddsFrameBudgetCreate(static_cast<int>(pairs)));
   const bool made =
       budget != nullptr && (!timed || oddsFrameBudgetSetTime(budget.get(), options.frame_us) != 0) &&
-      (options.frame_work_units == no_limit || oddsFrameBudgetSetWork(budget.get(), options.frame_work_units) != 0);
+      (options.frame_work_units == no_limit || oddsFrameBudgetSetWork(budget.get(), options.frame_work_units) != 0) &&
+      oddsFrameBudgetSetParts(budget.get(), frame_parts(options)) != 0;
   if (!made)
     return Error{"", "", std::string("no budget for a frame: ") + oddsGetLastError(), "correct the frame's limits"};
   return budget;
 }
 
 void collide_frame(dSpaceID space, void* data, dNearCallback* callback, oddsFrameBudget* budget, dGeomID attention,
-                   StepSummary& summary) noexcept {
+                   bool is_last_part, StepSummary& summary) noexcept {
   if (budget == nullptr) {
     dSpaceCollide(space, data, callback);
     return;
@@ -41,7 +42,7 @@ void collide_frame(dSpaceID space, void* data, dNearCallback* callback, oddsFram
   oddsSpaceCollide(space, data, callback, budget);
   oddsFrameSummary frame;
   oddsFrameBudgetGetSummary(budget, &frame);
-  summary.pairs_left_out += static_cast<std::uint32_t>(frame.pairs - frame.served);
+  if (is_last_part) summary.pairs_left_out += static_cast<std::uint32_t>(frame.pairs - frame.served);
   summary.frame_overshoot_us = std::max(summary.frame_overshoot_us, frame.overshoot_us);
 }
 

@@ -14,12 +14,17 @@ struct FrameBudgetDeleter {
 };
 using FrameBudget = std::unique_ptr<oddsFrameBudget, FrameBudgetDeleter>;
 
+/// Calls of a step that collide: all but the last, which solves, or its only one.
+[[nodiscard]] inline int frame_parts(const WorldOptions& options) noexcept {
+  return options.parts == 1 ? 1 : static_cast<int>(options.parts) - 1;
+}
+
 /// Null where the options ask for none.
 [[nodiscard]] Result<FrameBudget> make_frame_budget(const WorldOptions& options, std::size_t bodies);
 
-/// dSpaceCollide within the budget, if there is one; notes what it left out. What is near to the geom `attention`,
-/// which may be null, matters most.
+/// dSpaceCollide within the budget, if there is one, or the next part of it; notes what all parts have left out with the
+/// last. What is near to the geom `attention`, which may be null, matters most.
 void collide_frame(dSpaceID space, void* data, dNearCallback* callback, oddsFrameBudget* budget, dGeomID attention,
-                   StepSummary& summary) noexcept;
+                   bool is_last_part, StepSummary& summary) noexcept;
 
 }  // namespace odds::ode

@@ -2,6 +2,8 @@
 #include "ode/world_options.hpp"
 
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 namespace odds::ode {
 
@@ -20,6 +22,11 @@ std::optional<Error> check(const WorldOptions& o) {
   }
   if (!(o.frame_us > 0.0) || o.frame_work_units < 1) {
     return bad("the frame's budget is not positive", "give microseconds above zero, at least one work unit");
+  }
+  if (o.parts < 1 || o.parts > 64) return bad("the parts of a step are out of range", "give 1 to 64");
+  constexpr std::uint64_t no_limit = std::numeric_limits<std::uint64_t>::max();
+  if (o.parts > 1 && !std::isfinite(o.frame_us) && o.frame_work_units == no_limit) {
+    return bad("a step in parts has no frame's budget", "limit the frame, or do steps in one part");
   }
   if (o.max_contacts_per_step < 1 || o.max_contacts_per_step > 1024) {
     return bad("the contacts of a step are out of range", "give 1 to 1024");

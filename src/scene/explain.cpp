@@ -103,8 +103,16 @@ std::vector<EffectLine> lines_of(Simulation& simulation, const std::vector<std::
 
 }  // namespace
 
-Result<Explanation> explain(const Scene& scene, std::uint64_t samples,
+Result<Explanation> explain(const Scene& asked, std::uint64_t samples,
                             const std::function<void(std::string_view, double)>& progress) {
+  // What an effect costs is seen in whole steps: where a step takes several ticks, a tick of the trial is all of them.
+  Scene scene = asked;
+  scene.loop.period_ns *= scene.ticks_per_step;
+  for (std::uint32_t part = 2; part < scene.ticks_per_step; ++part) {
+    scene.frame.microseconds += asked.frame.microseconds;
+    if (asked.frame.work_units != query::Budget{}.work_units) scene.frame.work_units += asked.frame.work_units;
+  }
+  scene.ticks_per_step = 1;
   SimulationOptions options;
   options.simulated_time = true;
   options.progress = progress;

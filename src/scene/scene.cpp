@@ -83,6 +83,12 @@ std::optional<Error> read_physics(const Settings& settings, Scene& scene) {
     reader.reject(reader.has("substep_way_m") ? "substep_way_m" : "most_substeps",
                   "'substep_way_m' and 'most_substeps' belong together", "give both, or neither");
   }
+  if (reader.integer("ticks_per_step", 2, 64, number)) scene.ticks_per_step = static_cast<std::uint32_t>(number);
+  scene.ticks_per_step_place = reader.place_of("ticks_per_step");
+  if (reader.has("ticks_per_step") && reader.has("most_substeps")) {
+    reader.reject("ticks_per_step", "a tick is either a part of a step or several steps",
+                  "remove 'ticks_per_step', or 'substep_way_m' and 'most_substeps'");
+  }
   reader.number("max_speed_m_per_s", Range::positive(), scene.max_speed_m_per_s);
   reader.number("max_spin_rad_per_s", Range::positive(), scene.max_spin_rad_per_s);
   return reader.finish();
@@ -233,6 +239,19 @@ std::optional<Error> read_devices(SettingsReader& top, Scene& scene) {
   return std::nullopt;
 }
 
+// A step in parts, one in each tick.
+void check_parts(SettingsReader& top, const Scene& scene) {
+  if (scene.ticks_per_step == 1) return;
+  if (scene.device) {
+    top.reject(scene.ticks_per_step_place, "a hand feels every tick, so a step cannot take several",
+               "remove 'ticks_per_step', or the device");
+  }
+  if (!scene.frame.is_limited()) {
+    top.reject(scene.ticks_per_step_place, "nothing says how much of a step's collisions a tick takes",
+               "give 'frame_us' or 'frame_work_units' in [query], or remove 'ticks_per_step'");
+  }
+}
+
 // What the sections must agree on with each other.
 void check_whole(SettingsReader& top, const Scene& scene, bool device_used) {
   if (scene.bodies.empty()) top.reject(top.settings().place, "the scene has no body", "add a [[body]] table");
@@ -250,6 +269,7 @@ void check_whole(SettingsReader& top, const Scene& scene, bool device_used) {
   if (device_used && scene.find_effect("virtual_coupling") == nullptr) {
     top.reject(scene.device->place, "nothing connects the device with its body", "add [effects.virtual_coupling]");
   }
+  check_parts(top, scene);
 }
 
 std::optional<Error> read_sections(const Settings& document, Scene& scene) {
@@ -318,7 +338,8 @@ Result<Scene> read_scene(const std::filesystem::path& path) {
 
 ode::WorldOptions Scene::world_options(const haptics::EffectSet& asked) const {
   ode::WorldOptions options;
-  options.step_s = loop.period_s();
+  options.step_s = loop.period_s() * ticks_per_step;
+  options.parts = ticks_per_step;
   options.query = query;
   options.frame_us = frame.microseconds;
   options.frame_work_units = frame.work_units;

@@ -290,6 +290,82 @@ position_m = [0, 0, -0.05]
   }
 }
 
+// Three cubes that fall on a slab, at a rate, with so many ticks to a step.
+std::string three_cubes(const std::string& rate, const std::string& physics, const std::string& query) {
+  std::string text = "[loop]\nrate_hz = " + rate + "\nseconds = 0.4\n[query]\n" + query + "\n[physics]\n" + physics +
+                     "\n[[mesh]]\nname = \"slab\"\nfile = \"made:box:x=0.5,y=0.5,z=0.1\"\n[[mesh]]\nname = \"cube\"\n"
+                     "file = \"made:box:x=0.04,y=0.04,z=0.04\"\n[[body]]\nname = \"floor\"\nmesh = \"slab\"\n"
+                     "position_m = [0, 0, -0.05]\n[effects.contact]\n[effects.gravity]\n[effects.friction]\nmu = 0.5\n"
+                     "[[effects.viscosity]]\ndrag_ns_per_m = 0.1\n";
+  for (int i = 0; i < 3; ++i) {
+    text += "[[body]]\nname = \"cube" + std::to_string(i) +
+            "\"\nmesh = \"cube\"\nmotion = \"dynamic\"\nmass_kg = 0.05\n" + "position_m = [" +
+            std::to_string(0.03 * i) + ", 0, " + std::to_string(0.03 + 0.05 * i) + "]\n";
+  }
+  return text;
+}
+
+TEST(Simulation, AStepThatTakesFourTicksMovesBodiesAsOneOfTheSameLength) {
+  const std::string plenty = "frame_work_units = 10000000";
+  const auto whole = simulated(three_cubes("250", "", plenty));
+  const auto parts = simulated(three_cubes("1000", "ticks_per_step = 4", plenty));
+  std::uint32_t contacts = 0;
+  for (std::int64_t i = 0; i < 100; ++i) {
+    haptics::TickRecord record;
+    whole->renderer().tick(i * 4'000'000, record);
+    contacts += record.contacts;
+    for (std::int64_t part = 0; part < 4; ++part) {
+      parts->renderer().tick((4 * i + part) * 1'000'000, record);
+      ASSERT_EQ(parts->renderer().last_step().solver_calls, part == 3 ? 1U : 0U);
+    }
+    for (std::uint32_t body = 1; body < 4; ++body) {
+      ASSERT_EQ(whole->world().state({body}).pose.translation, parts->world().state({body}).pose.translation) << i;
+    }
+  }
+  EXPECT_GT(contacts, 200U);
+}
+
+TEST(Simulation, AStepInPartsBeginsAnewWithTheRun) {
+  const auto simulation = simulated(three_cubes("1000", "ticks_per_step = 4", "frame_work_units = 300"));
+  const RunOutcome first = simulation->run();
+  EXPECT_EQ(first.ticks.size(), 400U);
+  for (std::uint32_t body = 1; body < 4; ++body) {
+    EXPECT_GT(simulation->world().state({body}).pose.translation.z(), 0.015);
+  }
+  haptics::TickRecord record;
+  simulation->renderer().tick(0, record);  // leaves a step under way
+  ASSERT_TRUE(simulation->renderer().begin());
+  for (int part = 0; part < 4; ++part) {
+    simulation->renderer().tick(part * 1'000'000, record);
+    EXPECT_EQ(simulation->renderer().last_step().solver_calls, part == 3 ? 1U : 0U);
+  }
+}
+
+TEST(Simulation, AStepInPartsIsRefusedWhereItCannotBe) {
+  const auto refusal = [](const std::string& text) {
+    const auto read = parse_scene("format = \"odds.scene/1\"\n" + text, "parts.toml", ".");
+    return read.ok() ? std::string("taken") : read.error().message();
+  };
+  const std::string limit = "frame_us = 100";
+  EXPECT_EQ(refusal(three_cubes("1000", "ticks_per_step = 4", limit)), "taken");
+  EXPECT_NE(refusal(three_cubes("1000", "ticks_per_step = 4", "")).find("parts.toml:8:1: nothing says how much"),
+            std::string::npos)
+      << refusal(three_cubes("1000", "ticks_per_step = 4", ""));
+  EXPECT_NE(refusal(three_cubes("1000", "ticks_per_step = 1", limit)).find("out of range"), std::string::npos);
+  EXPECT_NE(refusal(three_cubes("1000", "ticks_per_step = 4\nsubstep_way_m = 1\nmost_substeps = 2", limit))
+                .find("either a part of a step or several steps"),
+            std::string::npos);
+  std::string held = "[physics]\nticks_per_step = 4\n" + world + scripted + effects;
+  held.replace(held.find("budget_us = 60"), std::string("budget_us = 60").size(), limit);
+  EXPECT_NE(refusal(held).find("a hand feels every tick"), std::string::npos) << refusal(held);
+}
+
+TEST(Explain, OfAStepInPartsCountsWholeSteps) {
+  const auto explanation = explain(scene(three_cubes("1000", "ticks_per_step = 4", "frame_work_units = 300")), 5);
+  ASSERT_TRUE(explanation.ok()) << explanation.error().message();
+  EXPECT_EQ(explanation.value().ticks, 100U);
+}
+
 TEST(Explain, SaysWhichEffectsAreOnAndWhichLineAsked) {
   const auto explanation = explain(scene(world + scripted + effects), 20);
   ASSERT_TRUE(explanation.ok()) << explanation.error().message();

@@ -32,7 +32,8 @@ struct SubSteps {
 using AllocationCount = std::uint64_t (*)() noexcept;
 
 /// Read the device, let the effects act, collide and step the world, gather force and torque on the hand from the
-/// effects, pass the safety stages, write the device, fill in the record. Works without a hand too: then it only steps.
+/// effects, pass the safety stages, write the device, fill in the record. Works without a hand too: then it only steps,
+/// and a step may come in parts, one in each tick (WorldOptions::parts).
 class Renderer {
  public:
   /// World and effects outlive the renderer. The effects are connected with the world by begin().
@@ -80,6 +81,7 @@ class Renderer {
   [[nodiscard]] TickView view(std::int64_t now_ns) noexcept;
   [[nodiscard]] std::uint32_t steps_needed() const noexcept;
   void step_world(TickView& tick) noexcept;
+  void step_part(TickView& tick) noexcept;
 
   ode::World* world_;
   std::optional<Hand> hand_;
@@ -87,6 +89,8 @@ class Renderer {
   std::optional<Safety> safety_;
   PassivityObserver energy_;
   ode::StepSummary last_step_;
+  ode::StepSummary parts_;        // of the step under way, together
+  std::uint32_t parts_done_ = 0;  // of it
   SubSteps substeps_;
   DeviceState before_;  // at the last tick
   AllocationCount allocations_;

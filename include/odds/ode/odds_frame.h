@@ -36,7 +36,13 @@ enum {
 };
 int oddsFrameBudgetSetSharing(oddsFrameBudgetID budget, int sharing) ODDS_NOTHROW;
 
-/* What the last frame did. */
+/* A frame in so many parts (1 .. 1024; default 1): as many calls of oddsSpaceCollide, each within the whole budget, make
+ * one frame. The first finds the pairs; every further one calls those that had no turn yet, each once; what held
+ * contacts stand in for those that had none comes with the last. In between, no geom may be destroyed or leave the
+ * space, and bodies should stay where they are. The next call begins a frame, also if another was under way. */
+int oddsFrameBudgetSetParts(oddsFrameBudgetID budget, int parts) ODDS_NOTHROW;
+
+/* What the last frame did; one in parts, so far: times and work are those of its last part. */
 typedef struct oddsFrameSummary {
   int pairs;           /* that the broad phase gave */
   int served;          /* that were given a share */

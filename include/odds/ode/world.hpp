@@ -62,13 +62,19 @@ struct WorldOptions {
   /// most. Infinity and the greatest number: no limit.
   double frame_us = std::numeric_limits<double>::infinity();
   std::uint64_t frame_work_units = std::numeric_limits<std::uint64_t>::max();
+  /// Calls of step() that make one step, 1 .. 64, for a loop whose ticks are shorter than that takes. More than one:
+  /// all but the last collide, each within a frame's limits, pairs that had no turn yet; the last solves. Needs a
+  /// frame.
+  std::uint32_t parts = 1;
   std::uint32_t max_contacts_per_step = 64;  ///< of the whole world, 1 .. 1024; further ones are left out and counted
   double max_speed_m_per_s = 20.0;           ///< bodies are held to it: a tool never flies away
   double max_spin_rad_per_s = 200.0;
   bool contact_velocity = false;  ///< whether ContactPoint::velocity_m_per_s is wanted; friction computes it anyway
   bool angular_friction = false;  ///< whether to take memory for rows of rolling and spinning friction
   bool contact_work = false;      ///< whether StepSummary::contact_work_j and World::contact_impulse are wanted
-  realtime::Clock clock = {};     ///< null: realtime::fastest_clock()
+  /// Of StepSummary::collision_us and step_us; null: realtime::fastest_clock(). Queries and frames, their budgets and
+  /// times, always go by that one.
+  realtime::Clock clock = {};
 };
 
 /// How a dynamic body gets its mass. The inertia follows from the mesh if that is closed, else from its bounding box.
@@ -112,7 +118,7 @@ struct Coupling {
   double max_spring_torque_nm = std::numeric_limits<double>::infinity();
 };
 
-/// What one step did. Times in microseconds by the world's clock.
+/// What one step did, or, of a step in parts, one call. Times in microseconds.
 struct StepSummary {
   std::uint32_t queries = 0;                       ///< pairs of meshes that reached the budgeted query
   query::Verdict verdict = query::Verdict::clear;  ///< hit if any query said so
@@ -137,8 +143,8 @@ struct StepSummary {
   double frame_overshoot_us = 0.0;      ///< of the frame beyond its time, >= 0
   std::uint32_t contacts_left_out = 0;  ///< beyond max_contacts_per_step, or not finite
   double max_depth_m = 0.0;
-  double collision_us = 0.0;        ///< broad phase, queries and contact joints
-  double step_us = 0.0;             ///< of the solver; 0 where nothing can move
+  double collision_us = 0.0;        ///< broad phase, queries and contact joints; by the world's clock
+  double step_us = 0.0;             ///< of the solver, by the world's clock; 0 where nothing can move
   std::uint32_t bodies_slowed = 0;  ///< held to the greatest speed
   std::uint32_t bodies_recovered =
       0;  ///< their state was not finite any more; put back to where they were last, at rest
@@ -168,8 +174,11 @@ class World {
   /// Call it when all bodies are there. Later additions need another call.
   [[nodiscard]] std::optional<Error> prepare();
 
-  /// Collides, solves and moves all bodies by step_s. Does not call the solver if no body is dynamic.
+  /// Collides, solves and moves all bodies by step_s; or does the next part of that (WorldOptions::parts). Does not
+  /// call the solver if no body is dynamic.
   StepSummary step() noexcept;
+  /// The next call of step() is a step's first part; contacts of one that was under way are dropped.
+  void abandon_step() noexcept;
 
   void set_coupling(BodyId body, const Coupling& coupling) noexcept;
   /// What the coupling exerted on the body in the last step.

@@ -77,13 +77,15 @@ struct Scene {
       search;  ///< further directories for meshes; "${NAME}" stands for a variable of the environment
   Loop loop;
   query::Request query;
-  query::Budget frame;  ///< of all queries of a step together; its clock is not used
+  query::Budget frame;  ///< of all queries of a step together, or of its part in a tick; its clock is not used
   volume::Kind volume = volume::Kind::wide;
   ode::Solver solver = ode::Solver::exact;
   int solver_iterations = 20;
   std::uint32_t max_contacts = 64;  ///< of a step, all pairs together
   double substep_way_m = std::numeric_limits<double>::infinity();
   std::uint32_t most_substeps = 1;
+  std::uint32_t ticks_per_step = 1;  ///< a step of the world takes so many ticks, 1 .. 64
+  haptics::Place ticks_per_step_place;
   double max_speed_m_per_s = 20.0;
   double max_spin_rad_per_s = 200.0;
   std::vector<Mesh> meshes;
