@@ -78,7 +78,6 @@ struct World::Implementation {
   std::vector<Momentum> momenta;  // of all bodies, before the solver; empty unless asked for
 
   Result<Body*> add(std::shared_ptr<const query::Shape> shape, const math::Pose& pose, const std::string& name);
-  bool configure(dGeomID geom) const;
   std::optional<Error> prepare_pairs();
   void warm_up_solver();
   void note_answer(dGeomID a, dGeomID b, Meeting& meeting);
@@ -108,28 +107,12 @@ Result<Body*> World::Implementation::add(std::shared_ptr<const query::Shape> sha
   dGeomSetData(body.geom.id(), reinterpret_cast<void*>(std::uintptr_t{bodies.size() - 1}));
   body.last_good.velocity_m_per_s.setZero();
   body.last_good.angular_velocity_rad_per_s.setZero();
-  if (!configure(body.geom.id())) {
+  if (!configure(body.geom.id(), options.query)) {
     Error error{name, "", oddsGetLastError(), "correct the query's settings"};
     bodies.pop_back();
     return error;
   }
   return &body;
-}
-
-bool World::Implementation::configure(dGeomID geom) const {
-  const query::Request& q = options.query;
-  constexpr std::uint64_t no_limit = std::numeric_limits<std::uint64_t>::max();
-  const bool timed = std::isfinite(q.budget.microseconds);
-  const auto units = static_cast<unsigned long>(q.budget.work_units == no_limit ? 0 : q.budget.work_units);
-  const int method = q.method == query::Method::exact         ? ODDS_METHOD_EXACT
-                     : q.method == query::Method::incremental ? ODDS_METHOD_INCREMENTAL
-                                                              : ODDS_METHOD_TIME_CRITICAL;
-  const int estimator = q.estimator == query::EstimatorKind::cells ? ODDS_ESTIMATOR_CELLS : ODDS_ESTIMATOR_KINEMATIC;
-  return dGeomOddsMeshSetBudget(geom, timed ? q.budget.microseconds : dInfinity) != 0 &&
-         dGeomOddsMeshSetWorkBudget(geom, units) != 0 && dGeomOddsMeshSetPMin(geom, q.p_min) != 0 &&
-         dGeomOddsMeshSetKMin(geom, static_cast<int>(q.k_min)) != 0 &&
-         dGeomOddsMeshSetMaxContacts(geom, q.max_contacts) != 0 && dGeomOddsMeshSetMethod(geom, method) != 0 &&
-         dGeomOddsMeshSetEstimator(geom, estimator) != 0 && dGeomOddsMeshSetCarryMotion(geom, q.carry_motion) != 0;
 }
 
 BodyState World::Implementation::state_of(const Body& body) const {
@@ -190,13 +173,7 @@ std::optional<Error> World::Implementation::prepare_pairs() {
 // Fills the joint group and the solver's memory once with the most contacts a step may have, then undoes the motion.
 void World::Implementation::warm_up_solver() {
   constexpr std::uint32_t most_solved = 64;  // the exact solver's time grows with the cube
-  const std::uint32_t rows = (options.angular_friction ? 6 : 3) * options.max_contacts_per_step + 6 * dynamic_bodies;
-  dWorldStepReserveInfo reserve{};
-  reserve.struct_size = sizeof(reserve);
-  reserve.reserve_factor = 1.2F;
-  reserve.reserve_minimum =
-      static_cast<unsigned>(std::max<std::size_t>(std::size_t{4} << 20U, std::size_t{24} * rows * rows));
-  dWorldSetStepMemoryReservationPolicy(world, &reserve);
+  reserve_solver(world, options, dynamic_bodies);
 
   std::vector<BodyState> before;
   std::vector<Body*> moving;

@@ -1,9 +1,11 @@
-// Ranges of a world's options.
+// Ranges of a world's options, and what they mean to ODE.
 #include "ode/world_options.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
+
+#include "odds/ode/odds_ode.h"
 
 namespace odds::ode {
 
@@ -32,6 +34,31 @@ std::optional<Error> check(const WorldOptions& o) {
     return bad("the contacts of a step are out of range", "give 1 to 1024");
   }
   return std::nullopt;
+}
+
+bool configure(dGeomID geom, const query::Request& q) noexcept {
+  constexpr std::uint64_t no_limit = std::numeric_limits<std::uint64_t>::max();
+  const bool timed = std::isfinite(q.budget.microseconds);
+  const auto units = static_cast<unsigned long>(q.budget.work_units == no_limit ? 0 : q.budget.work_units);
+  const int method = q.method == query::Method::exact         ? ODDS_METHOD_EXACT
+                     : q.method == query::Method::incremental ? ODDS_METHOD_INCREMENTAL
+                                                              : ODDS_METHOD_TIME_CRITICAL;
+  const int estimator = q.estimator == query::EstimatorKind::cells ? ODDS_ESTIMATOR_CELLS : ODDS_ESTIMATOR_KINEMATIC;
+  return dGeomOddsMeshSetBudget(geom, timed ? q.budget.microseconds : dInfinity) != 0 &&
+         dGeomOddsMeshSetWorkBudget(geom, units) != 0 && dGeomOddsMeshSetPMin(geom, q.p_min) != 0 &&
+         dGeomOddsMeshSetKMin(geom, static_cast<int>(q.k_min)) != 0 &&
+         dGeomOddsMeshSetMaxContacts(geom, q.max_contacts) != 0 && dGeomOddsMeshSetMethod(geom, method) != 0 &&
+         dGeomOddsMeshSetEstimator(geom, estimator) != 0 && dGeomOddsMeshSetCarryMotion(geom, q.carry_motion) != 0;
+}
+
+void reserve_solver(dWorldID world, const WorldOptions& options, std::uint32_t dynamic_bodies) noexcept {
+  const std::uint32_t rows = (options.angular_friction ? 6 : 3) * options.max_contacts_per_step + 6 * dynamic_bodies;
+  dWorldStepReserveInfo reserve{};
+  reserve.struct_size = sizeof(reserve);
+  reserve.reserve_factor = 1.2F;
+  reserve.reserve_minimum =
+      static_cast<unsigned>(std::max<std::size_t>(std::size_t{4} << 20U, std::size_t{24} * rows * rows));
+  dWorldSetStepMemoryReservationPolicy(world, &reserve);
 }
 
 }  // namespace odds::ode

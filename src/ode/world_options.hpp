@@ -1,6 +1,9 @@
-// What options a world can be made from.
+// What options a world can be made from, and what ODE is told of them.
 #pragma once
 
+#include <ode/ode.h>
+
+#include <cstdint>
 #include <optional>
 
 #include "odds/ode/world.hpp"
@@ -11,5 +14,11 @@ inline constexpr int most_contacts_per_pair = 8;  ///< the geom's own limit
 
 /// What is wrong with the options; nothing if all is well.
 [[nodiscard]] std::optional<Error> check(const WorldOptions& options);
+
+/// Gives a mesh geom the limits and the method of a world's queries. False where it refuses one (oddsGetLastError).
+[[nodiscard]] bool configure(dGeomID geom, const query::Request& query) noexcept;
+
+/// Makes the solver take its memory for the most contacts of a step at once.
+void reserve_solver(dWorldID world, const WorldOptions& options, std::uint32_t dynamic_bodies) noexcept;
 
 }  // namespace odds::ode

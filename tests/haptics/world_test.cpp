@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 #include "odds/mesh/made/by_name.hpp"
@@ -85,6 +86,15 @@ TEST(WorldMass, CentreAwayFromTheOriginDoesNotMoveTheMesh) {
   EXPECT_GT(world.mass(id.value()).center_m.z(), 0.02);
   EXPECT_LT((world.state(id.value()).pose.translation - pose.translation).norm(), 1e-14);
   EXPECT_LT((world.state(id.value()).pose.rotation - pose.rotation).cwiseAbs().maxCoeff(), 1e-14);
+}
+
+TEST(World, AStepInPartsNeedsAFrameAndAFewParts) {
+  for (const std::uint32_t parts : {0U, 65U, 2U}) {
+    WorldOptions options = repeatable_options();
+    options.frame_work_units = parts == 2 ? std::numeric_limits<std::uint64_t>::max() : 1000;
+    options.parts = parts;
+    EXPECT_FALSE(World::make(options).ok()) << parts;
+  }
 }
 
 TEST(WorldCoupling, HoldsAWeightByItsStiffness) {
