@@ -18,7 +18,10 @@ void warm(query::Pair& pair) noexcept {
   query::Request request;
   request.budget = query::Budget::work(2000);
   request.max_contacts = 8;
-  static_cast<void>(pair.run(math::Pose(), request));
+  for (const query::Method method : {query::Method::time_critical, query::Method::incremental}) {
+    request.method = method;
+    static_cast<void>(pair.run(math::Pose(), request));
+  }
   pair.reset();
 }
 

@@ -91,10 +91,12 @@ SearchResult search(const Encounter<V>& encounter, const PosedMeshes& meshes, co
     search_depth_first(encounter, {0, 0, 0.0F}, wanted, pair.hits, spending, result);
     return result;
   }
-  if (request.method == Method::incremental && !by_probability(request)) {
+  if (request.method == Method::incremental && !by_probability(request) &&
+      !(request.budget.is_limited() && pair.slice_pauses())) {
     result.method = Method::incremental;
     if (witness_suffices(meshes, wanted, pair, spending, result)) return result;
     pair.slice.search(encounter, wanted, pair.hits, spending, result);
+    if (result.ended == Progressed::spent) pair.slice_pause = Pair::Implementation::pause_of_slice;
     remember_witness(pair);
     return result;
   }
@@ -112,13 +114,17 @@ SearchResult search(const wide::Encounter& encounter, const PosedMeshes& meshes,
     pair.wide->depth_first(task, tree::WideTree::root, tree::WideTree::root);
     return result;
   }
-  if (request.method == Method::time_critical || by_probability(request) || !is_enough_for_front(request.budget) ||
-      (request.budget.is_limited() && pair.front.pauses())) {
+  if (request.method == Method::time_critical || by_probability(request)) {
     pair.wide->time_critical(task);
     return result;
   }
-  result.method = Method::incremental;
   if (witness_suffices(meshes, wanted, pair, spending, result)) return result;
+  if (!is_enough_for_front(request.budget) || (request.budget.is_limited() && pair.front.pauses())) {
+    pair.wide->time_critical(task);
+    remember_witness(pair);
+    return result;
+  }
+  result.method = Method::incremental;
   pair.front.move_to(meshes.pose(), encounter.b().reach());
   task.sample = wanted;
   if (wanted > 1) task.wanted = no_feature;
@@ -212,9 +218,10 @@ void make_rough_contacts(const PosedMeshes& meshes, const Vec3* known_normal, co
   pair.answer.contact_pairs = static_cast<std::uint32_t>(count);
 }
 
-/// `ended`: how the search did that found the hits; `most_depth`: what is known of the depth, metres.
-void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, Progressed ended, double most_depth,
-                   const Request& request, Pair::Implementation& pair, Spending& spending) noexcept {
+/// `searched`: how the hits were found; `most_depth`: what is known of the depth, metres.
+void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const SearchResult& searched,
+                   double most_depth, const Request& request, Pair::Implementation& pair, Spending& spending) noexcept {
+  const Progressed ended = searched.ended;
   const Vec3 centre_b = meshes.pose().translation + meshes.origin_a();
   spending.reserve_for_contacts(request.max_contacts > 1 ? hasty_finish_ns : single_finish_ns);
   const double smaller = std::min(pair.a->mesh().size(), pair.b->mesh().size());
@@ -240,7 +247,9 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, Pro
     input.previous_position = &pair.previous_position;
   }
   input.known_normal = known_normal;
-  input.most_pairs = hits_in(spending.left_us(), found_hits_per_microsecond);
+  // Other searches stop at as many as there is time for.
+  const bool found_all = searched.method == Method::incremental && pair.a->volume() == volume::Kind::wide;
+  if (found_all) input.most_pairs = hits_in(spending.left_us(), found_hits_per_microsecond);
   input.max_contacts = request.max_contacts;
   if (request.max_contacts > 1) {  // a single contact is asked for its speed
     input.probe_a = {&probe_depth, pair.a.get()};
@@ -253,15 +262,16 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, Pro
   pair.answer.contact_pairs = pair.patches.pairs_used();
   // As many hits as there was time for are a part of them; as many as were asked for, or as are kept, are what was
   // asked.
-  const bool part =
-      request.max_contacts > 1 &&
-      ((ended == Progressed::enough && pair.hits.size() < pair.hits.capacity()) || pair.hits.size() > input.most_pairs);
+  const bool as_many_as_kept =
+      pair.hits.size() == pair.hits.capacity() && !(found_all && std::isfinite(request.budget.microseconds));
+  const bool part = request.max_contacts > 1 &&
+                    ((ended == Progressed::enough && !as_many_as_kept) || pair.hits.size() > input.most_pairs);
   pair.answer.contacts_complete = pair.patches.finished() && ended != Progressed::spent && !part;
   // A finished patch of a part of the rim has measured its depth, and errs seldom; a hasty one has not.
   const bool measured = pair.patches.finished() && pair.known_depth.known();
   if (!pair.answer.contacts_complete && !measured) {
     limit_to_believed(meshes, pair);
-  } else if (ended != Progressed::finished) {
+  } else if (ended != Progressed::finished || part) {
     limit_depth(most_depth, pair);
   }
   if (pair.patches.finished() && request.max_contacts > 1) {
@@ -347,7 +357,7 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
   forecast(encounter, result, request, spending, pair);
   if (!pair.hits.empty() && request.max_contacts > 0) {
     const double most_depth = pair.known_depth.most(meshes.pose(), b.reach());
-    make_contacts(meshes, pose_b_in_a, result.ended, most_depth, request, pair, spending);
+    make_contacts(meshes, pose_b_in_a, result, most_depth, request, pair, spending);
   } else {
     pair.previous_normal.setZero();
     if (answer.basis == Basis::proved && answer.verdict == Verdict::clear) pair.known_depth.note(meshes.pose(), 0.0);
@@ -435,6 +445,7 @@ const Shape& Pair::b() const noexcept { return *implementation_->b; }
 void Pair::reset() noexcept {
   implementation_->answer = {};
   implementation_->slice.reset();
+  implementation_->slice_pause = 0;
   implementation_->front.reset();
   implementation_->previous_normal.setZero();
   implementation_->known_depth.forget();

@@ -49,14 +49,24 @@ TEST(KineticFront, WhatMeetsNoMoreStandsBehind) {
   EXPECT_EQ(slots(front, front.size()).size(), 100U);
 }
 
+TEST(KineticFront, TheOrderInWhichTheyWereFoundDoesNotMatter) {
+  KineticFront front = filled(100);
+  for (const std::uint32_t i : {99U, 40U, 2U, 1U, 0U}) front.set_met(i, true);
+  front.note_end({.explored = true});
+  ASSERT_EQ(front.crossing(), 5U);
+  EXPECT_EQ(slots(front, 5).size(), 5U);
+  EXPECT_EQ(slots(front, front.size()).size(), 100U);
+  for (std::uint32_t i = 0; i < 5; ++i) EXPECT_TRUE(front.entry(i).met);
+}
+
 TEST(KineticFront, ManyThatMeetAtOnceAllStandFirst) {
   KineticFront front = filled(400);
-  for (std::uint32_t i = 100; i < 300; ++i) front.set_met(i, true);
+  for (std::uint32_t i = 100; i < 390; ++i) front.set_met(i, true);
   front.note_end({.explored = true});
-  ASSERT_EQ(front.crossing(), 200U);
-  const std::set<tree::Slot> first = slots(front, 200);
+  ASSERT_EQ(front.crossing(), 290U);
+  const std::set<tree::Slot> first = slots(front, 290);
   EXPECT_EQ(*first.begin(), 100U);
-  EXPECT_EQ(*first.rbegin(), 299U);
+  EXPECT_EQ(*first.rbegin(), 389U);
 }
 
 TEST(KineticFront, RestsWhereItNeitherEndsNorLasts) {
@@ -64,7 +74,7 @@ TEST(KineticFront, RestsWhereItNeitherEndsNorLasts) {
   int runs = 0;
   while (!front.pauses() && runs < 1000) {
     front.move_to({}, reach);
-    front.note_end({.explored = false, .looked_at = 10, .still_met = 7});
+    front.note_end({.starved = true, .looked_at = 10, .still_met = 7});
     ++runs;
   }
   EXPECT_GT(runs, 5) << "one bad run is no reason";
@@ -74,18 +84,38 @@ TEST(KineticFront, RestsWhereItNeitherEndsNorLasts) {
   while (front.pauses()) ++rest;
   for (int again = 0; again < runs; ++again) {
     front.move_to({}, reach);
-    front.note_end({.explored = false, .looked_at = 10, .still_met = 7});
+    front.note_end({.starved = true, .looked_at = 10, .still_met = 7});
   }
   int longer = 0;
   while (front.pauses()) ++longer;
   EXPECT_GT(longer, rest);
 }
 
+TEST(KineticFront, HitsThatEndARunAreNoReasonToRest) {
+  KineticFront front = filled(100);
+  for (int run = 0; run < 200; ++run) {
+    front.move_to({}, reach);
+    front.note_end({.looked_at = 2, .still_met = 1});
+    ASSERT_FALSE(front.pauses()) << run;
+  }
+}
+
+TEST(KineticFront, IsAsNewAfterAReset) {
+  KineticFront front = filled(100);
+  for (int run = 0; run < 60 && front.size() > 0; ++run) {
+    front.move_to({}, reach);
+    front.note_end({.starved = true, .looked_at = 10, .still_met = 7});
+  }
+  ASSERT_EQ(front.size(), 0U);
+  front.reset();
+  EXPECT_FALSE(front.pauses());
+}
+
 TEST(KineticFront, StaysWhereWhatMetGoesOnMeeting) {
   KineticFront front = filled(100);
   for (int run = 0; run < 200; ++run) {
     front.move_to({}, reach);
-    front.note_end({.explored = false, .looked_at = 40, .still_met = 40});
+    front.note_end({.starved = true, .looked_at = 40, .still_met = 40});
     ASSERT_FALSE(front.pauses()) << run;
   }
 }

@@ -148,6 +148,7 @@ int dGeomOddsMeshGetMaxContacts(dGeomID geom) ODDS_NOTHROW;
 int dGeomOddsMeshSetCarryMotion(dGeomID geom, dReal part) ODDS_NOTHROW;
 dReal dGeomOddsMeshGetCarryMotion(dGeomID geom) ODDS_NOTHROW;
 
+/* Of a pair: time-critical only if it is set on both. */
 enum { ODDS_METHOD_EXACT = 0, ODDS_METHOD_INCREMENTAL = 1 /* default */, ODDS_METHOD_TIME_CRITICAL = 2 };
 int dGeomOddsMeshSetMethod(dGeomID geom, int method) ODDS_NOTHROW;
 int dGeomOddsMeshGetMethod(dGeomID geom) ODDS_NOTHROW;

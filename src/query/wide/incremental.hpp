@@ -17,6 +17,7 @@ class Incremental {
   static void run(Task& task, KineticFront& front) noexcept {
     Incremental search(task, front);
     search.outcome_.resume_at = search.run();
+    search.outcome_.starved = task.result.ended == Progressed::spent;
     front.note_end(search.outcome_);
   }
 
@@ -32,34 +33,49 @@ class Incremental {
     const std::uint32_t crossing = front_.crossing();
     const std::uint32_t middle = std::clamp(front_.resume_at(), crossing, kept);
     const bool all = look_at_crossing(crossing);
-    if (task_.result.ended == Progressed::spent) {
+    if (!goes_on()) {
+      leave_rest_open(0, crossing);
       leave_rest_open(middle, kept);
       return middle;
     }
     std::uint32_t stopped = look_at(middle, kept);
-    if (stopped == kept) {
+    if (!goes_on()) {
+      leave_rest_open(crossing, middle);
+      if (stopped == kept) stopped = crossing;
+    } else if (stopped == kept) {
       stopped = look_at(crossing, middle);
-      outcome_.explored = stopped == middle && task_.result.ended != Progressed::spent;
+      outcome_.explored = stopped == middle && goes_on();
     }
-    if (!all && task_.result.ended == Progressed::finished) {
-      task_.result.ended = task_.hits.empty() ? Progressed::spent : Progressed::enough;
-    }
+    if (!all && goes_on()) task_.result.ended = task_.hits.empty() ? Progressed::spent : Progressed::enough;
     return stopped;
   }
 
-  /// In an order that is spread over all, so that an early end leaves a sample of the rim. False if not all were looked
-  /// at.
+  [[nodiscard]] bool goes_on() const noexcept { return task_.result.ended == Progressed::finished; }
+
+  /// In an order that is spread over all, so that an early end leaves a sample of the rim; on from where the last
+  /// search had to leave off. Leaves time for what has begun to meet elsewhere. False if not all were looked at.
   bool look_at_crossing(std::uint32_t count) noexcept {
+    if (count == 0) return true;
+    constexpr double time_share = 0.375;  // of which contacts leave half to the search
+    constexpr double work_share = 0.75;
+    task_.spending.begin_start(time_share, work_share, std::numeric_limits<std::uint64_t>::max());
     const auto step = static_cast<std::uint32_t>(spread_step(count));
-    for (std::uint32_t k = 0, i = 0; k < count; ++k, i = (i + step) % count) {
+    std::uint32_t i = front_.next_crossing() % count;
+    for (std::uint32_t k = 0; k < count; ++k, i = (i + step) % count) {
+      outcome_.next_crossing = i;
       if (task_.hits.size() >= task_.sample) {
         if (!front_.is_fresh()) last_unit_ = spent() + spent() / 2;
         return false;
       }
-      if (!may_go_on() || !look_at(i)) return false;
-      ++outcome_.looked_at;
-      if (front_.entry(i).met) ++outcome_.still_met;
+      if (!task_.spending.start_may_go_on_after(units_between_polls) || !may_go_on()) return false;
+      const bool more = look_at(i);
+      if (more || task_.result.ended == Progressed::enough) {
+        ++outcome_.looked_at;
+        if (front_.entry(i).met) ++outcome_.still_met;
+      }
+      if (!more) return false;
     }
+    outcome_.next_crossing = 0;
     return true;
   }
 
@@ -70,7 +86,7 @@ class Incremental {
 
   /// Returns the first entry that was not done with, or `end`.
   std::uint32_t look_at(std::uint32_t begin, std::uint32_t end) noexcept {
-    for (std::uint32_t i = begin; i < end && task_.result.ended != Progressed::spent; ++i) {
+    for (std::uint32_t i = begin; i < end; ++i) {
       if (!front_.expired(i)) {
         if (i % entries_between_polls == entries_between_polls - 1 && !task_.spending.may_go_on()) {
           task_.result.ended = Progressed::spent;

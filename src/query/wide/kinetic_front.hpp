@@ -34,10 +34,13 @@ class KineticFront {
 
   explicit KineticFront(std::uint32_t capacity) : entries_(capacity), expiries_(capacity) {}
 
+  /// As if it were new.
   void reset() noexcept {
-    size_ = 0;
-    crossing_ = 0;
-    resume_at_ = 0;
+    clear();
+    starved_ = 0.0;
+    still_met_ = 1.0;
+    pause_ = 0;
+    next_pause_ = first_pause;
   }
 
   /// Whether it is better left alone in this run, within a limit: it was given up a while ago.
@@ -46,13 +49,12 @@ class KineticFront {
     --pause_;
     return true;
   }
-  /// Notes where B stands now;  /// Notes where B stands now;  /// Notes where B stands now; `reach` bounds the
-  /// distance of B's surface from its tree's origin. Starts from the roots if there is nothing yet, if the last search
-  /// found no room, or if much of what is kept is of no use any more.
+
+  /// Notes where B stands now; `reach` bounds the distance of B's surface from its tree's origin. Starts from the roots
+  /// if there is nothing yet, if the last search found no room, or if much of what is kept is of no use any more.
   void move_to(const math::Pose& pose, double reach) noexcept {
     if (size_ == 0 || overflowed_ || (!fresh_ && size_ > 2 * fresh_size_ + least_size)) {
-      reset();
-      overflowed_ = false;
+      clear();
       fresh_ = true;
       travelled_ = 0.0;
       add({tree::WideTree::root, tree::WideTree::root, 0}, at_once);
@@ -63,9 +65,11 @@ class KineticFront {
   }
   /// How a search from a front went.
   struct Outcome {
-    std::uint32_t resume_at = 0;  ///< where the next one begins, after the entries that met
-    bool explored = false;        ///< nothing is left that had expired
-    std::uint32_t looked_at = 0;  ///< of the entries that met before
+    std::uint32_t resume_at = 0;      ///< where the next one begins, after the entries that met
+    std::uint32_t next_crossing = 0;  ///< which of the entries that met is next
+    bool explored = false;            ///< nothing is left that had expired, but for what met
+    bool starved = false;             ///< its budget ended it
+    std::uint32_t looked_at = 0;      ///< of the entries that met before
     std::uint32_t still_met = 0;
   };
   /// A search has ended. The first to leave nothing unexplored after one from the roots leaves what is the measure of
@@ -82,12 +86,14 @@ class KineticFront {
       }
     }
     if (newly_met_ <= new_.size()) {
+      std::sort(new_.begin(), new_.begin() + newly_met_);  // none is then moved before its turn
       for (std::uint32_t k = 0; k < newly_met_; ++k) bring_forward(new_[k]);
     } else {
       for (std::uint32_t i = crossing_; i < size_; ++i) bring_forward(i);
     }
     newly_met_ = 0;
     resume_at_ = outcome.resume_at;
+    next_crossing_ = outcome.next_crossing;
   }
 
   /// Whether no search has finished since the last one from the roots: there may be more that meets.
@@ -96,6 +102,7 @@ class KineticFront {
   /// How many entries, from the first on, met in the last search.
   [[nodiscard]] std::uint32_t crossing() const noexcept { return crossing_; }
   [[nodiscard]] std::uint32_t resume_at() const noexcept { return resume_at_; }
+  [[nodiscard]] std::uint32_t next_crossing() const noexcept { return next_crossing_; }
   /// Whether the two leaves of an entry have triangles that meet.
   void set_met(std::uint32_t index, bool met) noexcept {
     if (met && !entries_[index].met) note_new(index);
@@ -121,27 +128,34 @@ class KineticFront {
   static constexpr std::uint32_t first_pause = 64;
   static constexpr std::uint32_t longest_pause = 8192;
 
+  void clear() noexcept {
+    size_ = 0;
+    crossing_ = 0;
+    resume_at_ = 0;
+    next_crossing_ = 0;
+    newly_met_ = 0;
+    overflowed_ = false;
+  }
   void swap(std::uint32_t i, std::uint32_t j) noexcept {
     std::swap(entries_[i], entries_[j]);
     std::swap(expiries_[i], expiries_[j]);
   }
-  /// Where most runs end with something unexplored, and what met does not meet for long, the likeliest pairs from the
+  /// Where most runs are ended by their budget, and what met does not meet for long, the likeliest pairs from the
   /// roots tell more. Means over some 16 runs.
   [[nodiscard]] bool is_no_use(const Outcome& outcome) noexcept {
     constexpr double weight = 1.0 / 16.0;
-    explored_ += weight * ((outcome.explored ? 1.0 : 0.0) - explored_);
+    starved_ += weight * ((outcome.starved ? 1.0 : 0.0) - starved_);
     if (outcome.looked_at > 0) {
       const double still = static_cast<double>(outcome.still_met) / static_cast<double>(outcome.looked_at);
       still_met_ += weight * (still - still_met_);
     }
-    if (explored_ > 0.9) next_pause_ = first_pause;
-    return explored_ < 0.5 && still_met_ < 0.95;
+    if (starved_ < 0.1) next_pause_ = first_pause;
+    return starved_ > 0.5 && still_met_ < 0.95;
   }
   /// Longer each time, until it is of use again.
   void give_up() noexcept {
-    reset();
-    newly_met_ = 0;
-    explored_ = 0.75;  // on trial: soon given up again, or trusted
+    clear();
+    starved_ = 0.25;  // on trial: soon given up again, or trusted
     still_met_ = 1.0;
     pause_ = next_pause_;
     next_pause_ = std::min(2 * next_pause_, longest_pause);
@@ -160,12 +174,13 @@ class KineticFront {
   std::uint32_t fresh_size_ = 0;
   std::uint32_t crossing_ = 0;
   std::uint32_t resume_at_ = 0;
+  std::uint32_t next_crossing_ = 0;
   std::uint32_t newly_met_ = 0;
-  double explored_ = 1.0;    ///< share of runs
+  double starved_ = 0.0;     ///< share of runs
   double still_met_ = 1.0;   ///< share of entries that met, one run later
   std::uint32_t pause_ = 0;  ///< runs
   std::uint32_t next_pause_ = first_pause;
-  std::array<std::uint32_t, 64> new_{};  ///< the first of them; of more, all entries are looked through
+  std::array<std::uint32_t, 256> new_{};  ///< the first of them; of more, all entries are looked through
   bool fresh_ = false;
   bool overflowed_ = false;
   double travelled_ = 0.0;

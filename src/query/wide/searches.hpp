@@ -23,8 +23,8 @@ struct Task {
   HitList& hits;  ///< triangles by their indices in the meshes
   Spending& spending;
   SearchResult& result;
-  /// Of the incremental search: as many hits of what met before stand for all of it. The rest of its time goes to what
-  /// may have begun to meet.
+  /// Of the incremental search: as many hits of what met before stand for all of it, and half as much work again goes
+  /// to what may have begun to meet.
   std::uint32_t sample = no_feature;
 };
 

@@ -52,7 +52,7 @@ class TimeCritical {
   bool start() noexcept {
     constexpr double share = 0.6;
     constexpr std::uint64_t most_units = 4096;
-    task_.spending.begin_start(share, most_units);
+    task_.spending.begin_start(share, share, most_units);
     DepthFirst<L, true> search(task_);
     search.run(tree::WideTree::root, tree::WideTree::root);
     if (task_.result.ended != Progressed::finished) return false;
