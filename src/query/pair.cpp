@@ -53,14 +53,19 @@ Answer refused() noexcept {
   return answer;
 }
 
+/// Only a search from the roots, the likeliest pair first, may end on probability.
+bool by_probability(const Request& request) noexcept { return request.polygon_free || request.p_min < 1.0; }
+
 /// The witness of the last hit. True: it still is one, and no more are wanted.
-bool witness_suffices(const PosedMeshes& meshes, std::uint32_t wanted, Pair::Implementation& pair, Spending& spending,
-                      SearchResult& result) noexcept {
-  if (wanted != 1 || !pair.has_witness || !spending.allows(1)) return false;
+bool witness_suffices(const PosedMeshes& meshes, const Request& request, Pair::Implementation& pair,
+                      Spending& spending) noexcept {
+  if (request.method != Method::incremental || by_probability(request) || wanted_hits(request) != 1 ||
+      !pair.has_witness || !spending.allows(1)) {
+    return false;
+  }
   spending.spend_triangle_pairs(1);
   if (!meshes.meet(pair.witness)) return false;
   pair.hits.add(pair.witness);
-  result.ended = Progressed::enough;
   return true;
 }
 
@@ -75,11 +80,8 @@ bool is_enough_for_front(const Budget& budget) noexcept {
   return budget.work_units >= 100 && budget.microseconds >= 5.0;
 }
 
-/// Only a search from the roots, the likeliest pair first, may end on probability.
-bool by_probability(const Request& request) noexcept { return request.polygon_free || request.p_min < 1.0; }
-
 template <volume::BoundingVolume V>
-SearchResult search(const Encounter<V>& encounter, const PosedMeshes& meshes, const Request& request,
+SearchResult search(const Encounter<V>& encounter, const PosedMeshes&, const Request& request,
                     Pair::Implementation& pair, Spending& spending) noexcept {
   SearchResult result;
   if (encounter.far_apart()) return result;
@@ -94,7 +96,6 @@ SearchResult search(const Encounter<V>& encounter, const PosedMeshes& meshes, co
   if (request.method == Method::incremental && !by_probability(request) &&
       !(request.budget.is_limited() && pair.slice_pauses())) {
     result.method = Method::incremental;
-    if (witness_suffices(meshes, wanted, pair, spending, result)) return result;
     pair.slice.search(encounter, wanted, pair.hits, spending, result);
     if (result.ended == Progressed::spent) pair.slice_pause = Pair::Implementation::pause_of_slice;
     remember_witness(pair);
@@ -118,7 +119,6 @@ SearchResult search(const wide::Encounter& encounter, const PosedMeshes& meshes,
     pair.wide->time_critical(task);
     return result;
   }
-  if (witness_suffices(meshes, wanted, pair, spending, result)) return result;
   if (!is_enough_for_front(request.budget) || (request.budget.is_limited() && pair.front.pauses())) {
     pair.wide->time_critical(task);
     remember_witness(pair);
@@ -340,6 +340,24 @@ bool carry_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, co
   return false;
 }
 
+/// Whether all are apart because they were, and have hardly moved since.
+template <volume::BoundingVolume V>
+bool is_still_apart(const tree::Hierarchy<V>&, const PosedMeshes&, const Request&,
+                    const Pair::Implementation&) noexcept {
+  return false;
+}
+
+bool is_still_apart(const tree::WideTree& b, const PosedMeshes& meshes, const Request& request,
+                    const Pair::Implementation& pair) noexcept {
+  return request.method == Method::incremental && !by_probability(request) &&
+         pair.front.is_apart(meshes.pose(), b.reach());
+}
+
+void note_clear(const PosedMeshes& meshes, Pair::Implementation& pair) noexcept {
+  pair.previous_normal.setZero();
+  pair.known_depth.note(meshes.pose(), 0.0);
+}
+
 template <class Tree>
 void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const Request& request,
             Pair::Implementation& pair) noexcept {
@@ -352,15 +370,28 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
     answer.cost = spending.close();
     return;
   }
-  const auto encounter = encounter_of(a, b, meshes, request);
-  const SearchResult result = search(encounter, meshes, request, pair, spending);
-  forecast(encounter, result, request, spending, pair);
+  if (is_still_apart(b, meshes, request, pair)) {
+    pair.has_witness = false;
+    note_clear(meshes, pair);
+    answer.cost = spending.close();
+    return;
+  }
+  SearchResult result;
+  if (witness_suffices(meshes, request, pair, spending)) {
+    result.ended = Progressed::enough;
+    result.method = Method::incremental;
+    judge(result, 0.5, request, true, answer);
+  } else {
+    const auto encounter = encounter_of(a, b, meshes, request);
+    result = search(encounter, meshes, request, pair, spending);
+    forecast(encounter, result, request, spending, pair);
+  }
   if (!pair.hits.empty() && request.max_contacts > 0) {
     const double most_depth = pair.known_depth.most(meshes.pose(), b.reach());
     make_contacts(meshes, pose_b_in_a, result, most_depth, request, pair, spending);
   } else {
     pair.previous_normal.setZero();
-    if (answer.basis == Basis::proved && answer.verdict == Verdict::clear) pair.known_depth.note(meshes.pose(), 0.0);
+    if (answer.basis == Basis::proved && answer.verdict == Verdict::clear) note_clear(meshes, pair);
   }
   answer.cost = spending.close();
   if (spending.ending_ns() > 0 && pair.hits.empty()) pair.ending.note(spending.ending_ns());

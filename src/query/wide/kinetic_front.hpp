@@ -50,6 +50,10 @@ class KineticFront {
     return true;
   }
 
+  /// Whether nothing can have expired since a search that found all apart: it would find all apart again.
+  [[nodiscard]] bool is_apart(const math::Pose& pose, double reach) const noexcept {
+    return size_ > 0 && travelled_ + math::motion_bound(pose_, pose, reach) < next_expiry_;
+  }
   /// Notes where B stands now; `reach` bounds the distance of B's surface from its tree's origin. Starts from the roots
   /// if there is nothing yet, if the last search found no room, or if much of what is kept is of no use any more.
   void move_to(const math::Pose& pose, double reach) noexcept {
@@ -78,6 +82,7 @@ class KineticFront {
     if (fresh_) fresh_size_ = size_;
     fresh_ = fresh_ && !outcome.explored;
     if (is_no_use(outcome)) return give_up();
+    note_next_expiry(outcome.explored);
     for (std::uint32_t i = 0; i < crossing_;) {
       if (entries_[i].met) {
         ++i;
@@ -111,7 +116,10 @@ class KineticFront {
   [[nodiscard]] double travelled() const noexcept { return travelled_; }
   [[nodiscard]] bool expired(std::uint32_t index) const noexcept { return !(travelled_ < expiries_[index]); }
   [[nodiscard]] Entry& entry(std::uint32_t index) noexcept { return entries_[index]; }
-  void set_expiry(std::uint32_t index, double expiry) noexcept { expiries_[index] = expiry; }
+  void set_expiry(std::uint32_t index, double expiry) noexcept {
+    expiries_[index] = expiry;
+    changed_ = true;
+  }
 
   void add(const Entry& entry, double expiry) noexcept {
     if (size_ == entries_.size()) {
@@ -119,6 +127,7 @@ class KineticFront {
       return;
     }
     if (entry.met) note_new(size_);
+    changed_ = true;
     entries_[size_] = entry;
     expiries_[size_++] = expiry;
   }
@@ -135,6 +144,8 @@ class KineticFront {
     next_crossing_ = 0;
     newly_met_ = 0;
     overflowed_ = false;
+    next_expiry_ = at_once;
+    changed_ = true;
   }
   void swap(std::uint32_t i, std::uint32_t j) noexcept {
     std::swap(entries_[i], entries_[j]);
@@ -151,6 +162,16 @@ class KineticFront {
     }
     if (starved_ < 0.1) next_pause_ = first_pause;
     return starved_ > 0.5 && still_met_ < 0.95;
+  }
+  /// When the first entry expires; at once where one met, or where there may be more than these.
+  void note_next_expiry(bool explored) noexcept {
+    if (!explored || fresh_ || overflowed_) {
+      next_expiry_ = at_once;
+    } else if (changed_) {
+      next_expiry_ = std::numeric_limits<double>::infinity();
+      for (std::uint32_t i = 0; i < size_; ++i) next_expiry_ = std::min(next_expiry_, expiries_[i]);
+    }
+    changed_ = !explored;
   }
   /// Longer each time, until it is of use again.
   void give_up() noexcept {
@@ -175,6 +196,8 @@ class KineticFront {
   std::uint32_t crossing_ = 0;
   std::uint32_t resume_at_ = 0;
   std::uint32_t next_crossing_ = 0;
+  double next_expiry_ = at_once;
+  bool changed_ = true;  ///< an expiry, since the next one was noted
   std::uint32_t newly_met_ = 0;
   double starved_ = 0.0;     ///< share of runs
   double still_met_ = 1.0;   ///< share of entries that met, one run later
