@@ -21,6 +21,15 @@ class BottomSlice {
     free_ = none;
     slice_size_ = 1;
     nodes_[0] = {};
+    pause_ = 0;
+  }
+
+  /// Whether it is better left alone in this run, within a limit: a slice that its budget ended is not taken up where
+  /// it stopped, and for some runs the likeliest pairs tell more.
+  [[nodiscard]] bool pauses() noexcept {
+    if (pause_ == 0) return false;
+    --pause_;
+    return true;
   }
 
   /// How many pairs the slice has; 1 after reset.
@@ -31,10 +40,12 @@ class BottomSlice {
               SearchResult& result) noexcept {
     Visit<V> visit{*this, encounter, wanted, hits, spending, result};
     static_cast<void>(visit.below(0));
+    if (result.ended == Progressed::spent) pause_ = pause;
   }
 
  private:
   static constexpr std::uint32_t none = 0xFFFFFFFFU;
+  static constexpr std::uint32_t pause = 64;  ///< runs
 
   struct Node {
     std::uint32_t a = 0;
@@ -133,6 +144,7 @@ class BottomSlice {
   std::uint32_t used_ = 1;
   std::uint32_t free_ = none;
   std::uint32_t slice_size_ = 1;
+  std::uint32_t pause_ = 0;  ///< runs
 };
 
 }  // namespace odds::query

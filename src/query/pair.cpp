@@ -94,10 +94,9 @@ SearchResult search(const Encounter<V>& encounter, const PosedMeshes&, const Req
     return result;
   }
   if (request.method == Method::incremental && !by_probability(request) &&
-      !(request.budget.is_limited() && pair.slice_pauses())) {
+      !(request.budget.is_limited() && pair.slice.pauses())) {
     result.method = Method::incremental;
     pair.slice.search(encounter, wanted, pair.hits, spending, result);
-    if (result.ended == Progressed::spent) pair.slice_pause = Pair::Implementation::pause_of_slice;
     remember_witness(pair);
     return result;
   }
@@ -476,7 +475,6 @@ const Shape& Pair::b() const noexcept { return *implementation_->b; }
 void Pair::reset() noexcept {
   implementation_->answer = {};
   implementation_->slice.reset();
-  implementation_->slice_pause = 0;
   implementation_->front.reset();
   implementation_->previous_normal.setZero();
   implementation_->known_depth.forget();

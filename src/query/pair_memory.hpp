@@ -28,19 +28,10 @@ struct Pair::Implementation {
         wide(wide::searches_for(options.instruction_set)),
         polygon_free(!a->has_polygons() || !b->has_polygons()) {}
 
-  /// A slice that its budget ended is not taken up where it stopped: for some runs the likeliest pairs tell more.
-  static constexpr std::uint32_t pause_of_slice = 64;
-  [[nodiscard]] bool slice_pauses() noexcept {
-    if (slice_pause == 0) return false;
-    --slice_pause;
-    return true;
-  }
-
   std::shared_ptr<const Shape> a;
   std::shared_ptr<const Shape> b;
   BucketQueue queue;
   HitList hits;
-  std::uint32_t slice_pause = 0;
   BottomSlice slice;         ///< of the incremental method with volumes of the generic framework
   wide::KineticFront front;  ///< of the same with the wide engine
   bool has_witness = false;

@@ -1,6 +1,7 @@
 // The incremental search against a fresh one, along coherent motions.
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <random>
 
 #include "odds/query/pair.hpp"
@@ -10,13 +11,31 @@
 namespace odds::query {
 namespace {
 
-class Incremental : public ::testing::TestWithParam<std::tuple<volume::Kind, std::uint32_t>> {};
+/// Two spheres with waves: a pair that keeps what it learns, and one that is asked for fresh searches.
+class Incremental : public ::testing::TestWithParam<std::tuple<volume::Kind, std::uint32_t>> {
+ protected:
+  void make(int cells) {
+    const auto [kind, capacity] = GetParam();
+    const auto shape = Shape::build(testing::wavy_sphere(cells), {.volume = kind}).value();
+    kept_.emplace(std::move(Pair::make(shape, shape, {.slice_capacity = capacity})).value());
+    fresh_.emplace(std::move(Pair::make(shape, shape)).value());
+  }
+  Answer kept(const math::Pose& pose, Request request) {
+    request.method = Method::incremental;
+    return kept_->run(pose, request);
+  }
+  Answer fresh(const math::Pose& pose) { return fresh_->run(pose, {.method = Method::exact}); }
+
+ private:
+  std::optional<Pair> kept_;
+  std::optional<Pair> fresh_;
+};
+
+/// The spheres overlap, or nearly.
+math::Pose close_pose(double distance) { return {Mat3::Identity(), Vec3(distance, 0.1, 0)}; }
 
 TEST_P(Incremental, GivesTheVerdictsOfAFreshSearch) {
-  const auto [kind, capacity] = GetParam();
-  const auto shape = Shape::build(testing::wavy_sphere(20), {.volume = kind}).value();
-  auto kept = std::move(Pair::make(shape, shape, {.slice_capacity = capacity})).value();
-  auto fresh = std::move(Pair::make(shape, shape)).value();
+  make(20);
   std::mt19937 generator(11);
   std::normal_distribution<double> normal;
   Quat rotation = Quat(1, 0.2, 0.3, 0.4).normalized();
@@ -31,8 +50,8 @@ TEST_P(Incremental, GivesTheVerdictsOfAFreshSearch) {
     offset += 1e-3 * Vec3(normal(generator), normal(generator), normal(generator));
     offset *= (1.96 + 0.12 * std::sin(step / 150.0)) / offset.norm();  // in and out of contact
     const auto pose = math::Pose::from_quaternion(offset, rotation);
-    const Answer a = kept.run(pose, {.method = Method::incremental});
-    const Answer b = fresh.run(pose, {.method = Method::exact});
+    const Answer a = kept(pose, {});
+    const Answer b = fresh(pose);
     ASSERT_EQ(a.verdict, b.verdict) << "step " << step;
     ASSERT_EQ(a.basis, Basis::proved);
     hits += a.verdict == Verdict::hit ? 1 : 0;
@@ -41,52 +60,38 @@ TEST_P(Incremental, GivesTheVerdictsOfAFreshSearch) {
   }
   EXPECT_GT(hits, steps / 10) << "the motion must touch and part";
   EXPECT_LT(hits, steps * 9 / 10);
-  if (capacity > 1000) {
+  if (std::get<1>(GetParam()) > 1000) {
     EXPECT_LT(kept_work, fresh_work) << "coherence must pay";
   }
 }
 
 TEST_P(Incremental, SurvivesABudgetThatEndsItAnywhere) {
-  const auto [kind, capacity] = GetParam();
-  const auto shape = Shape::build(testing::wavy_sphere(16), {.volume = kind}).value();
-  auto kept = std::move(Pair::make(shape, shape, {.slice_capacity = capacity})).value();
-  auto fresh = std::move(Pair::make(shape, shape)).value();
+  make(16);
   for (std::uint64_t units = 1; units < 600; ++units) {
-    const math::Pose pose{Mat3::Identity(), Vec3(2.1 - 5e-4 * static_cast<double>(units), 0.1, 0)};
-    const Answer a = kept.run(pose, {.method = Method::incremental, .budget = Budget::work(units)});
+    const math::Pose pose = close_pose(2.1 - 5e-4 * static_cast<double>(units));
+    const Answer a = kept(pose, {.budget = Budget::work(units)});
     EXPECT_LE(a.cost.node_pairs + a.cost.triangle_pairs, units);
     if (a.basis == Basis::proved) {
-      EXPECT_EQ(a.verdict, fresh.run(pose, {.method = Method::exact}).verdict);
+      EXPECT_EQ(a.verdict, fresh(pose).verdict);
     }
-    const Answer whole = kept.run(pose, {.method = Method::incremental});
-    ASSERT_EQ(whole.verdict, fresh.run(pose, {.method = Method::exact}).verdict) << units;
+    ASSERT_EQ(kept(pose, {}).verdict, fresh(pose).verdict) << units;
   }
 }
 
-/// Two spheres with waves that overlap, or nearly.
-math::Pose close_pose(double distance) { return {Mat3::Identity(), Vec3(distance, 0.1, 0)}; }
-
 TEST_P(Incremental, WithContactsSurvivesABudgetThatEndsItAnywhere) {
-  const auto [kind, capacity] = GetParam();
-  const auto shape = Shape::build(testing::wavy_sphere(16), {.volume = kind}).value();
-  auto kept = std::move(Pair::make(shape, shape, {.slice_capacity = capacity})).value();
-  auto fresh = std::move(Pair::make(shape, shape)).value();
+  make(16);
   for (std::uint64_t units = 1; units < 600; ++units) {
     const math::Pose pose = close_pose(2.1 - 5e-4 * static_cast<double>(units));
-    const Answer a =
-        kept.run(pose, {.method = Method::incremental, .budget = Budget::work(units), .max_contacts = most_contacts});
+    const Answer a = kept(pose, {.budget = Budget::work(units), .max_contacts = most_contacts});
     EXPECT_LE(a.cost.node_pairs + a.cost.triangle_pairs, units);
     if (a.basis == Basis::proved) {
-      ASSERT_EQ(a.verdict, fresh.run(pose, {.method = Method::exact}).verdict) << units;
+      ASSERT_EQ(a.verdict, fresh(pose).verdict) << units;
     }
   }
 }
 
 TEST_P(Incremental, InTimeNeverProvesWhatIsNotSo) {
-  const auto [kind, capacity] = GetParam();
-  const auto shape = Shape::build(testing::wavy_sphere(16), {.volume = kind}).value();
-  auto kept = std::move(Pair::make(shape, shape, {.slice_capacity = capacity})).value();
-  auto fresh = std::move(Pair::make(shape, shape)).value();
+  make(16);
   // A clock that jumps over the deadline after some looks: everywhere in turn.
   struct Jumping {
     std::int64_t now = 0;
@@ -95,16 +100,16 @@ TEST_P(Incremental, InTimeNeverProvesWhatIsNotSo) {
   for (int looks = 1; looks < 400; ++looks) {
     const math::Pose pose = close_pose(2.02 + 1e-5 * (looks % 7));
     clock.looks = looks;
-    Request request{.method = Method::incremental, .budget = Budget::time(50.0), .max_contacts = most_contacts};
+    Request request{.budget = Budget::time(50.0), .max_contacts = most_contacts};
     request.budget.clock = {[](void* state) noexcept {
                               auto& jumping = *static_cast<Jumping*>(state);
                               jumping.now += --jumping.looks == 0 ? 1'000'000 : 1;
                               return jumping.now;
                             },
                             &clock};
-    const Answer a = kept.run(pose, request);
+    const Answer a = kept(pose, request);
     if (a.basis == Basis::proved) {
-      ASSERT_EQ(a.verdict, fresh.run(pose, {.method = Method::exact}).verdict) << looks;
+      ASSERT_EQ(a.verdict, fresh(pose).verdict) << looks;
     }
   }
 }

@@ -69,6 +69,36 @@ TEST(KineticFront, ManyThatMeetAtOnceAllStandFirst) {
   EXPECT_EQ(*first.rbegin(), 389U);
 }
 
+TEST(KineticFront, FindsWhatHasExpiredAndWhenTheNextWill) {
+  constexpr std::uint32_t size = 53;  // six blocks and a rest
+  for (std::uint32_t late = 0; late < size; ++late) {
+    KineticFront front = filled(size);
+    front.move_to({}, reach);
+    for (std::uint32_t i = 0; i < size; ++i) front.set_expiry(i, i == late ? 0.01 : 0.02 + 1e-4 * i);
+    front.note_end({.explored = true});
+    const auto by = [](double way) { return math::Pose{Mat3::Identity(), Vec3(way, 0, 0)}; };
+    EXPECT_TRUE(front.is_apart(by(0.0099), reach)) << late;
+    EXPECT_FALSE(front.is_apart(by(0.0101), reach)) << late;
+    front.move_to(by(0.015), reach);
+    EXPECT_EQ(front.next_expired(0, size), late);
+    EXPECT_EQ(front.next_expired(late + 1, size), size);
+    front.set_expiry(late, 0.9);
+    front.note_end({.explored = true});  // what was passed over tells the next: the first of the others
+    const double next = 0.02 + (late == 0 ? 1e-4 : 0.0);
+    EXPECT_TRUE(front.is_apart(by(next - 1e-5), reach)) << late;
+    EXPECT_FALSE(front.is_apart(by(next + 1e-5), reach)) << late;
+  }
+}
+
+TEST(KineticFront, IsNotApartWhileAnythingMeets) {
+  KineticFront front = filled(20);
+  front.move_to({}, reach);
+  for (std::uint32_t i = 0; i < 20; ++i) front.set_expiry(i, 1.0);
+  front.set_met(5, true);
+  front.note_end({.explored = true});
+  EXPECT_FALSE(front.is_apart({}, reach));
+}
+
 TEST(KineticFront, RestsWhereItNeitherEndsNorLasts) {
   KineticFront front = filled(100);
   int runs = 0;

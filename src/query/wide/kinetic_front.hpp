@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <limits>
 #include <utility>
@@ -32,7 +31,7 @@ class KineticFront {
   };
   static constexpr double at_once = -std::numeric_limits<double>::infinity();
 
-  explicit KineticFront(std::uint32_t capacity) : entries_(capacity), expiries_(capacity) {}
+  explicit KineticFront(std::uint32_t capacity) : entries_(capacity), expiries_(capacity), changed_(capacity) {}
 
   /// As if it were new.
   void reset() noexcept {
@@ -66,6 +65,7 @@ class KineticFront {
       travelled_ += math::motion_bound(pose_, pose, reach);
     }
     pose_ = pose;
+    earliest_ = std::numeric_limits<double>::infinity();
   }
   /// How a search from a front went.
   struct Outcome {
@@ -82,21 +82,9 @@ class KineticFront {
     if (fresh_) fresh_size_ = size_;
     fresh_ = fresh_ && !outcome.explored;
     if (is_no_use(outcome)) return give_up();
-    note_next_expiry(outcome.explored);
-    for (std::uint32_t i = 0; i < crossing_;) {
-      if (entries_[i].met) {
-        ++i;
-      } else {
-        swap(i, --crossing_);
-      }
-    }
-    if (newly_met_ <= new_.size()) {
-      std::sort(new_.begin(), new_.begin() + newly_met_);  // none is then moved before its turn
-      for (std::uint32_t k = 0; k < newly_met_; ++k) bring_forward(new_[k]);
-    } else {
-      for (std::uint32_t i = crossing_; i < size_; ++i) bring_forward(i);
-    }
-    newly_met_ = 0;
+    move_changed();
+    const bool may_miss = !outcome.explored || fresh_ || overflowed_ || crossing_ > 0;
+    next_expiry_ = may_miss ? at_once : earliest_;
     resume_at_ = outcome.resume_at;
     next_crossing_ = outcome.next_crossing;
   }
@@ -110,15 +98,31 @@ class KineticFront {
   [[nodiscard]] std::uint32_t next_crossing() const noexcept { return next_crossing_; }
   /// Whether the two leaves of an entry have triangles that meet.
   void set_met(std::uint32_t index, bool met) noexcept {
-    if (met && !entries_[index].met) note_new(index);
+    if (met != entries_[index].met) changed_[changed_count_++] = index;
     entries_[index].met = met;
   }
   [[nodiscard]] double travelled() const noexcept { return travelled_; }
   [[nodiscard]] bool expired(std::uint32_t index) const noexcept { return !(travelled_ < expiries_[index]); }
+  /// The first that has expired of those from `from` on, before `end`; `end`: none. Every search passes over each entry
+  /// once, so that what they say together is when the first of all expires.
+  [[nodiscard]] std::uint32_t next_expired(std::uint32_t from, std::uint32_t end) noexcept {
+    constexpr std::uint32_t block = 8;  // minima of two apart, which the compiler makes wide
+    const double* const e = expiries_.data();
+    std::uint32_t i = from;
+    for (; i + block <= end; i += block) {
+      double least[block / 2];
+      for (std::uint32_t k = 0; k < block / 2; ++k) least[k] = lesser(e[i + k], e[i + block / 2 + k]);
+      const double first = lesser(lesser(least[0], least[1]), lesser(least[2], least[3]));
+      if (!(travelled_ < first)) break;
+      earliest_ = lesser(earliest_, first);
+    }
+    for (; i < end && travelled_ < e[i]; ++i) earliest_ = lesser(earliest_, e[i]);
+    return i;
+  }
   [[nodiscard]] Entry& entry(std::uint32_t index) noexcept { return entries_[index]; }
   void set_expiry(std::uint32_t index, double expiry) noexcept {
     expiries_[index] = expiry;
-    changed_ = true;
+    earliest_ = lesser(earliest_, expiry);
   }
 
   void add(const Entry& entry, double expiry) noexcept {
@@ -126,8 +130,8 @@ class KineticFront {
       overflowed_ = true;  // searched, but not kept: the next search starts from the roots
       return;
     }
-    if (entry.met) note_new(size_);
-    changed_ = true;
+    if (entry.met) changed_[changed_count_++] = size_;
+    earliest_ = lesser(earliest_, expiry);
     entries_[size_] = entry;
     expiries_[size_++] = expiry;
   }
@@ -142,11 +146,11 @@ class KineticFront {
     crossing_ = 0;
     resume_at_ = 0;
     next_crossing_ = 0;
-    newly_met_ = 0;
+    changed_count_ = 0;
     overflowed_ = false;
     next_expiry_ = at_once;
-    changed_ = true;
   }
+  static double lesser(double x, double y) noexcept { return x < y ? x : y; }
   void swap(std::uint32_t i, std::uint32_t j) noexcept {
     std::swap(entries_[i], entries_[j]);
     std::swap(expiries_[i], expiries_[j]);
@@ -163,16 +167,6 @@ class KineticFront {
     if (starved_ < 0.1) next_pause_ = first_pause;
     return starved_ > 0.5 && still_met_ < 0.95;
   }
-  /// When the first entry expires; at once where one met, or where there may be more than these.
-  void note_next_expiry(bool explored) noexcept {
-    if (!explored || fresh_ || overflowed_) {
-      next_expiry_ = at_once;
-    } else if (changed_) {
-      next_expiry_ = std::numeric_limits<double>::infinity();
-      for (std::uint32_t i = 0; i < size_; ++i) next_expiry_ = std::min(next_expiry_, expiries_[i]);
-    }
-    changed_ = !explored;
-  }
   /// Longer each time, until it is of use again.
   void give_up() noexcept {
     clear();
@@ -181,29 +175,37 @@ class KineticFront {
     pause_ = next_pause_;
     next_pause_ = std::min(2 * next_pause_, longest_pause);
   }
-  void note_new(std::uint32_t index) noexcept {
-    if (newly_met_ < new_.size()) new_[newly_met_] = index;
-    ++newly_met_;
-  }
-  void bring_forward(std::uint32_t i) noexcept {
-    if (i >= crossing_ && entries_[i].met) swap(i, crossing_++);
+  /// Puts what meets now in front and what does no more behind, in any order and in time proportional to their number:
+  /// a place is filled again only when it is its own entry's turn.
+  void move_changed() noexcept {
+    for (std::uint32_t k = 0; k < changed_count_; ++k) {
+      const std::uint32_t i = changed_[k];
+      while (crossing_ > 0 && !entries_[crossing_ - 1].met) --crossing_;
+      if (i < crossing_ && !entries_[i].met) swap(i, --crossing_);
+    }
+    for (std::uint32_t k = 0; k < changed_count_; ++k) {
+      const std::uint32_t i = changed_[k];
+      while (crossing_ < size_ && entries_[crossing_].met) ++crossing_;
+      if (i > crossing_ && entries_[i].met) swap(i, crossing_++);
+    }
+    changed_count_ = 0;
   }
 
   std::vector<Entry> entries_;
   std::vector<double> expiries_;
+  std::vector<std::uint32_t> changed_;  ///< whose `met` the search that is under way has changed
   std::uint32_t size_ = 0;
   std::uint32_t fresh_size_ = 0;
   std::uint32_t crossing_ = 0;
   std::uint32_t resume_at_ = 0;
   std::uint32_t next_crossing_ = 0;
   double next_expiry_ = at_once;
-  bool changed_ = true;  ///< an expiry, since the next one was noted
-  std::uint32_t newly_met_ = 0;
-  double starved_ = 0.0;     ///< share of runs
-  double still_met_ = 1.0;   ///< share of entries that met, one run later
-  std::uint32_t pause_ = 0;  ///< runs
+  double earliest_ = at_once;  ///< expiry of what the search that is under way has passed over
+  std::uint32_t changed_count_ = 0;
+  double starved_ = 0.0;       ///< share of runs
+  double still_met_ = 1.0;     ///< share of entries that met, one run later
+  std::uint32_t pause_ = 0;    ///< runs
   std::uint32_t next_pause_ = first_pause;
-  std::array<std::uint32_t, 256> new_{};  ///< the first of them; of more, all entries are looked through
   bool fresh_ = false;
   bool overflowed_ = false;
   double travelled_ = 0.0;
