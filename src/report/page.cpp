@@ -34,7 +34,7 @@ std::string page(const RunInfo& info, const RunSummary& summary, std::span<const
   if (shows) html += page_replay(*replay);
   html += page_latency(summary, charts);
   html += page_answers(summary, charts);
-  html += page_forces(summary, charts);
+  html += page_forces(info, summary, charts);
   html += page_effects(info, summary);
   html += page_machine(info);
   html += page_run(info);

@@ -13,7 +13,7 @@ namespace odds::report {
                                          const RunSummary& summary);  ///< title, verdict, promises, cards
 [[nodiscard]] std::string page_latency(const RunSummary& summary, bool charts);
 [[nodiscard]] std::string page_answers(const RunSummary& summary, bool charts);
-[[nodiscard]] std::string page_forces(const RunSummary& summary, bool charts);
+[[nodiscard]] std::string page_forces(const RunInfo& info, const RunSummary& summary, bool charts);
 [[nodiscard]] std::string page_replay(const RunReplay& replay);
 [[nodiscard]] std::string page_effects(const RunInfo& info, const RunSummary& summary);
 [[nodiscard]] std::string page_machine(const RunInfo& info);

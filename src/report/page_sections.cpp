@@ -48,6 +48,8 @@ std::string percentile_table(const RunSummary& s) {
          "</table></div>\n";
 }
 
+bool has_device(const RunInfo& info) { return !info.device.empty() && info.device != "none"; }
+
 struct AnswerKind {
   const char* label;
   const char* colour;
@@ -135,21 +137,29 @@ std::string page_answers(const RunSummary& s, bool charts) {
   return html;
 }
 
-std::string page_forces(const RunSummary& s, bool charts) {
-  std::string html = fmt::format(
-      "<h2 id=\"forces\">Force and contact</h2>\n<p>Largest force {:.3g} N, largest torque {:.3g} N·m, deepest contact "
-      "{:.3g} mm, at most {} contact points. Force and torque as sent to the device, in the world frame, on the "
-      "hand.</p>\n",
-      s.largest_force_n, s.largest_torque_nm, s.deepest_m * 1e3, s.most_contacts);
+std::string page_forces(const RunInfo& info, const RunSummary& s, bool charts) {
+  const bool has_hand = has_device(info);
+  std::string html = "<h2 id=\"forces\">Force and contact</h2>\n<p>";
+  if (has_hand) {
+    html += fmt::format(
+        "Largest force {:.3g} N, largest torque {:.3g} N·m. Force and torque as sent to the device, in the world frame, "
+        "on the hand. ",
+        s.largest_force_n, s.largest_torque_nm);
+  } else {
+    html += "The scene has no device, so no force was sent to a hand. ";
+  }
+  html += fmt::format("Deepest contact {:.3g} mm, at most {} contact points.</p>\n", s.deepest_m * 1e3, s.most_contacts);
   if (!charts) return html;
-  html += time_line("chart-force", "Force",
-                    "A jump from one tick to the next is felt as a knock, fast changes of sign as a buzz.");
-  html += time_line("chart-torque", "Torque", "The same for the turning of the hand.", "low");
-  html += time_line(
-      "chart-energy", "Energy at the hand",
-      "What the simulation has taken in since the start, the lowest of each stretch. It falls where the hand gets "
-      "energy back; a fall without end, or below zero, is a loop that pushes by itself.",
-      "low");
+  if (has_hand) {
+    html += time_line("chart-force", "Force",
+                      "A jump from one tick to the next is felt as a knock, fast changes of sign as a buzz.");
+    html += time_line("chart-torque", "Torque", "The same for the turning of the hand.", "low");
+    html += time_line(
+        "chart-energy", "Energy at the hand",
+        "What the simulation has taken in since the start, the lowest of each stretch. It falls where the hand gets "
+        "energy back; a fall without end, or below zero, is a loop that pushes by itself.",
+        "low");
+  }
   html += time_line("chart-contact", "Contact", "Depth of the deepest contact, and how many contact points there were.",
                     "low");
   return html;
@@ -172,7 +182,7 @@ std::string page_effects(const RunInfo& info, const RunSummary& s) {
                         duration(static_cast<double>(effect.longest_ns)));
   }
   html += "</table></div>\n";
-  if (info.device.empty() || info.device == "none") return html;
+  if (!has_device(info)) return html;
   return html +
          fmt::format("<p>Energy at the hand: {}. The balance of every tick is in ticks.csv.</p>\n",
                      s.least_energy_j < 0.0

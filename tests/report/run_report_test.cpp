@@ -269,6 +269,22 @@ TEST_F(RunReport, page_refers_to_nothing_outside_and_stays_small) {
   EXPECT_NE(page.find("default-src 'none'"), std::string::npos);
 }
 
+TEST_F(RunReport, page_of_a_scene_without_a_hand_shows_no_force_on_it) {
+  MadeRecording made = calm_recording();
+  const std::string with = text_of(write(made).page);
+  EXPECT_NE(with.find("Largest force"), std::string::npos);
+  made.info.device = "none";
+  const std::string without = text_of(write(made).page);
+  EXPECT_EQ(without.find("Largest force"), std::string::npos);
+  EXPECT_NE(without.find("no force was sent to a hand"), std::string::npos);
+  for (const char* chart : {"id=\"chart-force\"", "id=\"chart-torque\"", "id=\"chart-energy\""}) {
+    EXPECT_EQ(without.find(chart), std::string::npos) << chart;
+    if (pages_have_charts()) {
+      EXPECT_NE(with.find(chart), std::string::npos) << chart;
+    }
+  }
+}
+
 TEST_F(RunReport, an_empty_run_still_gives_files_that_can_be_read) {
   MadeRecording made;
   made.info.scene = "nothing";
