@@ -23,6 +23,7 @@ query::Request request_for(const Settings& settings, int limit) noexcept {
   request.k_min = settings.k_min;
   request.max_contacts = limit;
   request.carry_motion = settings.carry_motion;
+  request.solids = true;
   return request;
 }
 

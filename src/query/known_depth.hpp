@@ -25,12 +25,16 @@ class KnownDepth {
   [[nodiscard]] double most(const math::Pose& pose, double reach) const noexcept {
     return known_ ? depth_ + math::motion_bound(pose_, pose, reach) : std::numeric_limits<double>::infinity();
   }
+  /// How B's point that is now at `place`, in A's frame, has moved since; zero if nothing is known.
+  [[nodiscard]] Vec3 motion_of(const Vec3& place, const math::Pose& pose) const noexcept {
+    return known_ ? Vec3(place - pose_ * (pose.inverse() * place)) : Vec3(Vec3::Zero());
+  }
   /// What is believed of one contact, metres: what was known, and how far B has since come along its normal there; a
   /// small share of how far it has slid, for surfaces have slopes. `place` in A's frame, `normal` unit and into A; 0 if
   /// nothing is known.
   [[nodiscard]] double believed(const Vec3& place, const Vec3& normal, const math::Pose& pose) const noexcept {
     if (!known_) return 0.0;
-    const Vec3 come = place - pose_ * (pose.inverse() * place);
+    const Vec3 come = motion_of(place, pose);
     const double along = normal.dot(come);
     const double slid = (come - along * normal).norm();
     return std::max(depth_ + along + slope * slid, 0.0);

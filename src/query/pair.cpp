@@ -13,6 +13,7 @@
 #include "query/rough_contacts.hpp"
 #include "query/search.hpp"
 #include "query/shape_data.hpp"
+#include "query/within.hpp"
 
 namespace odds::query {
 
@@ -31,6 +32,11 @@ constexpr std::int64_t patch_finish_ns = 6500;
 constexpr std::int64_t hasty_finish_ns = 6500;   ///< of one that is hasty from the start
 constexpr std::int64_t single_finish_ns = 3000;  ///< of a single contact
 constexpr std::int64_t rough_finish_ns = 1500;   ///< of one more rough contact, their direction, and writing the answer
+constexpr std::int64_t within_finish_ns = 2500;  ///< of whether a shape lies within another, and one way out
+constexpr std::uint32_t most_rays = 16;          ///< of both
+/// What is believed of a shape within another, or without, that there is no time to look at: few pass through a surface
+/// from one run to the next.
+constexpr double stays_within = 0.9;
 
 /// Pairs of triangles that a patch has time for.
 std::uint32_t hits_in(double microseconds, double per_microsecond) noexcept {
@@ -352,9 +358,70 @@ bool is_still_apart(const tree::WideTree& b, const PosedMeshes& meshes, const Re
          pair.front.is_apart(meshes.pose(), b.reach());
 }
 
-void note_clear(const PosedMeshes& meshes, Pair::Implementation& pair) noexcept {
+/// No surfaces meet, and, where solids are asked for, neither lies within the other.
+void note_clear(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request,
+                Pair::Implementation& pair) noexcept {
+  pair.within = Within::neither;
   pair.previous_normal.setZero();
   pair.known_depth.note(meshes.pose(), 0.0);
+  if (!request.solids && may_be_within(*pair.a, *pair.b, pose_b_in_a)) pair.known_depth.forget();
+}
+
+/// The contact that leads the inner one of two nested shapes out.
+void make_way_out(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, double most_depth, bool enters,
+                  Pair::Implementation& pair, Spending& spending) noexcept {
+  std::array<Vec3, 2> preferred;
+  std::size_t count = 0;
+  if (!pair.previous_normal.isZero()) preferred[count++] = -pair.previous_normal;
+  const Vec3 came = pair.known_depth.motion_of(meshes.pose().translation, meshes.pose());
+  if (enters && came.norm() > tolerances::resting_motion * pair.a->mesh().size()) preferred[count++] = -came.normalized();
+  const Deadline deadline{[](void* state) noexcept { return !static_cast<Spending*>(state)->may_make_contacts(); },
+                          &spending};
+  std::uint32_t rays = 0;
+  const std::optional<Contact> out =
+      way_out(*pair.a, *pair.b, pose_b_in_a, pair.within, std::span(preferred).first(count), deadline, rays);
+  spending.spend_triangle_pairs(rays * units_of_ray);
+  pair.answer.contacts_complete = out.has_value();
+  if (!out) return;
+  Contact& contact = pair.rough.front();
+  contact = *out;
+  // It cannot be deeper than it has come: a body that was clear a moment ago is not thrown out of a mountain.
+  contact.depth = std::min(contact.depth, most_depth);
+  pair.answer.contacts = std::span(pair.rough).first(1);
+  pair.known_depth.note(meshes.pose(), contact.depth);
+  pair.previous_normal = contact.normal;
+  pair.previous_position = contact.position;
+}
+
+/// Where no surfaces meet, and solids are asked for: whether one shape lies within the other all the same. `same`: no
+/// surface has been crossed since that was last looked at. False if not; then the answer stands.
+bool answer_within(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request, double reach_b,
+                   bool same, Pair::Implementation& pair, Spending& spending) noexcept {
+  if (!request.solids || request.polygon_free) return false;
+  if (same ? pair.within == Within::neither : !may_be_within(*pair.a, *pair.b, pose_b_in_a)) return false;
+  Answer& answer = pair.answer;
+  const bool before = pair.within != Within::neither;
+  spending.reserve_for_contacts(within_finish_ns);
+  if (!spending.allows(most_rays * units_of_ray) || !spending.may_make_contacts()) {
+    answer.basis = Basis::budget;
+    answer.probability = before ? stays_within : 1.0 - stays_within;
+    answer.verdict = before ? Verdict::hit : Verdict::clear;
+    return true;
+  }
+  if (!same) {
+    std::uint32_t rays = 0;
+    pair.within = within(*pair.a, *pair.b, pose_b_in_a, rays);
+    spending.spend_triangle_pairs(rays * units_of_ray);
+  }
+  if (pair.within == Within::neither) return false;
+  answer.verdict = Verdict::hit;
+  answer.probability = 1.0;
+  pair.carried.forget();
+  if (request.max_contacts > 0) {
+    const double most_depth = pair.known_depth.most(meshes.pose(), reach_b);
+    make_way_out(meshes, pose_b_in_a, most_depth, !before, pair, spending);
+  }
+  return true;
 }
 
 template <class Tree>
@@ -371,7 +438,9 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
   }
   if (is_still_apart(b, meshes, request, pair)) {
     pair.has_witness = false;
-    note_clear(meshes, pair);
+    if (!answer_within(meshes, pose_b_in_a, request, b.reach(), true, pair, spending)) {
+      note_clear(meshes, pose_b_in_a, request, pair);
+    }
     answer.cost = spending.close();
     return;
   }
@@ -385,12 +454,16 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
     result = search(encounter, meshes, request, pair, spending);
     forecast(encounter, result, request, spending, pair);
   }
+  if (!pair.hits.empty()) pair.within = Within::neither;
   if (!pair.hits.empty() && request.max_contacts > 0) {
     const double most_depth = pair.known_depth.most(meshes.pose(), b.reach());
     make_contacts(meshes, pose_b_in_a, result, most_depth, request, pair, spending);
-  } else {
+  } else if (answer.basis == Basis::proved && answer.verdict == Verdict::clear) {
+    if (!answer_within(meshes, pose_b_in_a, request, b.reach(), false, pair, spending)) {
+      note_clear(meshes, pose_b_in_a, request, pair);
+    }
+  } else if (pair.within == Within::neither) {
     pair.previous_normal.setZero();
-    if (answer.basis == Basis::proved && answer.verdict == Verdict::clear) note_clear(meshes, pair);
   }
   answer.cost = spending.close();
   if (spending.ending_ns() > 0 && pair.hits.empty()) pair.ending.note(spending.ending_ns());
@@ -481,6 +554,7 @@ void Pair::reset() noexcept {
   implementation_->known_direction.forget();
   implementation_->carried.forget();
   implementation_->has_witness = false;
+  implementation_->within = Within::neither;
 }
 
 }  // namespace odds::query

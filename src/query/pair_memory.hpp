@@ -12,6 +12,7 @@
 #include "query/known_direction.hpp"
 #include "query/recalibration.hpp"
 #include "query/wide/searches.hpp"
+#include "query/within.hpp"
 
 namespace odds::query {
 
@@ -38,6 +39,7 @@ struct Pair::Implementation {
   TrianglePair witness;  ///< the pair of triangles that proved the last incremental hit
   PatchBuilder patches;
   const wide::Searches* wide;
+  Within within = Within::neither;        ///< as last looked at, where no surfaces met
   bool polygon_free;                      ///< every query has to be
   Recalibration recalibration;            ///< of stated probabilities
   Vec3 previous_normal = Vec3::Zero();    ///< of the last run's first contact, in A's frame; zero: none

@@ -88,6 +88,9 @@ inline constexpr double lump_depth = 1000.0;
 /// then holds up what rests on it, and a wrong direction moves a body by no more than this in a few steps.
 /// Test: StarvedCrate.DoesNotSinkIn, StarvedCrate.IsNeverThrown.
 inline constexpr double unmeasured_depth = 1e-4;
+/// A mesh within a solid leaves it the way it came in, unless another way is shorter than this part of that one: one
+/// that has fallen half through a floor goes up all the same. Test: MeshWithinASolid.GoesBackTheWayItCame.
+inline constexpr double way_it_came = 0.25;
 /// Of the smaller body's size: bodies in ODE that have moved by less keep their contacts (Request::carry_motion).
 /// Stacks drifted as little with it as without, and ten times as far with 1e-4. Test: Bricks.CreepingAddsUp.
 inline constexpr double resting_motion = 1e-5;

@@ -1,0 +1,149 @@
+// A mesh wholly within a solid: found, led out, and never made up.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "odds/mesh/made/by_name.hpp"
+#include "odds/query/pair.hpp"
+#include "support/all_kinds.hpp"
+#include "support/shapes.hpp"
+
+namespace odds::query {
+namespace {
+
+std::shared_ptr<const Shape> made(const std::string& what, volume::Kind kind = volume::Kind::wide) {
+  auto mesh = std::make_shared<const mesh::TriangleMesh>(std::move(mesh::made::make_shape("made:" + what)).value());
+  return Shape::build(std::move(mesh), {.volume = kind}).value();
+}
+
+math::Pose at(const Vec3& place) { return {Mat3::Identity(), place}; }
+
+class WithinASolid : public ::testing::TestWithParam<volume::Kind> {};
+
+TEST_P(WithinASolid, IsAHitWithOneContactThatLeadsOut) {
+  const auto slab = made("box:x=1,y=1,z=0.3,cells=4", GetParam());
+  const auto ball = made("icosphere:radius=0.02", GetParam());
+  auto ball_in = std::move(Pair::make(slab, ball)).value();
+  auto ball_around = std::move(Pair::make(ball, slab)).value();
+  const math::Pose pose = at({0.01, 0.02, 0.10});
+  EXPECT_EQ(ball_in.run(pose, {}).verdict, Verdict::clear) << "surfaces that do not meet, unless solids are asked for";
+  for (const Method method : {Method::exact, Method::incremental, Method::time_critical}) {
+    const Answer a = ball_in.run(pose, {.method = method, .max_contacts = 4, .solids = true});
+    ASSERT_EQ(a.verdict, Verdict::hit);
+    EXPECT_EQ(a.basis, Basis::proved);
+    ASSERT_EQ(a.contacts.size(), 1U);
+    EXPECT_TRUE(a.contacts_complete);
+    EXPECT_NEAR(a.contacts[0].normal.z(), -1.0, 1e-12) << "into the slab below";
+    EXPECT_NEAR(a.contacts[0].depth, 0.05 + 0.02, 1e-3);
+    EXPECT_NEAR(a.contacts[0].position.z(), 0.5 * (0.15 + 0.08), 1e-3);
+    const Answer b = ball_around.run(pose.inverse(), {.method = method, .max_contacts = 4, .solids = true});
+    ASSERT_EQ(b.contacts.size(), 1U);
+    EXPECT_NEAR(b.contacts[0].normal.z(), 1.0, 1e-12);
+    EXPECT_NEAR(b.contacts[0].depth, a.contacts[0].depth, 1e-12);
+    EXPECT_EQ(b.contacts[0].triangle_a, a.contacts[0].triangle_b);
+    EXPECT_EQ(b.contacts[0].triangle_b, a.contacts[0].triangle_a);
+  }
+  EXPECT_EQ(ball_in.run(pose, {.max_contacts = 0, .solids = true}).verdict, Verdict::hit);
+  EXPECT_EQ(ball_in.run(at({0, 0, 0.18}), {.solids = true}).verdict, Verdict::clear);
+}
+
+TEST_P(WithinASolid, EndsWhereTheContactSays) {
+  const auto outer = Shape::build(testing::wavy_sphere(14), {.volume = GetParam()}).value();
+  const auto inner = made("torus:ring=0.03,tube=0.01,around=24,across=12", GetParam());
+  auto pair = std::move(Pair::make(outer, inner)).value();
+  std::mt19937 generator(3);
+  std::normal_distribution<double> normal;
+  int within = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 place = 0.35 * Vec3(normal(generator), normal(generator), normal(generator));
+    const Quat turn = Quat(normal(generator), normal(generator), normal(generator), normal(generator)).normalized();
+    const auto pose = math::Pose::from_quaternion(place, turn);
+    if (pair.run(pose, {.method = Method::exact}).verdict == Verdict::hit) continue;
+    pair.reset();
+    const Answer answer = pair.run(pose, {.method = Method::exact, .max_contacts = 4, .solids = true});
+    ASSERT_EQ(answer.verdict == Verdict::hit, place.norm() < 1.0) << place.transpose();
+    if (answer.verdict == Verdict::clear) continue;
+    ++within;
+    ASSERT_EQ(answer.contacts.size(), 1U);
+    const Contact contact = answer.contacts[0];
+    // Out by a line through the middle, which is not all of the gear; by its own size more it is.
+    const double more = contact.depth + inner->mesh().size();
+    const Answer out = pair.run({pose.rotation, place - more * contact.normal}, {.max_contacts = 0, .solids = true});
+    EXPECT_EQ(out.verdict, Verdict::clear);
+  }
+  EXPECT_GT(within, 100);
+}
+
+INSTANTIATE_TEST_SUITE_P(AllVolumes, WithinASolid, ::testing::ValuesIn(testing::all_kinds()),
+                         [](const auto& tested) { return testing::name_of(tested.param); });
+
+TEST(MeshWithinASolid, GoesBackTheWayItCame) {
+  const auto floor = made("box:x=1,y=1,z=0.2,cells=4");
+  const auto ball = made("icosphere:radius=0.02");
+  auto pair = std::move(Pair::make(floor, ball)).value();
+  for (const Method method : {Method::exact, Method::incremental}) {
+    pair.reset();
+    for (double z = 0.13; z > -0.06; z -= 0.004) {  // through the middle: below, the way on is shorter
+      const Answer answer = pair.run(at({0, 0, z}), {.method = method, .max_contacts = 4, .solids = true});
+      if (z > 0.12 + 1e-9) continue;
+      ASSERT_FALSE(answer.contacts.empty()) << z;
+      EXPECT_LT(answer.contacts[0].normal.z(), -0.99) << z;
+      EXPECT_NEAR(answer.contacts[0].depth, 0.1 - z + 0.02, 2e-3) << z;
+    }
+  }
+}
+
+TEST(MeshWithinASolid, OneThatJumpedInGoesBackAndIsNotThrown) {
+  const auto floor = made("box:x=1,y=1,z=0.2,cells=4");
+  const auto ball = made("icosphere:radius=0.02");
+  auto pair = std::move(Pair::make(floor, ball)).value();
+  Request request{.max_contacts = 4, .solids = true};
+  EXPECT_EQ(pair.run(at({0, 0, 0.125}), request).verdict, Verdict::clear);
+  const Answer in = pair.run(at({0, 0, -0.03}), request);  // past the middle in one step
+  ASSERT_EQ(in.contacts.size(), 1U);
+  EXPECT_LT(in.contacts[0].normal.z(), -0.99);
+  EXPECT_NEAR(in.contacts[0].depth, 0.15, 1e-3);
+  const Answer rests = pair.run(at({0, 0, -0.03}), request);
+  ASSERT_EQ(rests.contacts.size(), 1U);
+  EXPECT_LT(rests.contacts[0].normal.z(), -0.99);
+  EXPECT_LE(rests.contacts[0].depth, 0.16) << "no deeper than it has come";
+}
+
+TEST(MeshWithinASolid, IsNeitherAHoleNorASheetNorAHollow) {
+  const auto ring = made("torus");
+  const auto ball = made("icosphere:radius=0.01");
+  auto in_hole = std::move(Pair::make(ring, ball)).value();
+  EXPECT_EQ(in_hole.run({}, {.max_contacts = 4, .solids = true}).verdict, Verdict::clear);
+  std::vector<Vec3> vertices{{-1, -1, -1}, {1, -1, -1}, {0, 1, -1}, {0, 0, 1}};
+  std::vector<mesh::Triangle> open{{0, 1, 2}, {0, 3, 1}, {1, 3, 2}};  // a tetrahedron that lacks a face
+  auto cup_mesh = std::make_shared<const mesh::TriangleMesh>(
+      std::move(mesh::TriangleMesh::make(vertices, open, "cup")).value());
+  const auto cup = Shape::build(std::move(cup_mesh)).value();
+  auto in_cup = std::move(Pair::make(cup, ball)).value();
+  EXPECT_EQ(in_cup.run(at({0, -0.1, -0.5}), {.max_contacts = 4, .solids = true}).verdict, Verdict::clear);
+}
+
+TEST(MeshWithinASolid, IsNotDecidedWithoutTheWork) {
+  const auto slab = made("box:x=1,y=1,z=0.3,cells=4");
+  const auto ball = made("icosphere:radius=0.02");
+  auto pair = std::move(Pair::make(slab, ball)).value();
+  const math::Pose pose = at({0.01, 0.02, 0.10});
+  for (std::uint64_t units = 1; units < 400; ++units) {
+    pair.reset();
+    const Answer answer =
+        pair.run(pose, {.budget = Budget::work(units), .max_contacts = 4, .solids = true});
+    EXPECT_LE(answer.cost.node_pairs + answer.cost.triangle_pairs, units);
+    if (answer.basis != Basis::proved) continue;
+    ASSERT_EQ(answer.verdict, Verdict::hit) << units;
+    ASSERT_EQ(answer.contacts.size(), 1U);
+  }
+  Request little{.budget = Budget::work(40), .max_contacts = 4, .solids = true};
+  pair.reset();
+  EXPECT_EQ(pair.run(pose, {.max_contacts = 4, .solids = true}).verdict, Verdict::hit);
+  const Answer after = pair.run(pose, little);
+  EXPECT_EQ(after.basis, Basis::budget);
+  EXPECT_EQ(after.verdict, Verdict::hit) << "it was within, and nothing says that it is no more";
+}
+
+}  // namespace
+}  // namespace odds::query
