@@ -95,7 +95,8 @@ Outcome outcome_of(const query::Answer& answer, const Settings& own, const Setti
   if (complete && answer.verdict == query::Verdict::hit && limit > 0) return Outcome::plenty;
   const std::uint64_t spent = answer.cost.node_pairs + answer.cost.triangle_pairs;
   if (complete || !is_ended_by_share(own, settings, spent)) return Outcome::finished;
-  const bool of_use = answer.verdict == query::Verdict::clear || limit == 0 || given > 0;
+  const bool of_use = answer.verdict == query::Verdict::clear || limit == 0 ||
+                      (given > 0 && answer.contact_pairs >= HeldContacts::enough_pairs);
   return decided && of_use ? Outcome::enough : Outcome::starved;
 }
 

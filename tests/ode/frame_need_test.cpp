@@ -7,12 +7,14 @@
 #include <vector>
 
 #include "odds/math/random.hpp"
+#include "odds/query/pair.hpp"
 #include "odds/realtime/clock.hpp"
 #include "ode/frame_budget.hpp"
 #include "ode/frame_crowd.hpp"
 #include "ode/frame_fixture.hpp"
 #include "ode/frame_need.hpp"
 #include "ode/frame_share.hpp"
+#include "ode/held_contacts.hpp"
 
 namespace odds::test {
 namespace {
@@ -310,6 +312,37 @@ TEST_F(HeldInFrame, HeldContactsFollowTheBodiesAndCostNoWork) {
   ode::current_share = &share;
   EXPECT_TRUE(collide(a, b).empty());
   ode::current_share = nullptr;
+}
+
+TEST_F(HeldInFrame, ContactsThatAreAGuessAreNotWhatAPairNeeds) {
+  const auto shape = sphere_shape(0.1, 16);
+  const Vec3 above(0.0, 0.0, 0.19);
+  int enough = 0;
+  int too_few = 0;
+  for (unsigned long units = 8; units <= 20'000; units += units / 8) {
+    const dGeomID a = mesh_geom(shape, space);
+    const dGeomID b = mesh_geom(shape, space);
+    dGeomSetPosition(b, above.x(), above.y(), above.z());
+    ode::FrameShare share;
+    share.work_units = units;
+    ode::current_share = &share;
+    const bool touch = !collide(a, b).empty();
+    ode::current_share = nullptr;
+    dGeomDestroy(a);
+    dGeomDestroy(b);
+    auto same = std::move(query::Pair::make(shape, shape)).value();
+    const query::Answer answer = same.run({Mat3::Identity(), above}, {.method = query::Method::incremental,
+                                                                      .budget = query::Budget::work(units),
+                                                                      .max_contacts = query::most_contacts});
+    const bool guess = answer.contact_pairs < ode::HeldContacts::enough_pairs;
+    enough += share.outcome == ode::Outcome::enough ? 1 : 0;
+    too_few += touch && guess ? 1 : 0;
+    if (guess) {
+      EXPECT_EQ(share.outcome, ode::Outcome::starved) << units << " units";
+    }
+  }
+  EXPECT_GT(enough, 5);
+  EXPECT_GT(too_few, 5);
 }
 
 }  // namespace
