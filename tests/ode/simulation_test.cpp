@@ -115,5 +115,34 @@ TEST_F(Simulation, ASphereOnAMeshFloorStaysWhereItFell) {
   expect_rest(body, 0.2, 1e-4);
 }
 
+TEST_F(Simulation, AMeshThatStartsWithinAMeshFloorComesOutAndRestsOnIt) {
+  mesh_geom(box_shape(2.0, 2.0, 1.0, 8), space);  // its top at 0.5
+  for (const bool comes_first : {false, true}) {
+    const dGeomID ball = mesh_geom(sphere_shape(0.05), comes_first ? nullptr : space);
+    if (comes_first) {
+      dSpaceDestroy(space);
+      space = dSimpleSpaceCreate(nullptr);
+      dSpaceAdd(space, ball);
+      mesh_geom(box_shape(2.0, 2.0, 1.0, 8), space);
+    }
+    const dBodyID body = body_of(ball, 0.3, 0.2, 0.25);
+    for (int i = 0; i < 1500; ++i) step();
+    EXPECT_NEAR(dBodyGetPosition(body)[2], 0.55, 2e-3) << "the first of the two: " << comes_first;
+    EXPECT_LT(std::abs(dBodyGetLinearVel(body)[2]), 1e-2);
+    dGeomDestroy(ball);
+  }
+}
+
+TEST_F(Simulation, AMeshFasterThanAMeshFloorIsThickComesBack) {
+  mesh_geom(box_shape(2.0, 2.0, 0.2, 8), space);  // its top at 0.1
+  const dGeomID ball = mesh_geom(sphere_shape(0.02), space);
+  const dBodyID body = body_of(ball, 0.1, 0.1, 0.135);
+  dBodySetLinearVel(body, 0, 0, -100.0);  // 100 mm a step: from outside to within at once
+  step();
+  ASSERT_LT(dBodyGetPosition(body)[2], 0.06);
+  for (int i = 0; i < 2000; ++i) step();
+  EXPECT_NEAR(dBodyGetPosition(body)[2], 0.12, 2e-3);
+}
+
 }  // namespace
 }  // namespace odds::test
