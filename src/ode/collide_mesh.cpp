@@ -87,16 +87,16 @@ oddsAnswer record_of_bad_pose() noexcept {
 }
 
 // A larger share would have been of use if it was the share that ended the search, and not the geoms' own budgets.
-Outcome outcome_of(const query::Answer& answer, const Settings& own, const Settings& settings, int limit,
-                   int given) noexcept {
+Outcome outcome_of(const query::Answer& answer, const Settings& own, const Settings& settings, int limit) noexcept {
   if (answer.contacts_carried) return Outcome::carried;
   const bool decided = answer.basis != query::Basis::budget;
   const bool complete = decided && answer.contacts_complete;
   if (complete && answer.verdict == query::Verdict::hit && limit > 0) return Outcome::plenty;
   const std::uint64_t spent = answer.cost.node_pairs + answer.cost.triangle_pairs;
   if (complete || !is_ended_by_share(own, settings, spent)) return Outcome::finished;
-  const bool of_use = answer.verdict == query::Verdict::clear || limit == 0 ||
-                      (given > 0 && answer.contact_pairs >= HeldContacts::enough_pairs);
+  // Contacts of fewer pairs of triangles hold nothing up: bodies sink in while the frame believes them served.
+  constexpr std::uint32_t pairs_of_use = 8;
+  const bool of_use = answer.verdict == query::Verdict::clear || limit == 0 || answer.contact_pairs >= pairs_of_use;
   return decided && of_use ? Outcome::enough : Outcome::starved;
 }
 
@@ -167,7 +167,7 @@ int answer_pair(PairEntry& entry, dGeomID o1, dGeomID o2, int flags, dContactGeo
   count(statistics().contacts, static_cast<unsigned long long>(writer.count()));
   if (current_share != nullptr) {
     current_share->report(answer.cost.node_pairs + answer.cost.triangle_pairs, writer.count(),
-                          outcome_of(answer, own, settings, limit, writer.count()));
+                          outcome_of(answer, own, settings, limit));
     current_share->stall_us += answer.cost.stall_us;
   }
   return writer.count();
