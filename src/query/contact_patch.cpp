@@ -46,6 +46,7 @@ struct Patch {
   double low = 0.0;            ///< of the rim, and depth below it, along `normal`
   double high = 0.0;
   double depth = 0.0;
+  double length = 0.0;  ///< of the rim
   patch::Chosen chosen;
   bool dropped = false;
 };
@@ -92,7 +93,11 @@ struct PatchBuilder::Scratch {
   void make_rim(const PatchInput& input, std::size_t most_pairs, Watch& watch) noexcept;
   void cut_pairs(const PatchInput& input, std::size_t count, bool silent_too, Watch& watch) noexcept;
   void sort_by_patch(std::size_t count) noexcept;
+  [[nodiscard]] Indices pieces_of(std::size_t patch) const noexcept {
+    return {by_patch.data() + first_of_patch[patch], first_of_patch[patch + 1] - first_of_patch[patch]};
+  }
   bool make_patches(const PatchInput& input, Watch& watch) noexcept;
+  void straighten(const PatchInput& input, std::span<const patch::RimSums> sums, Watch& watch) noexcept;
   void make_hasty_patch(const PatchInput& input) noexcept;
   Patch make_patch(const PatchInput& input, const patch::RimSums& sums, Indices indices, const Effort& effort,
                    Watch& watch) noexcept;
@@ -186,12 +191,44 @@ bool PatchBuilder::Scratch::make_patches(const PatchInput& input, Watch& watch) 
   if (watch.late()) return false;
   sort_by_patch(sums.size());
   for (std::size_t i = 0; i < sums.size(); ++i) {
-    const Indices indices{by_patch.data() + first_of_patch[i], first_of_patch[i + 1] - first_of_patch[i]};
+    const Indices indices = pieces_of(i);
     if (indices.empty()) continue;
     patches[patch_count++] = make_patch(input, sums[i], indices, thorough, watch);
     if (watch.late()) return false;
   }
+  if (input.believed_depth > 0.0) straighten(input, sums, watch);
   return true;
+}
+
+/// A few pieces that a search without time has left of a rim, say along the side of a brick that stands flush on
+/// another, span an area of their own: where a brick hangs over by as little as it is deep, that points anywhere. What
+/// is no deeper than is believed along the direction that is known, or else that on which most of the rim agrees,
+/// belongs to that.
+void PatchBuilder::Scratch::straighten(const PatchInput& input, std::span<const patch::RimSums> sums,
+                                       Watch& watch) noexcept {
+  const Vec3* chosen = input.known_normal;
+  double most = 0.0;
+  for (std::size_t p = 0; p < patch_count && input.known_normal == nullptr; ++p) {
+    double agreeing = 0.0;
+    for (std::size_t q = 0; q < patch_count; ++q) {
+      if (patches[q].normal.dot(patches[p].normal) > tolerances::same_face) agreeing += patches[q].length;
+    }
+    if (agreeing > most) chosen = &patches[p].normal;
+    most = std::max(most, agreeing);
+  }
+  if (chosen == nullptr) return;
+  const Vec3 direction = *chosen;
+  for (std::size_t i = 0, made = 0; i < sums.size() && !watch.late(); ++i) {
+    const Indices indices = pieces_of(i);
+    if (indices.empty()) continue;
+    Patch& own = patches[made++];
+    const bool is_whole = sums[i].closed() && sums[i].length > 0.0;
+    if (is_whole || own.normal.dot(direction) > tolerances::same_face) continue;
+    const patch::PatchView view{input, rim, sums[i], indices, thorough.sample};
+    if (!patch::is_of_direction(view, direction, input.believed_depth, watch)) continue;
+    const Patch straight = patch_along(direction, input, sums[i], indices, thorough, watch);
+    if (straight.depth <= input.believed_depth) own = straight;
+  }
 }
 
 /// One patch of what there is of the rim. The pieces were made in an order that is spread over all hits, so that some
@@ -298,6 +335,7 @@ Patch PatchBuilder::Scratch::patch_along(const Vec3& normal, const PatchInput& i
   made.lower = sums.lower;
   made.upper = sums.upper;
   made.normal = normal;
+  made.length = sums.length;
   const patch::Frame frame(made.normal);
   const Vec3 centre = span_centre(rim, indices, sums.centre(rim.origin), made.normal);
   find_witnesses(effort.ends_only ? telling.ends_of(rim.pieces, indices, frame, fan, centre)

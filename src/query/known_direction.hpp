@@ -38,6 +38,8 @@ class KnownDirection {
   [[nodiscard]] const Vec3* at(const math::Pose& pose, double size) const noexcept {
     return votes_ >= enough && is_near(pose, size) ? &normal_ : nullptr;
   }
+  /// Where the contact of that direction is now, in A's mesh frame.
+  [[nodiscard]] Vec3 place(const math::Pose& pose) const noexcept { return pose * on_b_; }
 
  private:
   [[nodiscard]] bool is_near(const math::Pose& pose, double size) const noexcept {

@@ -223,6 +223,16 @@ void make_rough_contacts(const PosedMeshes& meshes, const Vec3* known_normal, co
   pair.answer.contact_pairs = static_cast<std::uint32_t>(count);
 }
 
+/// Along the direction that is known, if any, metres: what was measured and what the bodies have come since, or what
+/// nobody need have measured.
+double believed_depth(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Vec3* known_normal,
+                      const Pair::Implementation& pair) noexcept {
+  const double unmeasured = tolerances::unmeasured_depth * std::min(pair.a->mesh().size(), pair.b->mesh().size());
+  if (known_normal == nullptr) return unmeasured;
+  const Vec3 place = pair.known_direction.place(pose_b_in_a) - meshes.origin_a();
+  return std::max(unmeasured, pair.known_depth.believed(place, *known_normal, meshes.pose()));
+}
+
 /// `searched`: how the hits were found; `most_depth`: what is known of the depth, metres.
 void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const SearchResult& searched,
                    double most_depth, const Request& request, Pair::Implementation& pair, Spending& spending) noexcept {
@@ -260,18 +270,20 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
     input.probe_a = {&probe_depth, pair.a.get()};
     input.probe_b = {&probe_depth, pair.b.get()};
   }
-  const Deadline deadline{[](void* state) noexcept { return !static_cast<Spending*>(state)->may_make_contacts(); },
-                          &spending};
-  pair.answer.contacts = pair.patches.build(input, deadline);
-  if (pair.answer.contacts.empty()) return;
-  pair.answer.contact_pairs = pair.patches.pairs_used();
   // As many hits as there was time for are a part of them; as many as were asked for, or as are kept, are what was
   // asked.
   const bool as_many_as_kept =
       pair.hits.size() == pair.hits.capacity() && !(found_all && std::isfinite(request.budget.microseconds));
   const bool part = request.max_contacts > 1 &&
                     ((ended == Progressed::enough && !as_many_as_kept) || pair.hits.size() > input.most_pairs);
-  pair.answer.contacts_complete = pair.patches.finished() && ended != Progressed::spent && !part;
+  const bool all = ended != Progressed::spent && !part;
+  if (!all) input.believed_depth = believed_depth(meshes, pose_b_in_a, known_normal, pair);
+  const Deadline deadline{[](void* state) noexcept { return !static_cast<Spending*>(state)->may_make_contacts(); },
+                          &spending};
+  pair.answer.contacts = pair.patches.build(input, deadline);
+  if (pair.answer.contacts.empty()) return;
+  pair.answer.contact_pairs = pair.patches.pairs_used();
+  pair.answer.contacts_complete = pair.patches.finished() && all;
   // A finished patch of a part of the rim has measured its depth, and errs seldom; a hasty one has not.
   const bool measured = pair.patches.finished() && pair.known_depth.known();
   if (!pair.answer.contacts_complete && !measured) {

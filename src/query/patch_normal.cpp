@@ -271,9 +271,10 @@ Vec3 patch_normal(const PatchView& view, Watch& watch) noexcept {
   const RimSums& sums = view.sums;
   const Vec3 area = sums.vector_area(view.rim.origin);
   const double reach = view.rim.origin.cwiseAbs().maxCoeff() + sums.diagonal();
-  const bool noticeable = area.norm() > tolerances::rim_noise * reach * sums.length;
-  // The isoperimetric quotient: 1 for a circle, 0.8 for a square, 0 for a line.
+  // The isoperimetric quotient: 1 for a circle, 0.8 for a square, 0 for a line. Above 1 more is missing of the rim than
+  // is there: its pieces lie far apart, and what they seem to span is where they lie.
   const double roundness = sums.length > 0.0 ? 4.0 * std::numbers::pi * area.norm() / (sums.length * sums.length) : 0.0;
+  const bool noticeable = area.norm() > tolerances::rim_noise * reach * sums.length && roundness <= 1.0;
   Vec3 normal = Vec3::Zero();
   if (noticeable && roundness > (sums.closed() ? tolerances::round_closed_rim : tolerances::round_open_rim)) {
     normal = area.normalized();
@@ -288,6 +289,39 @@ Vec3 patch_normal(const PatchView& view, Watch& watch) noexcept {
 
 Vec3 shortest_way_out(const PatchView& view, Watch& watch) noexcept {
   return least_overlap(view, view.sums.vector_area(view.rim.origin), watch);
+}
+
+bool is_of_direction(const PatchView& view, const Vec3& direction, double depth, Watch& watch) noexcept {
+  const auto leads = [&direction](const Vec3& face, bool solid) noexcept {
+    const double facing = face.dot(direction);
+    return (solid ? facing : std::abs(facing)) > tolerances::same_face;
+  };
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  double not_against = 0.0;
+  for (std::size_t i = 0; i < view.pieces.size() && !watch.late(i); ++i) {
+    const RimPiece& piece = view.rim.pieces[view.pieces[i]];
+    const double from = direction.dot(piece.from - view.rim.origin);
+    const double to = direction.dot(piece.to - view.rim.origin);
+    low = std::min({low, from, to});
+    high = std::max({high, from, to});
+    if (!piece.counts) continue;
+    const PlacedPair& placed = view.rim.pairs[piece.pair];
+    const bool flush =
+        view.input.solid_a && view.input.solid_b && placed.normal_a.dot(placed.normal_b) > tolerances::same_face;
+    if (flush || leads(placed.normal_b, view.input.solid_b) || leads(-placed.normal_a, view.input.solid_a)) {
+      not_against += piece.along().norm();
+    }
+  }
+  if (watch.late() || !(high - low <= depth)) return false;
+  if (!(view.sums.diagonal() <= depth || not_against >= tolerances::snap_from * view.sums.length)) return false;
+  const Frame frame(direction);
+  const std::size_t stride = std::max<std::size_t>(1, (view.pieces.size() + view.sample - 1) / view.sample);
+  for (std::size_t i = 0; i < view.pieces.size(); i += stride) {
+    const PlacedPair& placed = view.rim.pairs[view.rim.pieces[view.pieces[i]].pair];
+    if (!(pair_depth(placed, frame, Vec3::Zero()) <= depth)) return false;
+  }
+  return true;
 }
 
 }  // namespace odds::query::patch

@@ -59,6 +59,10 @@ struct PatchInput {
   const Vec3* previous_position = nullptr;  ///< where that contact was, in A's frame, or null
   /// Direction of the last patch of bodies that have hardly moved since, or null: that of a patch made in a hurry.
   const Vec3* known_normal = nullptr;
+  /// Where the hits are a part of all pairs: how deep the bodies are believed to be in each other, metres. What is left
+  /// of a rim, and no deeper than that along the known normal, or that on which most of the rim agrees, has that
+  /// direction. 0: the hits are all.
+  double believed_depth = 0.0;
   std::uint32_t most_pairs = 65536;  ///< of the hits; of more, a sample is taken that is spread over all
   int max_contacts = 4;              ///< 1 .. most_contacts (clamped)
   DepthProbe probe_a;                ///< optional
@@ -73,7 +77,8 @@ struct PatchInput {
 /// the direction along which a translation of A reduces the common volume fastest. It needs the rim only, does not
 /// depend on how the surfaces are cut into triangles, is the face normal for a vertex or a face on a face, and the
 /// cross product of the edges for an edge on an edge. Where the rim is incomplete or has no area, the candidate
-/// direction of least overlap is taken.
+/// direction of least overlap is taken; where the hits are a part of all (`believed_depth`), a direction that is known
+/// better goes before that.
 ///
 /// All memory is taken by the constructor; `build` is noexcept and does not allocate, lock, or make a system call. The
 /// same input gives the same bits, unless a deadline expires. One builder per thread.
