@@ -49,6 +49,11 @@ class ContactWriter {
     return true;
   }
 
+  /// One that was written.
+  [[nodiscard]] const dContactGeom& operator[](int i) const noexcept {
+    return *reinterpret_cast<const dContactGeom*>(bytes_ + i * skip_);
+  }
+
  private:
   dGeomID g1_;
   dGeomID g2_;

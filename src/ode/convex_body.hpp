@@ -82,6 +82,8 @@ class ConvexBody {
   [[nodiscard]] const Vec3& box_center() const noexcept { return box_center_; }
   [[nodiscard]] const Vec3& box_half_extents() const noexcept { return box_half_extents_; }
 
+  /// Tells bodies of one class and the same extents apart; 0 where there are no two such.
+  [[nodiscard]] virtual std::uint64_t number() const noexcept { return 0; }
   /// The point of the body that is farthest along `direction` (any length).
   [[nodiscard]] virtual Vec3 farthest(const Vec3& direction) const noexcept = 0;
   /// The greatest of direction . x over the body.

@@ -29,6 +29,7 @@ struct Pieces {
   std::array<Piece, most_pieces> all;
   std::size_t count = 0;
   bool complete = true;
+  bool cut_off = false;  // by the limit; else only the room for pieces was too small
 };
 
 struct Patch {
@@ -121,6 +122,7 @@ void gather(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const Conv
     for (std::size_t i = 0; i < count && pieces.count < most_pieces; ++i) {
       if (limit.time_is_up()) {
         pieces.complete = false;
+        pieces.cut_off = true;
         return;
       }
       Corners corners = mesh.corners(near[i]);
@@ -133,6 +135,7 @@ void gather(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const Conv
   const Vec3& half = body.box_half_extents();
   const std::size_t found = query::triangles_in_box(*mesh.shape, body_in_mesh * body.box_center(),
                                                     body_in_mesh.rotation, half, near, limit.units, &pieces.complete);
+  pieces.cut_off = !pieces.complete && found < near.size();
   if (pieces.complete) return cut_all(found);
   for (int octant = 0; octant < 8; ++octant) {
     const Vec3 center = body.box_center() +
@@ -141,6 +144,7 @@ void gather(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const Conv
     const std::size_t part =
         query::triangles_in_box(*mesh.shape, body_in_mesh * center, body_in_mesh.rotation, 0.5 * half,
                                 std::span(near).first(most_pieces / 8), limit.units, &octant_complete);
+    pieces.cut_off = pieces.cut_off || (!octant_complete && part < most_pieces / 8);
     cut_all(part);
   }
 }
@@ -314,9 +318,50 @@ void push_out(const PreparedMesh& mesh, const math::Pose& mesh_in_world, const m
              nearest->distance + below_center, nearest->triangle, query::no_feature);
 }
 
+// What is kept of bodies that rest; false if the contacts must be made.
+bool write_resting(const PreparedMesh& mesh, const math::Pose& mesh_in_world, const math::Pose& body_in_mesh,
+                   const ConvexBody& body, const RestingContacts::Question& question, double motion, double size,
+                   RestingContacts& resting, Limit& limit, ContactWriter& writer) noexcept {
+  const math::Pose mesh_in_body = body_in_mesh.inverse();
+  const auto meets = [&](std::uint32_t triangle) noexcept {
+    if (limit.units == 0 || limit.time_is_up()) return false;
+    --limit.units;
+    Corners corners = mesh.corners(triangle);
+    for (Vec3& corner : corners) corner = mesh_in_body * corner;
+    Piece piece;
+    return cut_by_sides(corners, body, piece);
+  };
+  std::array<query::Contact, query::most_contacts> held;
+  const std::size_t count = resting.write(question, body_in_mesh, motion, size, meets, held);
+  for (const query::Contact& contact : std::span(held).first(count)) {
+    const Vec3 on_mesh = contact.position - 0.5 * contact.depth * contact.normal;
+    writer.add(mesh_in_world * on_mesh, mesh_in_world.rotation * contact.normal, contact.depth, contact.triangle_a,
+               query::no_feature);
+  }
+  return count > 0;
+}
+
+// Keeps what was written. A contact between meshes is half-way between two surfaces, these are on the mesh's own.
+void keep_resting(const math::Pose& mesh_in_world, const math::Pose& body_in_mesh, const ContactWriter& writer,
+                  const RestingContacts::Question& question, RestingContacts& resting) noexcept {
+  std::array<query::Contact, query::most_contacts> made;
+  const math::Pose into_mesh = mesh_in_world.inverse();
+  const auto count = static_cast<std::size_t>(writer.count());
+  for (std::size_t i = 0; i < count; ++i) {
+    const dContactGeom& contact = writer[static_cast<int>(i)];
+    made[i].normal = into_mesh.rotation * Vec3(contact.normal[0], contact.normal[1], contact.normal[2]);
+    made[i].depth = contact.depth;
+    made[i].position =
+        into_mesh * Vec3(contact.pos[0], contact.pos[1], contact.pos[2]) + 0.5 * made[i].depth * made[i].normal;
+    made[i].triangle_a = static_cast<std::uint32_t>(contact.side1);
+    made[i].triangle_b = query::no_feature;
+  }
+  resting.keep(question, std::span(made).first(count), body_in_mesh);
+}
+
 }  // namespace
 
-bool write_convex_contacts(const PreparedMesh& mesh, const math::Pose& mesh_in_world, const math::Pose& body_in_world,
+Seen write_convex_contacts(const PreparedMesh& mesh, const math::Pose& mesh_in_world, const math::Pose& body_in_world,
                            const ConvexBody& body, Limit& limit, ContactWriter& writer, int room) noexcept {
   const math::Pose body_in_mesh = mesh_in_world.inverse() * body_in_world;
   Pieces pieces;
@@ -329,13 +374,14 @@ bool write_convex_contacts(const PreparedMesh& mesh, const math::Pose& mesh_in_w
     find_exits(std::span(patches).first(count), pieces, body, limit);
     write_manifolds(std::span(patches).first(count), body, body_in_world, limit, writer, room);
   }
-  return pieces.complete && limit.units > 0;
+  if (pieces.cut_off || limit.units == 0) return Seen::cut_off;
+  return pieces.complete ? Seen::all : Seen::what_has_room;
 }
 
 int collide_convex_body(dGeomID mesh, dGeomID partner, const ConvexBody& body, int flags, dContactGeom* contacts,
                         int skip) noexcept {
   count(statistics().primitive_queries);
-  const GeomData& data = own_data(mesh);
+  GeomData& data = own_data(mesh);
   const std::optional<math::Pose> mesh_in_world = world_pose(mesh);
   const std::optional<math::Pose> body_in_world = world_pose(partner);
   if (!mesh_in_world || !body_in_world || !body.box_half_extents().allFinite()) {
@@ -345,8 +391,20 @@ int collide_convex_body(dGeomID mesh, dGeomID partner, const ConvexBody& body, i
   Limit limit(data.settings);
   const int room = room_for(flags, data.settings.max_contacts);
   ContactWriter writer(mesh, partner, room, contacts, skip);
-  const bool complete = write_convex_contacts(*data.mesh, *mesh_in_world, *body_in_world, body, limit, writer, room);
-  return limit.finish(complete, writer.count());
+  const RestingContacts::Question question{partner, dGeomGetClass(partner), body.number(), body.box_half_extents(),
+                                           room};
+  const math::Pose body_in_mesh = mesh_in_world->inverse() * *body_in_world;
+  const double size = std::min(data.mesh->mesh().size(), 2.0 * body.box_half_extents().norm());
+  const double motion = data.settings.carry_motion * size;
+  if (write_resting(*data.mesh, *mesh_in_world, body_in_mesh, body, question, motion, size, data.resting, limit,
+                    writer)) {
+    return limit.finish_carried(writer.count());
+  }
+  const Seen seen = write_convex_contacts(*data.mesh, *mesh_in_world, *body_in_world, body, limit, writer, room);
+  if (seen != Seen::cut_off && motion > 0.0 && !limit.time_is_up()) {
+    keep_resting(*mesh_in_world, body_in_mesh, writer, question, data.resting);
+  }
+  return limit.finish(seen == Seen::all, writer.count());
 }
 
 }  // namespace odds::ode

@@ -2,6 +2,7 @@
 #include "ode/convex_shape.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -36,6 +37,11 @@ Result<HalfSpace> ConvexShape::face_of(std::span<const Vec3> points, std::span<c
   face.normal = sign / length * twice_area;
   face.offset = face.normal.dot(middle);
   return face;
+}
+
+ConvexShape::ConvexShape() noexcept {
+  static constinit std::atomic<std::uint64_t> last{0};
+  number_ = last.fetch_add(1, std::memory_order_relaxed) + 1;
 }
 
 Result<std::shared_ptr<const ConvexShape>> ConvexShape::make(std::span<const Vec3> points, const unsigned* polygons,

@@ -27,18 +27,20 @@ class ConvexShape final : public ConvexBody {
 
   [[nodiscard]] std::span<const Vec3> points() const noexcept { return points_; }
 
+  [[nodiscard]] std::uint64_t number() const noexcept override { return number_; }
   [[nodiscard]] Vec3 farthest(const Vec3& direction) const noexcept override;
   void add_exits(std::span<const Piece* const> patch, ExitList& exits) const noexcept override;
   void add_features(const Vec3& up, double depth, Features& features) const noexcept override;
 
  private:
-  ConvexShape() = default;
+  ConvexShape() noexcept;
   [[nodiscard]] static Result<HalfSpace> face_of(std::span<const Vec3> points, std::span<const unsigned> corners,
                                                  const Vec3& inside, std::size_t number);
 
   std::vector<Vec3> points_;
   std::vector<HalfSpace> faces_;
   std::vector<std::array<unsigned, 2>> edges_;
+  std::uint64_t number_;  ///< unique for the process, never 0
 };
 
 }  // namespace odds::ode

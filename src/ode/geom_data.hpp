@@ -11,6 +11,7 @@
 #include "odds/ode/odds_ode.h"
 #include "odds/query/request.hpp"
 #include "ode/prepared_mesh.hpp"
+#include "ode/resting_contacts.hpp"
 
 namespace odds::ode {
 
@@ -39,6 +40,7 @@ struct GeomData {
   Settings settings;
   std::uint64_t number = 0;       ///< unique for the process, in order of creation: never reused, unlike addresses
   std::vector<PairEntry*> pairs;  ///< workspaces that this geom takes part in
+  RestingContacts resting;        ///< with bodies that are no meshes
 };
 
 /// A number for GeomData::number. Thread-safe.

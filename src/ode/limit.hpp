@@ -42,6 +42,11 @@ class Limit {
     }
     return contacts;
   }
+  /// The end of one that gave contacts of an earlier one.
+  [[nodiscard]] int finish_carried(int contacts) const noexcept {
+    if (current_share != nullptr) current_share->report(begun_with_ - units, contacts, Outcome::carried);
+    return contacts;
+  }
 
  private:
   // Searches in a tree do not read the clock at each node; a node takes 10 to 50 ns where the cache holds it.

@@ -25,11 +25,11 @@ struct PatchView {
 /// the bodies. Unit.
 [[nodiscard]] Vec3 shortest_way_out(const PatchView& view, Watch& watch) noexcept;
 
-/// Whether the patch, if more of its rim were known, may be one of this direction: it is no deeper along it than `depth`
-/// (metres), for neither is its rim higher, nor do its pairs of triangles, a sample of them, overlap by more; and most
-/// of the rim is on a face that leads there, or between faces that are flush and lead nowhere, or all of it is a lump
-/// smaller than the depth. A wall whose triangles are larger than that never is of a direction along it. False if the
-/// time is up.
+/// Whether the patch, if more of its rim were known, may be one of this direction: it is no deeper along it than
+/// `depth` (metres), for neither is its rim higher, nor do its pairs of triangles, a sample of them, overlap by more;
+/// and most of the rim is on a face that leads there, or between faces that are flush and lead nowhere, or all of it is
+/// a lump smaller than the depth. A wall whose triangles are larger than that never is of a direction along it. False
+/// if the time is up.
 [[nodiscard]] bool is_of_direction(const PatchView& view, const Vec3& direction, double depth, Watch& watch) noexcept;
 
 }  // namespace odds::query::patch

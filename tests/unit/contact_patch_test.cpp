@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <numbers>
 
-#include "query/patch_components.hpp"
 #include "support/contact_scene.hpp"
 
 namespace odds::query {
@@ -424,125 +423,6 @@ TEST(ContactPatch, FewHitsStillGiveTheNormal) {
       EXPECT_LE(contacts[0].depth, 1.05e-4);
     }
   }
-}
-
-/// Every run of `count` hits that follow each other.
-template <class Check>
-void for_parts(ContactScene& scene, std::initializer_list<std::size_t> counts, const Check& check) {
-  const std::vector<TrianglePair> all = scene.hits;
-  for (const std::size_t count : counts) {
-    ASSERT_GT(all.size(), count);
-    for (std::size_t first = 0; first + count <= all.size(); ++first) {
-      scene.hits.assign(all.begin() + static_cast<std::ptrdiff_t>(first),
-                        all.begin() + static_cast<std::ptrdiff_t>(first + count));
-      check();
-    }
-  }
-  scene.hits = all;
-}
-
-// A brick that stands flush on another hangs over by as little as it is deep: a few pieces of the rim along its side
-// point anywhere.
-TEST(ContactPatch, APartOfAFlushRimHasTheKnownDirection) {
-  const Body brick = Body::box(0.2, 0.5, 0.248, 4);
-  for (const double depth : {5e-9, 4e-6}) {
-    const math::Pose below = turn({1, 0.5, 0}, 5.0 * depth, {0.9 * depth, 0.6 * depth, 2.0 * depth - 0.248});
-    ContactScene scene{brick, brick, below};
-    scene.find_hits();
-    int astray = 0;
-    for_parts(scene, {1, 4, 12, 40}, [&] {
-      PatchInput input = scene.input();
-      for (const Contact& c : scene.builder->build(input)) astray += degrees_between(c.normal, up) > 8.0 ? 1 : 0;
-      input.known_normal = &up;
-      input.believed_depth = 5e-5;
-      for (const Contact& c : scene.builder->build(input)) {
-        EXPECT_LE(degrees_between(c.normal, up), 2.0) << scene.hits.size();
-        EXPECT_LE(c.depth, 5e-5);
-      }
-    });
-    EXPECT_GT(astray, 10) << "the rim was not hard";
-  }
-}
-
-TEST(ContactPatch, PartsOfAFlushRimAgreeOnADirection) {
-  const Body brick = Body::box(0.2, 0.5, 0.248, 4);
-  int astray = 0;
-  for (const double tilt : {0.0, 2e-5}) {
-    ContactScene scene{brick, brick, turn({1, 0.5, 0}, tilt, {3e-6, 2e-6, 0.1 * tilt + 8e-6 - 0.248})};
-    scene.find_hits();
-    const std::vector<TrianglePair> all = scene.hits;
-    for (const std::size_t share : {2, 4, 7, 13}) {
-      for (std::size_t skip = 0; skip < 20; ++skip) {
-        scene.hits.clear();
-        for (std::size_t i = 0; i < all.size(); ++i) {
-          if ((i + skip) % 20 < share) scene.hits.push_back(all[i]);
-        }
-        PatchInput input = scene.input();
-        for (const Contact& c : scene.builder->build(input)) astray += degrees_between(c.normal, up) > 8.0 ? 1 : 0;
-        input.believed_depth = 5e-5;
-        for (const Contact& c : scene.builder->build(input)) {
-          EXPECT_LE(degrees_between(c.normal, up), 2.0) << share << " " << skip;
-        }
-      }
-    }
-  }
-  EXPECT_GT(astray, 10) << "the rim was not hard";
-}
-
-TEST(ContactPatch, APartOfAWallKeepsItsNormalWhateverIsKnown) {
-  const Body box = Body::box(0.1, 0.2, 0.3, 4);
-  const Body floor = Body::box(0.6, 0.6, 0.1, 4).moved(shift(0.1, 0, -0.19995));
-  const Body wall = Body::box(0.1, 0.6, 0.5, 4).moved(shift(0.09999, 0.01, 0.063));
-  ContactScene scene{box, floor.with(wall), {}};
-  scene.find_hits();
-  std::erase_if(scene.hits, [&](const TrianglePair& hit) { return hit.b < floor.triangles.size(); });
-  int against_the_wall = 0;
-  for_parts(scene, {1, 4, 12, 40}, [&] {
-    PatchInput input = scene.input();
-    const auto own = scene.builder->build(input);
-    const std::vector<Contact> alone(own.begin(), own.end());
-    input.known_normal = &up;
-    input.believed_depth = 6e-5;
-    const auto made = scene.builder->build(input);
-    ASSERT_EQ(made.size(), alone.size());
-    for (std::size_t i = 0; i < made.size(); ++i) {
-      if (degrees_between(alone[i].normal, -Vec3::UnitX()) > 8.0) continue;
-      ++against_the_wall;
-      EXPECT_LE(degrees_between(made[i].normal, alone[i].normal), 1e-9);
-    }
-  });
-  EXPECT_GT(against_the_wall, 100);
-}
-
-// Two crumbs of a rim, shorter than the overlap is deep and far from each other, seem to span more than any curve of
-// their length: where they lie.
-TEST(ContactPatch, CrumbsOfARimSpanNothing) {
-  const Body brick = Body::box(0.2, 0.5, 0.248, 4);
-  ContactScene scene{brick, brick, turn({1, 0.5, 0}, 1e-7, {0.05 + 1e-7, 0.125 + 2e-7, 1e-6 - 0.248})};
-  scene.find_hits();
-  const std::vector<TrianglePair> all = scene.hits;
-  int crumbs = 0;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      scene.hits = {all[i], all[j]};
-      patch::RimSums sums;
-      for (const TrianglePair& hit : scene.hits) {
-        patch::PlacedPair placed;
-        std::array<patch::RimPiece, patch::most_pieces_of_a_pair> pieces;
-        ASSERT_TRUE(patch::place(scene.input(), hit, placed));
-        ASSERT_EQ(patch::rim_pieces(placed, true, 0, pieces), 1u);
-        sums.add(pieces[0], placed, Vec3::Zero());
-      }
-      const Vec3 area = sums.vector_area(Vec3::Zero());
-      if (!(4.0 * std::numbers::pi * area.norm() > sums.length * sums.length) || sums.length > 1e-6) continue;
-      ++crumbs;
-      for (const Contact& c : scene.builder->build(scene.input())) {
-        const bool along_the_area = std::abs(c.normal.dot(area.normalized())) > 0.99;
-        EXPECT_FALSE(along_the_area && c.depth > 0.01) << i << " " << j << ": from end to end";
-      }
-    }
-  }
-  EXPECT_GT(crumbs, 0);
 }
 
 TEST(ContactPatch, PreviousNormalBreaksTies) {

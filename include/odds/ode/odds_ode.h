@@ -141,10 +141,10 @@ int dGeomOddsMeshGetKMin(dGeomID geom) ODDS_NOTHROW;
 int dGeomOddsMeshSetMaxContacts(dGeomID geom, int count) ODDS_NOTHROW;
 int dGeomOddsMeshGetMaxContacts(dGeomID geom) ODDS_NOTHROW;
 
-/* Contacts of a mesh with a mesh are carried along with the bodies instead of being made anew while nothing near them
- * has moved farther than this part of the smaller body's size, 0 .. 1, since they were made with care: bodies at rest
- * cost next to nothing, and their contacts stand still. A pair of triangles still proves the hit. Default 1e-5; 0:
- * always made anew. */
+/* Contacts of a mesh with a mesh, box, cylinder or convex are carried along with the bodies instead of being made anew
+ * while nothing near them has moved farther than this part of the smaller body's size, 0 .. 1, since they were made
+ * with care: bodies at rest cost next to nothing, and their contacts stand still. A pair of triangles that still meets,
+ * or a triangle that still is inside, proves the hit. Default 1e-5; 0: always made anew. */
 int dGeomOddsMeshSetCarryMotion(dGeomID geom, dReal part) ODDS_NOTHROW;
 dReal dGeomOddsMeshGetCarryMotion(dGeomID geom) ODDS_NOTHROW;
 
