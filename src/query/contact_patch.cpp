@@ -227,6 +227,7 @@ void PatchBuilder::Scratch::straighten(const PatchInput& input, std::span<const 
     const patch::PatchView view{input, rim, sums[i], indices, thorough.sample};
     if (!patch::is_of_direction(view, direction, input.believed_depth, watch)) continue;
     const Patch straight = patch_along(direction, input, sums[i], indices, thorough, watch);
+    if (watch.late()) return;  // it was not measured to its end
     if (straight.depth <= input.believed_depth) own = straight;
   }
 }

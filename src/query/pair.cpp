@@ -32,8 +32,7 @@ constexpr std::int64_t patch_finish_ns = 6500;
 constexpr std::int64_t hasty_finish_ns = 6500;   ///< of one that is hasty from the start
 constexpr std::int64_t single_finish_ns = 3000;  ///< of a single contact
 constexpr std::int64_t rough_finish_ns = 1500;   ///< of one more rough contact, their direction, and writing the answer
-constexpr std::int64_t within_finish_ns = 2500;  ///< of whether a shape lies within another, and one way out
-constexpr std::uint32_t most_rays = 16;          ///< of both
+constexpr std::int64_t ray_finish_ns = 2000;  ///< of one ray, and writing the answer
 /// What is believed of a shape within another, or without, that there is no time to look at: few pass through a surface
 /// from one run to the next.
 constexpr double stays_within = 0.9;
@@ -381,18 +380,14 @@ void note_clear(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const 
 
 /// The contact that leads the inner one of two nested shapes out.
 void make_way_out(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, double most_depth, bool enters,
-                  Pair::Implementation& pair, Spending& spending) noexcept {
+                  Pair::Implementation& pair, RayBudget& budget) noexcept {
   std::array<Vec3, 2> preferred;
   std::size_t count = 0;
   if (!pair.previous_normal.isZero()) preferred[count++] = -pair.previous_normal;
   const Vec3 came = pair.known_depth.motion_of(meshes.pose().translation, meshes.pose());
   if (enters && came.norm() > tolerances::resting_motion * pair.a->mesh().size()) preferred[count++] = -came.normalized();
-  const Deadline deadline{[](void* state) noexcept { return !static_cast<Spending*>(state)->may_make_contacts(); },
-                          &spending};
-  std::uint32_t rays = 0;
   const std::optional<Contact> out =
-      way_out(*pair.a, *pair.b, pose_b_in_a, pair.within, std::span(preferred).first(count), deadline, rays);
-  spending.spend_triangle_pairs(rays * units_of_ray);
+      way_out(*pair.a, *pair.b, pose_b_in_a, pair.within, std::span(preferred).first(count), budget);
   pair.answer.contacts_complete = out.has_value();
   if (!out) return;
   Contact& contact = pair.rough.front();
@@ -406,34 +401,40 @@ void make_way_out(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, doub
 }
 
 /// Where no surfaces meet, and solids are asked for: whether one shape lies within the other all the same. `same`: no
-/// surface has been crossed since that was last looked at. False if not; then the answer stands.
+/// surface has been crossed since `pair.within` was last looked at. False if not; then the answer stands.
 bool answer_within(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request, double reach_b,
                    bool same, Pair::Implementation& pair, Spending& spending) noexcept {
+  pair.within_is_of_front = false;
   if (!request.solids || request.polygon_free) return false;
-  if (same ? pair.within == Within::neither : !may_be_within(*pair.a, *pair.b, pose_b_in_a)) return false;
+  const bool before = pair.within == Within::b_in_a || pair.within == Within::a_in_b;
+  const bool may_be = same ? before : may_be_within(*pair.a, *pair.b, pose_b_in_a);
+  pair.within_is_of_front = request.method == Method::incremental;
+  if (!may_be) return false;
   Answer& answer = pair.answer;
-  const bool before = pair.within != Within::neither;
-  spending.reserve_for_contacts(within_finish_ns);
-  if (!spending.allows(most_rays * units_of_ray) || !spending.may_make_contacts()) {
+  spending.reserve_for_contacts(ray_finish_ns);
+  const Deadline deadline{[](void* state) noexcept { return !static_cast<Spending*>(state)->may_make_contacts(); },
+                          &spending};
+  RayBudget budget{deadline, spending.units_left()};
+  const Within now = same ? pair.within : within(*pair.a, *pair.b, pose_b_in_a, budget);
+  if (now == Within::unknown) {
+    pair.within_is_of_front = false;
     answer.basis = Basis::budget;
     answer.probability = before ? stays_within : 1.0 - stays_within;
     answer.verdict = before ? Verdict::hit : Verdict::clear;
-    return true;
+  } else {
+    pair.within = now;
+    if (now != Within::neither) {
+      answer.verdict = Verdict::hit;
+      answer.probability = 1.0;
+      pair.carried.forget();
+      if (request.max_contacts > 0) {
+        const double most_depth = pair.known_depth.most(meshes.pose(), reach_b);
+        make_way_out(meshes, pose_b_in_a, most_depth, !before, pair, budget);
+      }
+    }
   }
-  if (!same) {
-    std::uint32_t rays = 0;
-    pair.within = within(*pair.a, *pair.b, pose_b_in_a, rays);
-    spending.spend_triangle_pairs(rays * units_of_ray);
-  }
-  if (pair.within == Within::neither) return false;
-  answer.verdict = Verdict::hit;
-  answer.probability = 1.0;
-  pair.carried.forget();
-  if (request.max_contacts > 0) {
-    const double most_depth = pair.known_depth.most(meshes.pose(), reach_b);
-    make_way_out(meshes, pose_b_in_a, most_depth, !before, pair, spending);
-  }
-  return true;
+  spending.spend_node_pairs(static_cast<std::uint32_t>(budget.spent));
+  return now != Within::neither;
 }
 
 template <class Tree>
@@ -450,7 +451,7 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
   }
   if (is_still_apart(b, meshes, request, pair)) {
     pair.has_witness = false;
-    if (!answer_within(meshes, pose_b_in_a, request, b.reach(), true, pair, spending)) {
+    if (!answer_within(meshes, pose_b_in_a, request, b.reach(), pair.within_is_of_front, pair, spending)) {
       note_clear(meshes, pose_b_in_a, request, pair);
     }
     answer.cost = spending.close();
@@ -466,6 +467,7 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
     result = search(encounter, meshes, request, pair, spending);
     forecast(encounter, result, request, spending, pair);
   }
+  pair.within_is_of_front = false;
   if (!pair.hits.empty()) pair.within = Within::neither;
   if (!pair.hits.empty() && request.max_contacts > 0) {
     const double most_depth = pair.known_depth.most(meshes.pose(), b.reach());
@@ -474,6 +476,7 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
     if (!answer_within(meshes, pose_b_in_a, request, b.reach(), false, pair, spending)) {
       note_clear(meshes, pose_b_in_a, request, pair);
     }
+    pair.within_is_of_front = pair.within_is_of_front && result.method == Method::incremental;
   } else if (pair.within == Within::neither) {
     pair.previous_normal.setZero();
   }
@@ -567,6 +570,7 @@ void Pair::reset() noexcept {
   implementation_->carried.forget();
   implementation_->has_witness = false;
   implementation_->within = Within::neither;
+  implementation_->within_is_of_front = false;
 }
 
 }  // namespace odds::query

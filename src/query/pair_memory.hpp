@@ -40,6 +40,7 @@ struct Pair::Implementation {
   PatchBuilder patches;
   const wide::Searches* wide;
   Within within = Within::neither;        ///< as last looked at, where no surfaces met
+  bool within_is_of_front = false;        ///< that was where the front is, and no run has been elsewhere since
   bool polygon_free;                      ///< every query has to be
   Recalibration recalibration;            ///< of stated probabilities
   Vec3 previous_normal = Vec3::Zero();    ///< of the last run's first contact, in A's frame; zero: none

@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "odds/primitive/ray_triangle.hpp"
+#include "query/counted_ray.hpp"
 #include "query/search.hpp"
 #include "query/shape_data.hpp"
 #include "query/wide/searches.hpp"
@@ -14,13 +15,14 @@ namespace {
 
 template <volume::BoundingVolume V>
 std::optional<RayHit> cast(const tree::Hierarchy<V>& hierarchy, const Vec3& origin, const Vec3& direction,
-                           double length, std::uint64_t budget_nodes) noexcept {
+                           double length, std::uint64_t budget_nodes, RayEffort& effort) noexcept {
   volume::RaySegment segment = volume::RaySegment::make(origin, direction, length, hierarchy.reach());
   std::array<std::uint32_t, stack_capacity> stack;
   std::size_t size = 0;
   stack[size++] = 0;
   std::optional<RayHit> nearest;
-  for (std::uint64_t visited = 0; size != 0 && visited < budget_nodes; ++visited) {
+  std::uint64_t visited = 0;
+  for (; size != 0 && visited < budget_nodes; ++visited) {
     const auto& node = hierarchy.nodes()[stack[--size]];
     if (!met_by(node.volume, segment)) continue;
     if (!node.is_leaf()) {
@@ -40,24 +42,34 @@ std::optional<RayHit> cast(const tree::Hierarchy<V>& hierarchy, const Vec3& orig
       segment.length = static_cast<float>(distance * (1.0 + 1e-6));
     }
   }
+  effort = {visited, size == 0};
   return nearest;
 }
 
 std::optional<RayHit> cast(const mesh::TriangleMesh& mesh, const tree::WideTree& tree, const Vec3& origin,
-                           const Vec3& direction, double length, std::uint64_t budget_nodes) noexcept {
-  return wide::searches_for(InstructionSet::best)->ray({mesh, tree, origin, direction, length, budget_nodes});
+                           const Vec3& direction, double length, std::uint64_t budget_nodes,
+                           RayEffort& effort) noexcept {
+  return wide::searches_for(InstructionSet::best)->ray({mesh, tree, origin, direction, length, budget_nodes, effort});
 }
 
 template <volume::BoundingVolume V>
 std::optional<RayHit> cast(const mesh::TriangleMesh&, const tree::Hierarchy<V>& hierarchy, const Vec3& origin,
-                           const Vec3& direction, double length, std::uint64_t budget_nodes) noexcept {
-  return cast(hierarchy, origin, direction, length, budget_nodes);
+                           const Vec3& direction, double length, std::uint64_t budget_nodes,
+                           RayEffort& effort) noexcept {
+  return cast(hierarchy, origin, direction, length, budget_nodes, effort);
 }
 
 }  // namespace
 
 std::optional<RayHit> cast_ray(const Shape& shape, const Vec3& origin, const Vec3& direction, double max_distance,
                                std::uint64_t budget_nodes) noexcept {
+  RayEffort effort;
+  return cast_counted_ray(shape, origin, direction, max_distance, budget_nodes, effort);
+}
+
+std::optional<RayHit> cast_counted_ray(const Shape& shape, const Vec3& origin, const Vec3& direction,
+                                       double max_distance, std::uint64_t budget_nodes, RayEffort& effort) noexcept {
+  effort = {};
   if (!shape.has_polygons()) return {};
   if (!origin.allFinite() || !(std::abs(direction.squaredNorm() - 1.0) < 1e-6) || !(max_distance >= 0.0)) return {};
   return std::visit(
@@ -65,7 +77,7 @@ std::optional<RayHit> cast_ray(const Shape& shape, const Vec3& origin, const Vec
         const Vec3 local = origin - tree.origin();
         // Nothing lies beyond the far side of the enclosing ball; this also makes an infinite length finite.
         const double length = std::fmin(max_distance, (local.norm() + tree.reach()) * (1.0 + 1e-9));
-        return cast(shape.mesh(), tree, local, direction, length, budget_nodes);
+        return cast(shape.mesh(), tree, local, direction, length, budget_nodes, effort);
       },
       shape.data().tree);
 }

@@ -34,6 +34,8 @@ class Spending {
   /// True if `units` more fit into the work budget.
   [[nodiscard]] bool allows(std::uint64_t units) const noexcept { return units <= units_left_; }
 
+  [[nodiscard]] std::uint64_t units_left() const noexcept { return units_left_; }
+
   void spend_node_pairs(std::uint32_t n) noexcept {
     cost_.node_pairs += n;
     note(n);

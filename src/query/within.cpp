@@ -6,12 +6,13 @@
 #include <limits>
 
 #include "odds/math/tolerances.hpp"
-#include "odds/query/ray.hpp"
+#include "query/counted_ray.hpp"
 
 namespace odds::query {
 namespace {
 
-constexpr std::uint64_t nodes_of_ray = 512;  // far beyond what a ray in a real mesh visits
+constexpr std::uint64_t nodes_of_ray = 128;  // some 3 us; a ray in a million triangles visits 10 to 40
+constexpr std::uint64_t least_nodes = 16;    // with less it is not begun
 constexpr double endless = std::numeric_limits<double>::infinity();
 
 Vec3 middle(const Shape& shape) noexcept { return 0.5 * shape.mesh().lower() + 0.5 * shape.mesh().upper(); }
@@ -28,17 +29,31 @@ bool can_hold(const Shape& outer, const Vec3& point) noexcept {
   return outer.is_solid() && outer.has_polygons() && in_box(outer, point);
 }
 
-/// Where a line from `point` leaves the solid: nothing if the surface that it meets first is seen from outside.
-std::optional<RayHit> exit_along(const Shape& solid, const Vec3& point, const Vec3& direction,
-                                 std::uint32_t& rays) noexcept {
-  ++rays;
-  const std::optional<RayHit> hit = cast_ray(solid, point, direction, endless, nodes_of_ray);
-  if (!hit) return hit;
+enum class Seen : std::uint8_t { exit, none, unknown };
+
+/// A ray within the budget.
+Seen cast_within(const Shape& shape, const Vec3& point, const Vec3& direction, RayBudget& budget,
+                 RayHit& found) noexcept {
+  if (budget.nodes < least_nodes || budget.deadline()) return Seen::unknown;
+  RayEffort effort;
+  const std::optional<RayHit> hit =
+      cast_counted_ray(shape, point, direction, endless, std::min(nodes_of_ray, budget.nodes), effort);
+  budget.nodes -= effort.nodes;
+  budget.spent += effort.nodes;
+  if (!effort.finished) return Seen::unknown;
+  if (hit) found = *hit;
+  return hit ? Seen::exit : Seen::none;
+}
+
+/// Where a line from `point` leaves the solid: none if the surface that it meets first is seen from outside.
+Seen exit_along(const Shape& solid, const Vec3& point, const Vec3& direction, RayBudget& budget, RayHit& exit) noexcept {
+  const Seen seen = cast_within(solid, point, direction, budget, exit);
+  if (seen != Seen::exit) return seen;
   const mesh::TriangleMesh& mesh = solid.mesh();
-  const mesh::Triangle& t = mesh.triangles()[hit->triangle];
+  const mesh::Triangle& t = mesh.triangles()[exit.triangle];
   const Vec3& p = mesh.vertices()[t[0]];
   const Vec3 outward = (mesh.vertices()[t[1]] - p).cross(mesh.vertices()[t[2]] - p);
-  return outward.dot(direction) > 0.0 ? hit : std::nullopt;
+  return outward.dot(direction) > 0.0 ? Seen::exit : Seen::none;
 }
 
 /// Away from the middle of the box, where the surface is nearest in most solids; any direction at the middle itself.
@@ -48,10 +63,17 @@ Vec3 outwards(const Shape& solid, const Vec3& point) noexcept {
   return length > 1e-9 * solid.mesh().size() ? Vec3(away / length) : Vec3(Vec3(0.48, 0.6, 0.64));
 }
 
-bool holds(const Shape& outer, const Vec3& point, std::uint32_t& rays) noexcept {
-  if (!can_hold(outer, point)) return false;
+/// exit: the point is inside; none: outside.
+Seen holds(const Shape& outer, const Vec3& point, RayBudget& budget) noexcept {
+  if (!can_hold(outer, point)) return Seen::none;
   const Vec3 direction = outwards(outer, point);
-  return exit_along(outer, point, direction, rays) && exit_along(outer, point, -direction, rays);
+  RayHit ignored;
+  const Seen one = exit_along(outer, point, direction, budget, ignored);
+  if (one == Seen::unknown) return one;
+  const Seen other = exit_along(outer, point, -direction, budget, ignored);
+  if (other == one || other == Seen::unknown) return other;
+  // One of them grazed an edge: a third decides.
+  return exit_along(outer, point, direction.unitOrthogonal(), budget, ignored);
 }
 
 /// The outer shape, the inner one and its pose, in the outer one's frame.
@@ -63,18 +85,18 @@ struct Nested {
 
 /// From the far side of the inner shape, seen along `direction` on the line through `point`, to the outer surface.
 Contact contact_along(const Nested& nested, const Vec3& point, const Vec3& direction, const RayHit& exit,
-                      std::uint32_t& rays) noexcept {
+                      RayBudget& budget) noexcept {
   // From outside the inner shape: its middle need not be in it.
   const Vec3 begin = nested.pose.inverse() * point;
   const Vec3 along = nested.pose.rotation.transpose() * direction;
   const double back = (begin - middle(nested.inner)).norm() + nested.inner.mesh().size();
-  ++rays;
-  const std::optional<RayHit> entry =
-      cast_ray(nested.inner, begin - back * along, along.normalized(), 2.0 * back, nodes_of_ray);
-  double far = entry ? back - entry->distance : 0.0;
+  RayHit entry;
+  const Seen seen = cast_within(nested.inner, begin - back * along, along.normalized(), budget, entry);
+  // Where the line misses it, or meets it only farther on: its first vertex at least is to leave.
+  const double of_vertex = direction.dot(point - nested.pose * first_vertex(nested.inner));
+  const double far = std::max(0.0, seen == Seen::exit ? back - entry.distance : of_vertex);
   Contact contact;
-  contact.triangle_b = entry ? entry->triangle : no_feature;
-  if (!entry) far = std::max(0.0, direction.dot(point - nested.pose * first_vertex(nested.inner)));
+  contact.triangle_b = seen == Seen::exit ? entry.triangle : no_feature;
   contact.depth = exit.distance + far;
   contact.position = point + 0.5 * (exit.distance - far) * direction;
   contact.normal = direction;
@@ -88,29 +110,31 @@ bool may_be_within(const Shape& a, const Shape& b, const math::Pose& b_in_a) noe
   return can_hold(a, b_in_a * first_vertex(b)) || can_hold(b, b_in_a.inverse() * first_vertex(a));
 }
 
-Within within(const Shape& a, const Shape& b, const math::Pose& b_in_a, std::uint32_t& rays) noexcept {
-  if (holds(a, b_in_a * first_vertex(b), rays)) return Within::b_in_a;
-  if (holds(b, b_in_a.inverse() * first_vertex(a), rays)) return Within::a_in_b;
-  return Within::neither;
+Within within(const Shape& a, const Shape& b, const math::Pose& b_in_a, RayBudget& budget) noexcept {
+  const Seen b_held = holds(a, b_in_a * first_vertex(b), budget);
+  if (b_held == Seen::exit) return Within::b_in_a;
+  const Seen a_held = holds(b, b_in_a.inverse() * first_vertex(a), budget);
+  if (a_held == Seen::exit) return Within::a_in_b;
+  return b_held == Seen::none && a_held == Seen::none ? Within::neither : Within::unknown;
 }
 
 std::optional<Contact> way_out(const Shape& a, const Shape& b, const math::Pose& b_in_a, Within which,
-                               std::span<const Vec3> preferred, const Deadline& deadline,
-                               std::uint32_t& rays) noexcept {
-  if (which == Within::neither) return std::nullopt;
+                               std::span<const Vec3> preferred, RayBudget& budget) noexcept {
+  if (which != Within::b_in_a && which != Within::a_in_b) return std::nullopt;
   const bool b_inside = which == Within::b_in_a;
   const Nested nested = b_inside ? Nested{a, b, b_in_a} : Nested{b, a, b_in_a.inverse()};
   const Vec3 centre = nested.pose * middle(nested.inner);
-  const Vec3 point = holds(nested.outer, centre, rays) ? centre : nested.pose * first_vertex(nested.inner);
+  const bool centre_is_inside = holds(nested.outer, centre, budget) == Seen::exit;
+  const Vec3 point = centre_is_inside ? centre : nested.pose * first_vertex(nested.inner);
   Vec3 best = Vec3::Zero();
   RayHit exit;
   double least = endless;
   const auto offer = [&](const Vec3& direction, double factor) noexcept {
-    if (least < endless && deadline()) return;
-    const std::optional<RayHit> found = exit_along(nested.outer, point, direction, rays);
-    if (!found || !(factor * found->distance < least)) return;
-    least = factor * found->distance;
-    exit = *found;
+    RayHit found;
+    if (exit_along(nested.outer, point, direction, budget, found) != Seen::exit) return;
+    if (!(factor * found.distance < least)) return;
+    least = factor * found.distance;
+    exit = found;
     best = direction;
   };
   for (const Vec3& motion : preferred) {
@@ -122,7 +146,7 @@ std::optional<Contact> way_out(const Shape& a, const Shape& b, const math::Pose&
     offer(-Vec3::Unit(axis), 1.0);
   }
   if (!(least < endless)) return std::nullopt;
-  Contact contact = contact_along(nested, point, best, exit, rays);
+  Contact contact = contact_along(nested, point, best, exit, budget);
   if (!std::isfinite(contact.depth) || !contact.position.allFinite()) return std::nullopt;
   if (b_inside) {
     contact.normal = -contact.normal;

@@ -58,7 +58,10 @@ class Oracle {
     double deepest = 0.0;
     for (auto& [body, pair] : pairs_) {
       const math::Pose pose = world.state({body}).pose.inverse() * world.state({*tool_}).pose;
-      for (const query::Contact& contact : pair.run(pose, {.solids = true}).contacts) deepest = std::max(deepest, contact.depth);
+      pair.reset();
+      for (const query::Contact& contact : pair.run(pose, {.solids = true}).contacts) {
+        deepest = std::max(deepest, contact.depth);
+      }
     }
     return deepest;
   }

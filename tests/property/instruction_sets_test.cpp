@@ -76,10 +76,14 @@ TEST(InstructionSets, CastTheSameRays) {
     int met = 0;
     for (int i = 0; i < 500; ++i) {
       const std::uint64_t nodes = i % 4 == 0 ? 1 + static_cast<std::uint64_t>(i) / 20 : UINT64_MAX;
-      const wide::RayTask task{*mesh, tree, 1.5 * random.uniform() * random.direction(), random.direction(),
-                               5.0,   nodes};
+      RayEffort effort;
+      const wide::RayTask task{*mesh, tree,  1.5 * random.uniform() * random.direction(), random.direction(),
+                               5.0,   nodes, effort};
       const auto expected = portable->ray(task);
+      const RayEffort portable_effort = effort;
       const auto found = searches->ray(task);
+      EXPECT_EQ(effort.nodes, portable_effort.nodes);
+      EXPECT_EQ(effort.finished, portable_effort.finished);
       ASSERT_EQ(found.has_value(), expected.has_value()) << i;
       if (!expected) continue;
       ++met;

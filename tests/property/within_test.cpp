@@ -123,26 +123,100 @@ TEST(MeshWithinASolid, IsNeitherAHoleNorASheetNorAHollow) {
   EXPECT_EQ(in_cup.run(at({0, -0.1, -0.5}), {.max_contacts = 4, .solids = true}).verdict, Verdict::clear);
 }
 
-TEST(MeshWithinASolid, IsNotDecidedWithoutTheWork) {
-  const auto slab = made("box:x=1,y=1,z=0.3,cells=4");
-  const auto ball = made("icosphere:radius=0.02");
-  auto pair = std::move(Pair::make(slab, ball)).value();
-  const math::Pose pose = at({0.01, 0.02, 0.10});
-  for (std::uint64_t units = 1; units < 400; ++units) {
-    pair.reset();
-    const Answer answer =
-        pair.run(pose, {.budget = Budget::work(units), .max_contacts = 4, .solids = true});
-    EXPECT_LE(answer.cost.node_pairs + answer.cost.triangle_pairs, units);
-    if (answer.basis != Basis::proved) continue;
-    ASSERT_EQ(answer.verdict, Verdict::hit) << units;
-    ASSERT_EQ(answer.contacts.size(), 1U);
+/// A ball and a slab: outside, near the slab's top, and within.
+struct BallAndSlab {
+  Pair pair = std::move(Pair::make(made("box:x=1,y=1,z=0.3,cells=4"), made("icosphere:radius=0.02"))).value();
+  math::Pose outside = at({0.01, 0.02, 0.18});
+  math::Pose within = at({0.01, 0.02, 0.10});
+
+  Verdict verdict(const math::Pose& pose, Method method, bool solids = true) {
+    const Answer& answer = pair.run(pose, {.method = method, .max_contacts = 4, .solids = solids});
+    EXPECT_EQ(answer.basis, Basis::proved);
+    return answer.verdict;
   }
-  Request little{.budget = Budget::work(40), .max_contacts = 4, .solids = true};
-  pair.reset();
-  EXPECT_EQ(pair.run(pose, {.max_contacts = 4, .solids = true}).verdict, Verdict::hit);
-  const Answer after = pair.run(pose, little);
-  EXPECT_EQ(after.basis, Basis::budget);
-  EXPECT_EQ(after.verdict, Verdict::hit) << "it was within, and nothing says that it is no more";
+};
+
+TEST(MeshWithinASolid, IsNotDecidedWithoutTheWork) {
+  BallAndSlab scene;
+  int decided = 0;
+  int undecided = 0;
+  for (const math::Pose& before : {scene.outside, scene.within}) {
+    for (const math::Pose& now : {scene.outside, scene.within}) {
+      const Verdict right = now.translation.z() < 0.15 ? Verdict::hit : Verdict::clear;
+      for (std::uint64_t units = 1; units < 400; ++units) {
+        scene.pair.reset();
+        static_cast<void>(scene.verdict(before, Method::incremental));
+        for (const Method method : {Method::incremental, Method::time_critical}) {
+          const Answer answer = scene.pair.run(
+              now, {.method = method, .budget = Budget::work(units), .max_contacts = 4, .solids = true});
+          EXPECT_LE(answer.cost.node_pairs + answer.cost.triangle_pairs, units);
+          ++(answer.basis == Basis::proved ? decided : undecided);
+          if (answer.basis == Basis::proved) {
+            ASSERT_EQ(answer.verdict, right) << units;
+          }
+        }
+        // What was left open is not taken for looked at.
+        ASSERT_EQ(scene.verdict(now, Method::incremental), right) << units;
+      }
+    }
+  }
+  EXPECT_GT(decided, 500);
+  EXPECT_GT(undecided, 100);
+}
+
+TEST(MeshWithinASolid, IsNotProvedInTimeThatThereWasNot) {
+  BallAndSlab scene;
+  struct Jumping {
+    std::int64_t now = 0;
+    int looks = 0;
+  } clock;
+  int undecided = 0;
+  for (int looks = 1; looks < 60; ++looks) {
+    scene.pair.reset();
+    static_cast<void>(scene.verdict(scene.outside, Method::incremental));
+    clock.looks = looks;
+    Request request{.method = Method::incremental, .budget = Budget::time(50.0), .max_contacts = 4, .solids = true};
+    request.budget.clock = {[](void* state) noexcept {
+                              auto& jumping = *static_cast<Jumping*>(state);
+                              jumping.now += --jumping.looks == 0 ? 1'000'000 : 1;
+                              return jumping.now;
+                            },
+                            &clock};
+    const Answer answer = scene.pair.run(scene.within, request);
+    undecided += answer.basis == Basis::proved ? 0 : 1;
+    if (answer.basis == Basis::proved) {
+      ASSERT_EQ(answer.verdict, Verdict::hit) << looks;
+    }
+    ASSERT_EQ(scene.verdict(scene.within, Method::incremental), Verdict::hit) << looks;
+  }
+  EXPECT_GT(undecided, 2);
+}
+
+TEST(MeshWithinASolid, IsFoundWhateverThePairWasAskedBefore) {
+  std::mt19937 generator(5);
+  BallAndSlab scene;
+  constexpr Method methods[] = {Method::exact, Method::incremental, Method::time_critical};
+  for (int run = 0; run < 3000; ++run) {
+    const bool is_within = generator() % 2 == 0;
+    const bool solids = generator() % 2 == 0;
+    const Verdict right = is_within && solids ? Verdict::hit : Verdict::clear;
+    ASSERT_EQ(scene.verdict(is_within ? scene.within : scene.outside, methods[generator() % 3], solids), right) << run;
+  }
+}
+
+TEST(MeshWithinASolid, WithoutASingleTriangleThatHasAnAreaLeavesFiniteContacts) {
+  std::vector<Vec3> vertices{{0, 0, 0}, {0.01, 0, 0}, {0.02, 0, 0}};
+  std::vector<mesh::Triangle> flat{{0, 1, 2}};
+  auto needle = std::make_shared<const mesh::TriangleMesh>(
+      std::move(mesh::TriangleMesh::make(vertices, flat, "needle")).value());
+  auto pair = std::move(Pair::make(made("box:x=1,y=1,z=0.3"), Shape::build(std::move(needle)).value())).value();
+  const Answer answer = pair.run(at({0, 0, 0.1}), {.max_contacts = 4, .solids = true});
+  EXPECT_EQ(answer.verdict, Verdict::hit);
+  for (const Contact& contact : answer.contacts) {
+    EXPECT_TRUE(contact.position.allFinite());
+    EXPECT_NEAR(contact.normal.norm(), 1.0, 1e-9);
+    EXPECT_NEAR(contact.depth, 0.05, 1e-6);
+  }
 }
 
 }  // namespace

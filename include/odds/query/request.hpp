@@ -36,8 +36,9 @@ struct Request {
   /// contact.
   double carry_motion = 0.0;
   /// Whether a mesh that lies wholly within a solid (a closed mesh), where no surfaces meet, is hit too, with one
-  /// contact that leads out: the way it came in, or else one of the shortest of some ten. Of a mesh in several pieces
-  /// one tells for all. Some 2 us within the solid's bounding box, 5 to 10 within the solid. Not polygon-free.
+  /// contact that leads out: the way it came in, or else one of the shortest of some ten; no deeper than the last known
+  /// depth and the motion since. Of a mesh in several pieces one tells for all. Some 2 us within the solid's bounding
+  /// box, 5 to 10 within the solid; where the budget has not so much left, the answer is undecided. Not polygon-free.
   bool solids = false;
   /// Whether a pair of leaves has its volumes tested before its triangles (Algorithm 4.2 leaves it open). Of the
   /// generic framework only: the wide engine tests the eight leaves of a node at once with their siblings and has

@@ -87,10 +87,11 @@ class Incremental {
   /// Returns the first entry that was not done with, or `end`.
   std::uint32_t look_at(std::uint32_t begin, std::uint32_t end) noexcept {
     std::uint32_t i = begin;
+    std::uint32_t next_poll = std::min(end, begin + entries_between_polls);
     while (i < end) {
-      const std::uint32_t next_poll = std::min(end, i + entries_between_polls);
       i = front_.next_expired(i, next_poll);
       if (i == next_poll) {
+        next_poll = std::min(end, i + entries_between_polls);
         if (i == end || task_.spending.may_go_on()) continue;
         task_.result.ended = Progressed::spent;
         leave_rest_open(i, end);

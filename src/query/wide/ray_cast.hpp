@@ -58,7 +58,8 @@ class RayCast {
 
   std::optional<RayHit> run() noexcept {
     stack_[size_++] = {tree::WideTree::root, 0.0F};
-    for (std::uint64_t visited = 0; size_ != 0 && visited < task_.budget_nodes; ++visited) {
+    std::uint64_t visited = 0;
+    for (; size_ != 0 && visited < task_.budget_nodes; ++visited) {
       const Open open = stack_[--size_];
       if (open.enter > segment_.length + margin_) continue;
       const tree::ChildRef child = node_of(open.slot).child[open.slot % tree::wide_lanes];
@@ -68,6 +69,7 @@ class RayCast {
         push_children(child.index());
       }
     }
+    task_.effort = {visited, size_ == 0};
     return nearest_;
   }
 

@@ -8,6 +8,7 @@
 #include "odds/query/pair.hpp"
 #include "odds/query/ray.hpp"
 #include "odds/query/request.hpp"
+#include "query/counted_ray.hpp"
 #include "query/search.hpp"
 #include "query/wide/encounter.hpp"
 #include "query/wide/kinetic_front.hpp"
@@ -48,6 +49,7 @@ struct RayTask {
   Vec3 direction;  ///< unit
   double length;   ///< finite, metres
   std::uint64_t budget_nodes;
+  RayEffort& effort;  ///< what it took
 };
 
 /// One instruction set's searches. Each of two trees starts from the pair of roots, which is known to overlap.
