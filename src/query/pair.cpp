@@ -294,8 +294,20 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
     const Contact& first = pair.answer.contacts.front();
     pair.known_direction.note(first.position, first.normal, pose_b_in_a, smaller, pair.answer.contacts_complete);
   }
+  // A part of the rim that pushes nowhere but as those before it did, of bodies that have hardly moved: they rest on
+  // it.
+  const auto is_known = [known_normal](const Contact& contact) noexcept {
+    return contact.normal.dot(*known_normal) > tolerances::same_face;
+  };
+  const bool rests =
+      pair.carried.rests(pair.answer.contacts.front().position, pose_b_in_a, request.carry_motion * smaller, smaller);
+  const bool as_known = rests && known_normal != nullptr && pair.patches.finished() &&
+                        std::all_of(pair.answer.contacts.begin(), pair.answer.contacts.end(), is_known);
+  if (pair.answer.contacts_complete || (as_known && request.max_contacts > 1)) {
+    pair.carried.keep(pair.answer.contacts, request.max_contacts, pair.hits.pairs(), pose_b_in_a,
+                      pair.answer.contacts_complete ? 0 : pair.answer.contact_pairs);
+  }
   if (!pair.answer.contacts_complete) return;
-  pair.carried.keep(pair.answer.contacts, request.max_contacts, pair.hits.pairs(), pose_b_in_a);
   if (ended == Progressed::finished) pair.known_depth.note(meshes.pose(), deepest_of(pair.answer.contacts));
   pair.previous_normal = pair.answer.contacts.front().normal;
   pair.previous_position = pair.answer.contacts.front().position;
@@ -351,6 +363,8 @@ bool carry_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, co
     pair.answer.probability = 1.0;
     pair.answer.contacts = std::span(pair.rough).first(pair.carried.write(pose_b_in_a, pair.rough));
     pair.answer.contacts_carried = true;
+    pair.answer.contacts_complete = pair.carried.part_of() == 0;
+    pair.answer.contact_pairs = pair.carried.part_of();
     return true;
   }
   return false;

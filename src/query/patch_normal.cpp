@@ -271,10 +271,9 @@ Vec3 patch_normal(const PatchView& view, Watch& watch) noexcept {
   const RimSums& sums = view.sums;
   const Vec3 area = sums.vector_area(view.rim.origin);
   const double reach = view.rim.origin.cwiseAbs().maxCoeff() + sums.diagonal();
-  // The isoperimetric quotient: 1 for a circle, 0.8 for a square, 0 for a line. Above 1 more is missing of the rim than
-  // is there: its pieces lie far apart, and what they seem to span is where they lie.
+  const bool noticeable = area.norm() > tolerances::rim_noise * reach * sums.length;
+  // The isoperimetric quotient: 1 for a circle, 0.8 for a square, 0 for a line.
   const double roundness = sums.length > 0.0 ? 4.0 * std::numbers::pi * area.norm() / (sums.length * sums.length) : 0.0;
-  const bool noticeable = area.norm() > tolerances::rim_noise * reach * sums.length && roundness <= 1.0;
   Vec3 normal = Vec3::Zero();
   if (noticeable && roundness > (sums.closed() ? tolerances::round_closed_rim : tolerances::round_open_rim)) {
     normal = area.normalized();

@@ -7,6 +7,7 @@
 
 #include "odds/mesh/made/by_name.hpp"
 #include "odds/query/pair.hpp"
+#include "query/carried_contacts.hpp"
 
 namespace odds::query {
 namespace {
@@ -126,6 +127,32 @@ TEST_F(Bricks, WhatWasMadeInAHurryIsNotCarried) {
     EXPECT_FALSE(pair.run(resting, request).contacts_carried) << units << " units";
   }
   EXPECT_GT(hurried, 3);
+}
+
+// Bodies that rest where no run has time for all of the rim.
+TEST_F(Bricks, PartsThatPushAsBeforeAreCarriedAsParts) {
+  int carried_parts = 0;
+  for (std::uint64_t units = 128; units < 1024; units += 16) {
+    const Request request{.budget = Budget::work(units), .max_contacts = 4, .carry_motion = carried};
+    pair.reset();
+    std::size_t made_from = 0;
+    for (int i = 0; i < 16; ++i) {
+      const Answer& answer = pair.run(resting, request);
+      if (answer.contacts_complete) break;
+      if (!answer.contacts_carried) {
+        made_from = answer.contact_pairs;
+        continue;
+      }
+      EXPECT_GE(i, CarriedContacts::runs_of_rest) << "bodies that move on have no rest";
+      EXPECT_EQ(answer.contact_pairs, made_from);
+      EXPECT_EQ(answer.basis, Basis::proved);
+      for (const Contact& contact : answer.contacts) EXPECT_GT(std::abs(contact.normal.z()), 0.999);
+      ++carried_parts;
+    }
+    if (made_from == 0) continue;
+    EXPECT_FALSE(pair.run(moved(resting, {0, 0, 2.0 * carried * brick->mesh().size()}), request).contacts_carried);
+  }
+  EXPECT_GT(carried_parts, 20);
 }
 
 TEST_F(Bricks, AMotionOutOfRangeIsRefused) {

@@ -2,10 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <initializer_list>
-#include <numbers>
 
 #include "odds/query/contact_patch.hpp"
-#include "query/patch_components.hpp"
 #include "support/contact_scene.hpp"
 
 namespace odds::query {
@@ -105,37 +103,6 @@ TEST(PartOfARim, OnAWallKeepsItsNormalWhateverIsKnown) {
     }
   });
   EXPECT_GT(against_the_wall, 100);
-}
-
-// Two crumbs of a rim, shorter than the overlap is deep and far from each other, seem to span more than any curve of
-// their length: where they lie.
-TEST(PartOfARim, OfTwoCrumbsSpansNothing) {
-  const Body brick = Body::box(0.2, 0.5, 0.248, 4);
-  ContactScene scene{brick, brick, turn({1, 0.5, 0}, 1e-7, {0.05 + 1e-7, 0.125 + 2e-7, 1e-6 - 0.248})};
-  scene.find_hits();
-  const std::vector<TrianglePair> all = scene.hits;
-  int crumbs = 0;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      scene.hits = {all[i], all[j]};
-      patch::RimSums sums;
-      for (const TrianglePair& hit : scene.hits) {
-        patch::PlacedPair placed;
-        std::array<patch::RimPiece, patch::most_pieces_of_a_pair> pieces;
-        ASSERT_TRUE(patch::place(scene.input(), hit, placed));
-        ASSERT_EQ(patch::rim_pieces(placed, true, 0, pieces), 1u);
-        sums.add(pieces[0], placed, Vec3::Zero());
-      }
-      const Vec3 area = sums.vector_area(Vec3::Zero());
-      if (!(4.0 * std::numbers::pi * area.norm() > sums.length * sums.length) || sums.length > 1e-6) continue;
-      ++crumbs;
-      for (const Contact& c : scene.builder->build(scene.input())) {
-        const bool along_the_area = std::abs(c.normal.dot(area.normalized())) > 0.99;
-        EXPECT_FALSE(along_the_area && c.depth > 0.01) << i << " " << j << ": from end to end";
-      }
-    }
-  }
-  EXPECT_GT(crumbs, 0);
 }
 
 }  // namespace
