@@ -285,11 +285,13 @@ TEST(Effects, AnAsymmetricBodyTumblesAndKeepsItsEnergyAndMomentum) {
 TEST(Effects, EventsAloneMakeNoContactsAndTellBeginAndEnd) {
   const auto simulation = simulate(on_floor(moving("ball", "ball", 0, 0.05) + gravity + "[effects.events]\n", 0.5));
   const RunOutcome outcome = simulation->run();
-  ASSERT_EQ(outcome.events.size(), 4U);  // it falls through the floor's top, then through its bottom
+  ASSERT_EQ(outcome.events.size(), 2U);  // it falls through the floor, and is in touch with it also while within
   EXPECT_TRUE(outcome.events[0].begins);
   EXPECT_FALSE(outcome.events[1].begins);
   const double begin_s = 1e-9 * static_cast<double>(outcome.events[0].t_ns);
   EXPECT_NEAR(begin_s, std::sqrt(2.0 * 0.03 / g), 0.002);
+  const double end_s = 1e-9 * static_cast<double>(outcome.events[1].t_ns);
+  EXPECT_NEAR(end_s, std::sqrt(2.0 * (0.03 + 0.1 + 0.04) / g), 0.002);
   EXPECT_EQ(simulation->world().options().query.max_contacts, 0) << "a verdict is all that is asked";
   std::uint64_t queries = 0;
   for (const haptics::TickRecord& tick : outcome.ticks) {
