@@ -6,49 +6,17 @@
 #include <type_traits>
 
 #include "odds/math/tolerances.hpp"
-#include "odds/query/ray.hpp"
 #include "query/answer_odds_table.hpp"
 #include "query/likeliest_place.hpp"
+#include "query/pair_contacts.hpp"
 #include "query/pair_memory.hpp"
-#include "query/rough_contacts.hpp"
+#include "query/pair_within.hpp"
 #include "query/search.hpp"
 #include "query/shape_data.hpp"
-#include "query/within.hpp"
 
 namespace odds::query {
 
 namespace {
-
-// A pair of triangles in a patch takes 0.3 us, half of it to be found; rays and choice some 25 us whatever their
-// number.
-constexpr double hits_per_microsecond = 3.0;
-constexpr double found_hits_per_microsecond = 6.0;
-constexpr double patch_base_us = 25.0;
-// Fewer may leave a gap in the rim of even two boxes, and the direction of a patch needs all of its rim.
-constexpr double least_hits = 64.0;
-constexpr double most_hits = 65536.0;
-// What a patch takes from hearing of the deadline to its end: a ray or two, and one made hastily of what there is.
-constexpr std::int64_t patch_finish_ns = 6500;
-constexpr std::int64_t hasty_finish_ns = 6500;   ///< of one that is hasty from the start
-constexpr std::int64_t single_finish_ns = 3000;  ///< of a single contact
-constexpr std::int64_t rough_finish_ns = 1500;   ///< of one more rough contact, their direction, and writing the answer
-constexpr std::int64_t ray_finish_ns = 2000;  ///< of one ray, and writing the answer
-/// What is believed of a shape within another, or without, that there is no time to look at: few pass through a surface
-/// from one run to the next.
-constexpr double stays_within = 0.9;
-
-/// Pairs of triangles that a patch has time for.
-std::uint32_t hits_in(double microseconds, double per_microsecond) noexcept {
-  return static_cast<std::uint32_t>(
-      std::clamp(per_microsecond * (microseconds - patch_base_us), least_hits, most_hits));
-}
-
-/// Hits that are wanted: one proves; a patch takes as many as its making has time for.
-std::uint32_t wanted_hits(const Request& request) noexcept {
-  if (request.max_contacts <= 1) return 1;
-  if (!std::isfinite(request.budget.microseconds)) return no_feature;
-  return hits_in(request.budget.microseconds, hits_per_microsecond);
-}
 
 /// A pose or request that no query can be run with: answered as undecided, never as a NaN.
 Answer refused() noexcept {
@@ -163,156 +131,6 @@ void judge(const SearchResult& result, double undecided_probability, const Reque
   }
 }
 
-/// Casts a ray for the depth inside a rim. A few node visits' worth: a probe that finds nothing in them is left out.
-bool probe_depth(const void* shape, const Vec3& origin, const Vec3& direction, double max_distance, double* distance,
-                 std::uint32_t* triangle) noexcept {
-  constexpr std::uint64_t most_nodes = 96;
-  const auto hit = cast_ray(*static_cast<const Shape*>(shape), origin, direction, max_distance, most_nodes);
-  if (!hit) return false;
-  *distance = hit->distance;
-  *triangle = hit->triangle;
-  return true;
-}
-
-double deepest_of(std::span<const Contact> contacts) noexcept {
-  double deepest = 0.0;
-  for (const Contact& contact : contacts) deepest = std::max(deepest, contact.depth);
-  return deepest;
-}
-
-/// The answer's contacts in memory of our own, to be changed.
-std::span<Contact> own_contacts(Pair::Implementation& pair) noexcept {
-  const std::size_t count = std::min(pair.answer.contacts.size(), pair.rough.size());
-  std::copy_n(pair.answer.contacts.begin(), count, pair.rough.begin());
-  const std::span<Contact> own = std::span(pair.rough).first(count);
-  pair.answer.contacts = own;
-  return own;
-}
-
-/// From a part of the rim a depth may be anything. What nobody has measured is pushed apart no harder than is known
-/// from motion, or than that a body does not sink in.
-void limit_to_believed(const PosedMeshes& meshes, Pair::Implementation& pair) noexcept {
-  const double smaller = std::min(pair.a->mesh().size(), pair.b->mesh().size());
-  const double unmeasured = tolerances::unmeasured_depth * smaller;
-  for (Contact& contact : own_contacts(pair)) {
-    const Vec3 place = contact.position - meshes.origin_a();
-    const double believed = pair.known_depth.believed(place, contact.normal, meshes.pose());
-    contact.depth = std::min(contact.depth, std::max(believed, unmeasured));
-  }
-}
-
-/// Part of the rim may be enough, and yet nothing is deeper than can be.
-void limit_depth(double most_depth, Pair::Implementation& pair) noexcept {
-  for (Contact& contact : own_contacts(pair)) contact.depth = std::min(contact.depth, most_depth);
-}
-
-/// What single pairs of triangles say, when there is no time for a patch.
-void make_rough_contacts(const PosedMeshes& meshes, const Vec3* known_normal, const Request& request,
-                         Pair::Implementation& pair, Spending& spending) noexcept {
-  const Vec3 centre_b = meshes.pose().translation + meshes.origin_a();
-  const Vec3 towards_a = pair.previous_normal.isZero() ? Vec3(meshes.origin_a() - centre_b) : pair.previous_normal;
-  spending.reserve_for_contacts(rough_finish_ns);
-  const auto room =
-      std::span(pair.rough).first(std::min(static_cast<std::size_t>(request.max_contacts), pair.rough.size()));
-  const std::size_t count = rough_contacts(meshes, pair.hits.pairs(), pair.a->is_solid() && pair.b->is_solid(),
-                                           towards_a, known_normal, room, [&] { return spending.may_make_contacts(); });
-  pair.answer.contacts = room.first(count);
-  limit_to_believed(meshes, pair);
-  pair.answer.contacts_complete = false;
-  pair.answer.contact_pairs = static_cast<std::uint32_t>(count);
-}
-
-/// Along the direction that is known, if any, metres: what was measured and what the bodies have come since, or what
-/// nobody need have measured.
-double believed_depth(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Vec3* known_normal,
-                      const Pair::Implementation& pair) noexcept {
-  const double unmeasured = tolerances::unmeasured_depth * std::min(pair.a->mesh().size(), pair.b->mesh().size());
-  if (known_normal == nullptr) return unmeasured;
-  const Vec3 place = pair.known_direction.place(pose_b_in_a) - meshes.origin_a();
-  return std::max(unmeasured, pair.known_depth.believed(place, *known_normal, meshes.pose()));
-}
-
-/// `searched`: how the hits were found; `most_depth`: what is known of the depth, metres.
-void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const SearchResult& searched,
-                   double most_depth, const Request& request, Pair::Implementation& pair, Spending& spending) noexcept {
-  const Progressed ended = searched.ended;
-  const Vec3 centre_b = meshes.pose().translation + meshes.origin_a();
-  spending.reserve_for_contacts(request.max_contacts > 1 ? hasty_finish_ns : single_finish_ns);
-  const double smaller = std::min(pair.a->mesh().size(), pair.b->mesh().size());
-  const Vec3* known_normal = pair.known_direction.at(pose_b_in_a, smaller);
-  if (!spending.may_make_contacts()) {
-    make_rough_contacts(meshes, known_normal, request, pair, spending);
-    return;
-  }
-  if (request.max_contacts > 1) spending.reserve_for_contacts(patch_finish_ns);
-  PatchInput input;
-  input.hits = pair.hits.pairs();
-  input.vertices_a = pair.a->mesh().vertices();
-  input.triangles_a = pair.a->mesh().triangles();
-  input.vertices_b = pair.b->mesh().vertices();
-  input.triangles_b = pair.b->mesh().triangles();
-  input.pose_b_in_a = pose_b_in_a;
-  input.solid_a = pair.a->is_solid();
-  input.solid_b = pair.b->is_solid();
-  input.reference_a = meshes.origin_a();
-  input.reference_b = centre_b;
-  if (!pair.previous_normal.isZero()) {
-    input.previous_normal = &pair.previous_normal;
-    input.previous_position = &pair.previous_position;
-  }
-  input.known_normal = known_normal;
-  // Other searches stop at as many as there is time for.
-  const bool found_all = searched.method == Method::incremental && pair.a->volume() == volume::Kind::wide;
-  if (found_all) input.most_pairs = hits_in(spending.left_us(), found_hits_per_microsecond);
-  input.max_contacts = request.max_contacts;
-  if (request.max_contacts > 1) {  // a single contact is asked for its speed
-    input.probe_a = {&probe_depth, pair.a.get()};
-    input.probe_b = {&probe_depth, pair.b.get()};
-  }
-  // As many hits as there was time for are a part of them; as many as were asked for, or as are kept, are what was
-  // asked.
-  const bool as_many_as_kept =
-      pair.hits.size() == pair.hits.capacity() && !(found_all && std::isfinite(request.budget.microseconds));
-  const bool part = request.max_contacts > 1 &&
-                    ((ended == Progressed::enough && !as_many_as_kept) || pair.hits.size() > input.most_pairs);
-  const bool all = ended != Progressed::spent && !part;
-  if (!all) input.believed_depth = believed_depth(meshes, pose_b_in_a, known_normal, pair);
-  const Deadline deadline{[](void* state) noexcept { return !static_cast<Spending*>(state)->may_make_contacts(); },
-                          &spending};
-  pair.answer.contacts = pair.patches.build(input, deadline);
-  if (pair.answer.contacts.empty()) return;
-  pair.answer.contact_pairs = pair.patches.pairs_used();
-  pair.answer.contacts_complete = pair.patches.finished() && all;
-  // A finished patch of a part of the rim has measured its depth, and errs seldom; a hasty one has not.
-  const bool measured = pair.patches.finished() && pair.known_depth.known();
-  if (!pair.answer.contacts_complete && !measured) {
-    limit_to_believed(meshes, pair);
-  } else if (ended != Progressed::finished || part) {
-    limit_depth(most_depth, pair);
-  }
-  if (pair.patches.finished() && request.max_contacts > 1) {
-    const Contact& first = pair.answer.contacts.front();
-    pair.known_direction.note(first.position, first.normal, pose_b_in_a, smaller, pair.answer.contacts_complete);
-  }
-  // A part of the rim that pushes nowhere but as those before it did, of bodies that have hardly moved: they rest on
-  // it.
-  const auto is_known = [known_normal](const Contact& contact) noexcept {
-    return contact.normal.dot(*known_normal) > tolerances::same_face;
-  };
-  const bool rests =
-      pair.carried.rests(pair.answer.contacts.front().position, pose_b_in_a, request.carry_motion * smaller, smaller);
-  const bool as_known = rests && known_normal != nullptr && pair.patches.finished() &&
-                        std::all_of(pair.answer.contacts.begin(), pair.answer.contacts.end(), is_known);
-  if (pair.answer.contacts_complete || (as_known && request.max_contacts > 1)) {
-    pair.carried.keep(pair.answer.contacts, request.max_contacts, pair.hits.pairs(), pose_b_in_a,
-                      pair.answer.contacts_complete ? 0 : pair.answer.contact_pairs);
-  }
-  if (!pair.answer.contacts_complete) return;
-  if (ended == Progressed::finished) pair.known_depth.note(meshes.pose(), deepest_of(pair.answer.contacts));
-  pair.previous_normal = pair.answer.contacts.front().normal;
-  pair.previous_position = pair.answer.contacts.front().position;
-}
-
 template <volume::BoundingVolume V>
 Encounter<V> encounter_of(const tree::Hierarchy<V>& a, const tree::Hierarchy<V>& b, const PosedMeshes& meshes,
                           const Request& request) noexcept {
@@ -347,29 +165,6 @@ void forecast(const Met& met, const SearchResult& result, const Request& request
   answer.cell_pair_probability = static_cast<double>(cell_probability);
 }
 
-/// The contacts of an earlier run, where the bodies have hardly moved since: false if they will not do.
-bool carry_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request,
-                    Pair::Implementation& pair, Spending& spending) noexcept {
-  if (request.max_contacts <= 1 || request.polygon_free) return false;
-  const double size = std::min(pair.a->mesh().size(), pair.b->mesh().size());
-  if (!pair.carried.serve(pose_b_in_a, request.max_contacts, request.carry_motion * size, size)) return false;
-  for (TrianglePair& proof : pair.carried.proofs()) {
-    if (!spending.allows(1) || !spending.may_go_on_after(2)) return false;
-    spending.spend_triangle_pairs(1);
-    if (!meshes.meet(proof)) continue;
-    std::swap(proof, pair.carried.proofs().front());  // the next run's first
-    pair.hits.add(pair.carried.proofs().front());
-    pair.answer.verdict = Verdict::hit;
-    pair.answer.probability = 1.0;
-    pair.answer.contacts = std::span(pair.rough).first(pair.carried.write(pose_b_in_a, pair.rough));
-    pair.answer.contacts_carried = true;
-    pair.answer.contacts_complete = pair.carried.part_of() == 0;
-    pair.answer.contact_pairs = pair.carried.part_of();
-    return true;
-  }
-  return false;
-}
-
 /// Whether all are apart because they were, and have hardly moved since.
 template <volume::BoundingVolume V>
 bool is_still_apart(const tree::Hierarchy<V>&, const PosedMeshes&, const Request&,
@@ -381,74 +176,6 @@ bool is_still_apart(const tree::WideTree& b, const PosedMeshes& meshes, const Re
                     const Pair::Implementation& pair) noexcept {
   return request.method == Method::incremental && !by_probability(request) &&
          pair.front.is_apart(meshes.pose(), b.reach());
-}
-
-/// No surfaces meet, and, where solids are asked for, neither lies within the other.
-void note_clear(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request,
-                Pair::Implementation& pair) noexcept {
-  pair.within = Within::neither;
-  pair.previous_normal.setZero();
-  pair.known_depth.note(meshes.pose(), 0.0);
-  if (!request.solids && may_be_within(*pair.a, *pair.b, pose_b_in_a)) pair.known_depth.forget();
-}
-
-/// The contact that leads the inner one of two nested shapes out.
-void make_way_out(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, double most_depth, bool enters,
-                  Pair::Implementation& pair, RayBudget& budget) noexcept {
-  std::array<Vec3, 2> preferred;
-  std::size_t count = 0;
-  if (!pair.previous_normal.isZero()) preferred[count++] = -pair.previous_normal;
-  const Vec3 came = pair.known_depth.motion_of(meshes.pose().translation, meshes.pose());
-  if (enters && came.norm() > tolerances::resting_motion * pair.a->mesh().size()) preferred[count++] = -came.normalized();
-  const std::optional<Contact> out =
-      way_out(*pair.a, *pair.b, pose_b_in_a, pair.within, std::span(preferred).first(count), budget);
-  pair.answer.contacts_complete = out.has_value();
-  if (!out) return;
-  Contact& contact = pair.rough.front();
-  contact = *out;
-  // It cannot be deeper than it has come: a body that was clear a moment ago is not thrown out of a mountain.
-  contact.depth = std::min(contact.depth, most_depth);
-  pair.answer.contacts = std::span(pair.rough).first(1);
-  pair.known_depth.note(meshes.pose(), contact.depth);
-  pair.previous_normal = contact.normal;
-  pair.previous_position = contact.position;
-}
-
-/// Where no surfaces meet, and solids are asked for: whether one shape lies within the other all the same. `same`: no
-/// surface has been crossed since `pair.within` was last looked at. False if not; then the answer stands.
-bool answer_within(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request, double reach_b,
-                   bool same, Pair::Implementation& pair, Spending& spending) noexcept {
-  pair.within_is_of_front = false;
-  if (!request.solids || request.polygon_free) return false;
-  const bool before = pair.within == Within::b_in_a || pair.within == Within::a_in_b;
-  const bool may_be = same ? before : may_be_within(*pair.a, *pair.b, pose_b_in_a);
-  pair.within_is_of_front = request.method == Method::incremental;
-  if (!may_be) return false;
-  Answer& answer = pair.answer;
-  spending.reserve_for_contacts(ray_finish_ns);
-  const Deadline deadline{[](void* state) noexcept { return !static_cast<Spending*>(state)->may_make_contacts(); },
-                          &spending};
-  RayBudget budget{deadline, spending.units_left()};
-  const Within now = same ? pair.within : within(*pair.a, *pair.b, pose_b_in_a, budget);
-  if (now == Within::unknown) {
-    pair.within_is_of_front = false;
-    answer.basis = Basis::budget;
-    answer.probability = before ? stays_within : 1.0 - stays_within;
-    answer.verdict = before ? Verdict::hit : Verdict::clear;
-  } else {
-    pair.within = now;
-    if (now != Within::neither) {
-      answer.verdict = Verdict::hit;
-      answer.probability = 1.0;
-      pair.carried.forget();
-      if (request.max_contacts > 0) {
-        const double most_depth = pair.known_depth.most(meshes.pose(), reach_b);
-        make_way_out(meshes, pose_b_in_a, most_depth, !before, pair, budget);
-      }
-    }
-  }
-  spending.spend_node_pairs(static_cast<std::uint32_t>(budget.spent));
-  return now != Within::neither;
 }
 
 template <class Tree>

@@ -17,9 +17,7 @@ constexpr double endless = std::numeric_limits<double>::infinity();
 
 Vec3 middle(const Shape& shape) noexcept { return 0.5 * shape.mesh().lower() + 0.5 * shape.mesh().upper(); }
 
-Vec3 first_vertex(const Shape& shape) noexcept {
-  return shape.mesh().vertices()[shape.mesh().triangles().front()[0]];
-}
+Vec3 first_vertex(const Shape& shape) noexcept { return shape.mesh().vertices()[shape.mesh().triangles().front()[0]]; }
 
 bool in_box(const Shape& shape, const Vec3& point) noexcept {
   return (point.array() >= shape.mesh().lower().array()).all() && (point.array() <= shape.mesh().upper().array()).all();
@@ -46,7 +44,8 @@ Seen cast_within(const Shape& shape, const Vec3& point, const Vec3& direction, R
 }
 
 /// Where a line from `point` leaves the solid: none if the surface that it meets first is seen from outside.
-Seen exit_along(const Shape& solid, const Vec3& point, const Vec3& direction, RayBudget& budget, RayHit& exit) noexcept {
+Seen exit_along(const Shape& solid, const Vec3& point, const Vec3& direction, RayBudget& budget,
+                RayHit& exit) noexcept {
   const Seen seen = cast_within(solid, point, direction, budget, exit);
   if (seen != Seen::exit) return seen;
   const mesh::TriangleMesh& mesh = solid.mesh();

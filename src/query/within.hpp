@@ -28,10 +28,10 @@ struct RayBudget {
 /// to agree, or a third decides. Unknown where the budget ended it. noexcept, no allocation.
 [[nodiscard]] Within within(const Shape& a, const Shape& b, const math::Pose& b_in_a, RayBudget& budget) noexcept;
 
-/// The contact, in A's mesh frame, along the shortest way by which the inner shape leaves the other, of some directions:
-/// the `preferred` ones (unit, A's frame, the motion of B relative to A), which win unless another is much shorter
-/// (tolerances::way_it_came), away from the outer mesh's middle, and its axes. Nothing if no ray found a way within the
-/// budget. noexcept, no allocation.
+/// The contact, in A's mesh frame, along the shortest way by which the inner shape leaves the other, of some
+/// directions: the `preferred` ones (unit, A's frame, the motion of B relative to A), which win unless another is much
+/// shorter (tolerances::way_it_came), away from the outer mesh's middle, and its axes. Nothing if no ray found a way
+/// within the budget. noexcept, no allocation.
 [[nodiscard]] std::optional<Contact> way_out(const Shape& a, const Shape& b, const math::Pose& b_in_a, Within which,
                                              std::span<const Vec3> preferred, RayBudget& budget) noexcept;
 

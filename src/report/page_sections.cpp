@@ -142,13 +142,15 @@ std::string page_forces(const RunInfo& info, const RunSummary& s, bool charts) {
   std::string html = "<h2 id=\"forces\">Force and contact</h2>\n<p>";
   if (has_hand) {
     html += fmt::format(
-        "Largest force {:.3g} N, largest torque {:.3g} N·m. Force and torque as sent to the device, in the world frame, "
+        "Largest force {:.3g} N, largest torque {:.3g} N·m. Force and torque as sent to the device, in the world "
+        "frame, "
         "on the hand. ",
         s.largest_force_n, s.largest_torque_nm);
   } else {
     html += "The scene has no device, so no force was sent to a hand. ";
   }
-  html += fmt::format("Deepest contact {:.3g} mm, at most {} contact points.</p>\n", s.deepest_m * 1e3, s.most_contacts);
+  html +=
+      fmt::format("Deepest contact {:.3g} mm, at most {} contact points.</p>\n", s.deepest_m * 1e3, s.most_contacts);
   if (!charts) return html;
   if (has_hand) {
     html += time_line("chart-force", "Force",

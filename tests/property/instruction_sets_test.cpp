@@ -77,8 +77,8 @@ TEST(InstructionSets, CastTheSameRays) {
     for (int i = 0; i < 500; ++i) {
       const std::uint64_t nodes = i % 4 == 0 ? 1 + static_cast<std::uint64_t>(i) / 20 : UINT64_MAX;
       RayEffort effort;
-      const wide::RayTask task{*mesh, tree,  1.5 * random.uniform() * random.direction(), random.direction(),
-                               5.0,   nodes, effort};
+      const wide::RayTask task{*mesh, tree,  1.5 * random.uniform() * random.direction(), random.direction(), 5.0,
+                               nodes, effort};
       const auto expected = portable->ray(task);
       const RayEffort portable_effort = effort;
       const auto found = searches->ray(task);

@@ -116,8 +116,8 @@ TEST(MeshWithinASolid, IsNeitherAHoleNorASheetNorAHollow) {
   EXPECT_EQ(in_hole.run({}, {.max_contacts = 4, .solids = true}).verdict, Verdict::clear);
   std::vector<Vec3> vertices{{-1, -1, -1}, {1, -1, -1}, {0, 1, -1}, {0, 0, 1}};
   std::vector<mesh::Triangle> open{{0, 1, 2}, {0, 3, 1}, {1, 3, 2}};  // a tetrahedron that lacks a face
-  auto cup_mesh = std::make_shared<const mesh::TriangleMesh>(
-      std::move(mesh::TriangleMesh::make(vertices, open, "cup")).value());
+  auto cup_mesh =
+      std::make_shared<const mesh::TriangleMesh>(std::move(mesh::TriangleMesh::make(vertices, open, "cup")).value());
   const auto cup = Shape::build(std::move(cup_mesh)).value();
   auto in_cup = std::move(Pair::make(cup, ball)).value();
   EXPECT_EQ(in_cup.run(at({0, -0.1, -0.5}), {.max_contacts = 4, .solids = true}).verdict, Verdict::clear);
@@ -147,8 +147,8 @@ TEST(MeshWithinASolid, IsNotDecidedWithoutTheWork) {
         scene.pair.reset();
         static_cast<void>(scene.verdict(before, Method::incremental));
         for (const Method method : {Method::incremental, Method::time_critical}) {
-          const Answer answer = scene.pair.run(
-              now, {.method = method, .budget = Budget::work(units), .max_contacts = 4, .solids = true});
+          const Answer answer =
+              scene.pair.run(now, {.method = method, .budget = Budget::work(units), .max_contacts = 4, .solids = true});
           EXPECT_LE(answer.cost.node_pairs + answer.cost.triangle_pairs, units);
           ++(answer.basis == Basis::proved ? decided : undecided);
           if (answer.basis == Basis::proved) {
@@ -207,8 +207,8 @@ TEST(MeshWithinASolid, IsFoundWhateverThePairWasAskedBefore) {
 TEST(MeshWithinASolid, WithoutASingleTriangleThatHasAnAreaLeavesFiniteContacts) {
   std::vector<Vec3> vertices{{0, 0, 0}, {0.01, 0, 0}, {0.02, 0, 0}};
   std::vector<mesh::Triangle> flat{{0, 1, 2}};
-  auto needle = std::make_shared<const mesh::TriangleMesh>(
-      std::move(mesh::TriangleMesh::make(vertices, flat, "needle")).value());
+  auto needle =
+      std::make_shared<const mesh::TriangleMesh>(std::move(mesh::TriangleMesh::make(vertices, flat, "needle")).value());
   auto pair = std::move(Pair::make(made("box:x=1,y=1,z=0.3"), Shape::build(std::move(needle)).value())).value();
   const Answer answer = pair.run(at({0, 0, 0.1}), {.max_contacts = 4, .solids = true});
   EXPECT_EQ(answer.verdict, Verdict::hit);

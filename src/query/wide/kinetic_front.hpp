@@ -202,9 +202,9 @@ class KineticFront {
   double next_expiry_ = at_once;
   double earliest_ = at_once;  ///< expiry of what the search that is under way has passed over
   std::uint32_t changed_count_ = 0;
-  double starved_ = 0.0;       ///< share of runs
-  double still_met_ = 1.0;     ///< share of entries that met, one run later
-  std::uint32_t pause_ = 0;    ///< runs
+  double starved_ = 0.0;     ///< share of runs
+  double still_met_ = 1.0;   ///< share of entries that met, one run later
+  std::uint32_t pause_ = 0;  ///< runs
   std::uint32_t next_pause_ = first_pause;
   bool fresh_ = false;
   bool overflowed_ = false;
