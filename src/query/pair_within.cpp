@@ -16,7 +16,7 @@ constexpr double stays_within = 0.9;
 
 /// The contact that leads the inner one of two nested shapes out.
 void make_way_out(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, double most_depth, bool enters,
-                  Pair::Implementation& pair, RayBudget& budget) noexcept {
+                  Pair::Implementation& pair, Spending& spending) noexcept {
   std::array<Vec3, 2> preferred;
   std::size_t count = 0;
   if (!pair.previous_normal.isZero()) preferred[count++] = -pair.previous_normal;
@@ -24,7 +24,7 @@ void make_way_out(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, doub
   if (enters && came.norm() > tolerances::resting_motion * pair.a->mesh().size())
     preferred[count++] = -came.normalized();
   const std::optional<Contact> out =
-      way_out(*pair.a, *pair.b, pose_b_in_a, pair.within, std::span(preferred).first(count), budget);
+      way_out(*pair.a, *pair.b, pose_b_in_a, pair.within, std::span(preferred).first(count), spending);
   pair.answer.contacts_complete = out.has_value();
   if (!out) return;
   Contact& contact = pair.rough.front();
@@ -57,10 +57,7 @@ bool answer_within(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   if (!may_be) return false;
   Answer& answer = pair.answer;
   spending.reserve_for_contacts(ray_finish_ns);
-  const Deadline deadline{[](void* state) noexcept { return !static_cast<Spending*>(state)->may_make_contacts(); },
-                          &spending};
-  RayBudget budget{deadline, spending.units_left()};
-  const Within now = same ? pair.within : within(*pair.a, *pair.b, pose_b_in_a, budget);
+  const Within now = same ? pair.within : within(*pair.a, *pair.b, pose_b_in_a, spending);
   if (now == Within::unknown) {
     pair.within_is_of_front = false;
     answer.basis = Basis::budget;
@@ -74,11 +71,10 @@ bool answer_within(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
       pair.carried.forget();
       if (request.max_contacts > 0) {
         const double most_depth = pair.known_depth.most(meshes.pose(), reach_b);
-        make_way_out(meshes, pose_b_in_a, most_depth, !before, pair, budget);
+        make_way_out(meshes, pose_b_in_a, most_depth, !before, pair, spending);
       }
     }
   }
-  spending.spend_node_pairs(static_cast<std::uint32_t>(budget.spent));
   return now != Within::neither;
 }
 

@@ -6,33 +6,28 @@
 #include <span>
 
 #include "odds/math/pose.hpp"
-#include "odds/query/contact_patch.hpp"
+#include "odds/query/answer.hpp"
 #include "odds/query/shape.hpp"
+#include "query/spending.hpp"
 
 namespace odds::query {
 
 /// Which of two shapes whose surfaces do not meet lies within the other.
 enum class Within : std::uint8_t { neither, b_in_a, a_in_b, unknown };
 
-/// What rays may take: asked before each, counted after it. A node takes as long as a work unit.
-struct RayBudget {
-  const Deadline& deadline;
-  std::uint64_t nodes;  ///< that may be visited yet
-  std::uint64_t spent = 0;
-};
-
 /// Whether the box of one shape leaves room for a point of the other: the cheap part of `within`, without a ray.
 [[nodiscard]] bool may_be_within(const Shape& a, const Shape& b, const math::Pose& b_in_a) noexcept;
 
 /// One vertex of each tells: no surface lies between it and the others (of a mesh in one piece). Two opposite rays have
-/// to agree, or a third decides. Unknown where the budget ended it. noexcept, no allocation.
-[[nodiscard]] Within within(const Shape& a, const Shape& b, const math::Pose& b_in_a, RayBudget& budget) noexcept;
+/// to agree, or a third decides. Unknown where the budget ended it: before every ray it is asked whether there is time
+/// for contacts, and a node counts as a unit of work. noexcept, no allocation.
+[[nodiscard]] Within within(const Shape& a, const Shape& b, const math::Pose& b_in_a, Spending& spending) noexcept;
 
 /// The contact, in A's mesh frame, along the shortest way by which the inner shape leaves the other, of some
 /// directions: the `preferred` ones (unit, A's frame, the motion of B relative to A), which win unless another is much
 /// shorter (tolerances::way_it_came), away from the outer mesh's middle, and its axes. Nothing if no ray found a way
 /// within the budget. noexcept, no allocation.
 [[nodiscard]] std::optional<Contact> way_out(const Shape& a, const Shape& b, const math::Pose& b_in_a, Within which,
-                                             std::span<const Vec3> preferred, RayBudget& budget) noexcept;
+                                             std::span<const Vec3> preferred, Spending& spending) noexcept;
 
 }  // namespace odds::query

@@ -74,6 +74,20 @@ TEST_P(WithinASolid, EndsWhereTheContactSays) {
   EXPECT_GT(within, 100);
 }
 
+TEST_P(WithinASolid, IsAlwaysDecidedWithoutALimit) {
+  const auto outer = made("torus_knot", GetParam());
+  auto pair = std::move(Pair::make(outer, made("icosphere:radius=0.001,frequency=2", GetParam()))).value();
+  const Vec3 lower = outer->mesh().lower();
+  const Vec3 size = outer->mesh().upper() - lower;
+  std::mt19937 generator(8);
+  std::uniform_real_distribution<double> uniform;
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 place = lower + Vec3(uniform(generator), uniform(generator), uniform(generator)).cwiseProduct(size);
+    ASSERT_EQ(pair.run(at(place), {.method = Method::exact, .max_contacts = 4, .solids = true}).basis, Basis::proved)
+        << place.transpose();
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(AllVolumes, WithinASolid, ::testing::ValuesIn(testing::all_kinds()),
                          [](const auto& tested) { return testing::name_of(tested.param); });
 
