@@ -35,10 +35,16 @@ void EffectSet::configure(ode::WorldOptions& options) const {
   }
 }
 
-void EffectSet::bind(ode::World& world) {
+std::optional<Error> EffectSet::bind(ode::World& world) {
   clock_ = world.options().clock;
-  for (Entry& entry : entries_) entry.effect->bind(world);
+  for (Entry& entry : entries_) {
+    if (auto error = entry.effect->bind(world)) {
+      error->place = entry.cost.place.text();
+      return error;
+    }
+  }
   if ((stages_ & stage_meeting) != 0) world.set_meeting_hook({&EffectSet::meet, this});
+  return std::nullopt;
 }
 
 void EffectSet::reset() noexcept {

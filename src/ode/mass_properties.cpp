@@ -96,4 +96,12 @@ Result<MassProperties> mass_properties(const mesh::TriangleMesh& mesh, bool clos
   return of_box(mesh, mass_kg);
 }
 
+void give_mass(dBodyID body, const MassProperties& properties) noexcept {
+  const Mat3& inertia = properties.inertia_kg_m2;
+  dMass mass;
+  dMassSetParameters(&mass, properties.mass_kg, 0.0, 0.0, 0.0, inertia(0, 0), inertia(1, 1), inertia(2, 2),
+                     inertia(0, 1), inertia(0, 2), inertia(1, 2));
+  dBodySetMass(body, &mass);
+}
+
 }  // namespace odds::ode

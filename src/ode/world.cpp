@@ -39,6 +39,7 @@ BodyId id_of(dGeomID geom) {
 
 struct Body {
   std::string name;
+  std::shared_ptr<const query::Shape> shape;
   Geom geom;
   dBodyID body = nullptr;  // null: fixed
   MassProperties mass;
@@ -100,9 +101,10 @@ Result<Body*> World::Implementation::add(std::shared_ptr<const query::Shape> sha
     return Error{name, "", "it reaches farther than 1000 km from the origin",
                  "correct its position, and check the mesh's unit of length"};
   }
-  Result<Geom> geom = Geom::make(space, std::move(shape));
+  Result<Geom> geom = Geom::make(space, shape);
   if (!geom) return geom.error();
-  bodies.push_back(std::make_unique<Body>(Body{name, std::move(geom).value(), nullptr, {}, nullptr, {pose, {}, {}}}));
+  bodies.push_back(std::make_unique<Body>(
+      Body{name, std::move(shape), std::move(geom).value(), nullptr, {}, nullptr, {pose, {}, {}}}));
   Body& body = *bodies.back();
   dGeomSetData(body.geom.id(), reinterpret_cast<void*>(std::uintptr_t{bodies.size() - 1}));
   body.last_good.velocity_m_per_s.setZero();
@@ -217,22 +219,21 @@ void World::Implementation::near(void* self, dGeomID a, dGeomID b) noexcept {
   const dBodyID body_a = dGeomGetBody(a);
   const dBodyID body_b = dGeomGetBody(b);
   const bool velocity = world.options.contact_velocity || world.options.contact.friction > 0.0;
-  std::array<ContactPoint, most_contacts_per_pair> points;
+  std::array<ContactPoint, 2 * most_contacts_per_pair> points;  // as many again for effects to add
   for (int i = 0; i < count; ++i) {
     const auto at = static_cast<std::size_t>(i);
     points[at] = contact_point(found[at], count, world.options.contact, velocity, body_a, body_b);
   }
-  Meeting meeting{id_of(a),
-                  id_of(b),
-                  query::Verdict::clear,
-                  query::Basis::proved,
-                  0.0,
-                  {points.data(), static_cast<std::size_t>(std::max(0, count))}};
+  const auto made = std::span(points).first(static_cast<std::size_t>(std::max(0, count)));
+  Meeting meeting{.a = id_of(a), .b = id_of(b), .contacts = made, .room = points};
   world.note_answer(a, b, meeting);
   ++world.summary.meetings;
   if (world.hook.call != nullptr) world.hook.call(world.hook.self, meeting);
   if (!world.options.contact.responds) return;
-  for (std::size_t i = 0; i < meeting.contacts.size(); ++i) world.add_contact(points[i], found[i], body_a, body_b);
+  dContactGeom geoms{};
+  geoms.g1 = a;
+  geoms.g2 = b;
+  for (const ContactPoint& point : meeting.contacts) world.add_contact(point, geoms, body_a, body_b);
 }
 
 void World::Implementation::note_answer(dGeomID a, dGeomID b, Meeting& meeting) {
@@ -354,11 +355,7 @@ Result<BodyId> World::add_dynamic(std::shared_ptr<const query::Shape> shape, con
   Body& body = *added.value();
   body.mass = properties.value();
   body.body = dBodyCreate(self.world);
-  const Mat3& inertia = body.mass.inertia_kg_m2;
-  dMass ode_mass;
-  dMassSetParameters(&ode_mass, body.mass.mass_kg, 0.0, 0.0, 0.0, inertia(0, 0), inertia(1, 1), inertia(2, 2),
-                     inertia(0, 1), inertia(0, 2), inertia(1, 2));
-  dBodySetMass(body.body, &ode_mass);
+  give_mass(body.body, body.mass);
   dBodySetGyroscopicMode(body.body, 0);      // its explicit term feeds energy to fast spins
   dBodySetFiniteRotationMode(body.body, 1);  // fast turns stay rotations
   dBodySetMaxAngularSpeed(body.body, self.options.max_spin_rad_per_s);
@@ -468,6 +465,9 @@ void World::set_state(BodyId id, const BodyState& state) noexcept {
 }
 
 const MassProperties& World::mass(BodyId id) const noexcept { return implementation_->bodies[id.index]->mass; }
+const std::shared_ptr<const query::Shape>& World::shape(BodyId id) const noexcept {
+  return implementation_->bodies[id.index]->shape;
+}
 bool World::is_dynamic(BodyId id) const noexcept { return implementation_->bodies[id.index]->body != nullptr; }
 std::uint32_t World::body_count() const noexcept { return static_cast<std::uint32_t>(implementation_->bodies.size()); }
 

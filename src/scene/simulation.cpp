@@ -101,7 +101,10 @@ std::optional<Error> Simulation::load() {
     error->file = scene_.file;
     return error;
   }
-  effects_->bind(*world_);
+  if (auto error = effects_->bind(*world_)) {
+    error->file = scene_.file;
+    return error;
+  }
   renderer_->set_substeps({scene_.substep_way_m, scene_.most_substeps});
   if (!renderer_->begin()) {
     return Error{scene_.file, scene_.device->place.text(),

@@ -65,6 +65,7 @@ const std::map<std::string, std::string, std::less<>>& tables() {
        "stiffness_n_per_m = 100\nbreak_force_n = 10\n"},
       {"gyroscopic", ""},
       {"contact", ""},
+      {"deep_contact", ""},
       {"compliance", "body = \"loose\"\nstiffness_n_per_m = 5000\n"},
       {"texture", "body = \"floor\"\namplitude_m = 0.0001\nwavelength_m = 0.002\n"},
       {"surface_velocity", "body = \"floor\"\nvelocity_m_per_s = [0.1, 0, 0]\n"},
@@ -112,9 +113,10 @@ TEST_P(EveryEffect, IsNeverMadeNorEvaluatedWhereNobodyAsksForIt) {
   for (const haptics::EffectType& type : haptics::effect_types()) {
     const bool rests = (left_out == "contact" && tables().contains(type.name)) ||
                        (left_out == "friction" && type.name == "surface_velocity");
-    const bool needs_contact = type.name == "compliance" || type.name == "texture" || type.name == "surface_velocity" ||
-                               type.name == "friction" || type.name == "rolling_friction" ||
-                               type.name == "restitution" || type.name == "energy_tank";
+    const bool needs_contact = type.name == "deep_contact" || type.name == "compliance" || type.name == "texture" ||
+                               type.name == "surface_velocity" || type.name == "friction" ||
+                               type.name == "rolling_friction" || type.name == "restitution" ||
+                               type.name == "energy_tank";
     if (type.name == left_out || (rests && (needs_contact || left_out == "friction"))) continue;
     others += table(type.name);
   }

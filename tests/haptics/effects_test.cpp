@@ -187,6 +187,56 @@ TEST(Effects, ASoftBodySinksByTheSpringsInSeries) {
               0.1 * 0.5 * g / stiffness);
 }
 
+// The second cube's centre is `z` above the first's, well above the floor; how far it came in some ticks.
+Vec3 settled(const std::string& effects, double z, std::uint64_t work_units, int ticks) {
+  std::string text = on_floor("[[body]]\nname = \"block\"\nmesh = \"cube\"\nposition_m = [0, 0, 0.5]\n" +
+                              moving("cube", "cube", 0.01, 0.5 + z, 0.5) + contact + effects);
+  const std::string asked = "work_units = 20000";
+  text.replace(text.find(asked), asked.size(), "work_units = " + std::to_string(work_units));
+  const auto simulation = simulate(text);
+  run_ticks(*simulation, ticks);
+  return simulation->world().state({2}).pose.translation - Vec3(0.01, 0, 0.5 + z);
+}
+
+TEST(Effects, ADeepOverlapPushesTheSameWhateverTheBudget) {
+  const std::string deep = "[effects.deep_contact]\nspheres = 32\n";
+  const Vec3 starved = settled(deep, 0.01, 5, 12);
+  const Vec3 exact = settled(deep, 0.01, 20000, 12);
+  EXPECT_EQ(starved, exact) << "bit for bit";
+  EXPECT_GT(exact.dot(Vec3(1, 0, 1)), 0.001) << "out, the way it is aside already";
+  EXPECT_NE(settled("", 0.01, 5, 12), settled("", 0.01, 20000, 12)) << "or there was nothing to show";
+}
+
+TEST(Effects, AShallowContactIsLeftAsItIs) {
+  const std::string weight = gravity + "[effects.damping]\nangular_per_s = 1\n";
+  EXPECT_EQ(settled("[effects.deep_contact]\nspheres = 32\n" + weight, 0.0399, 20000, 100),
+            settled(weight, 0.0399, 20000, 100));
+}
+
+TEST(Effects, OneLawTakesOverFromTheOtherWithoutAStep) {
+  // The force of one tick from rest, along a line from 1.5 mm to 20 mm into the block.
+  const auto simulation = simulate(
+      on_floor("[[body]]\nname = \"block\"\nmesh = \"cube\"\nposition_m = [0, 0, 0.5]\n" +
+               moving("ball", "ball", 0.0, 0.6, 1.0) +
+               "[effects.contact]\nmax_correcting_velocity_m_per_s = 1000\n[effects.deep_contact]\nspheres = 64\n"));
+  constexpr double step = 2e-5;
+  double before = 0.0;
+  double largest = 0.0;
+  for (int i = 0; i < 925; ++i) {
+    ode::BodyState state = simulation->world().state({2});
+    state.pose = {Mat3::Identity(), Vec3(0.0, 0.0, 0.5385 - i * step)};
+    state.velocity_m_per_s = state.angular_velocity_rad_per_s = Vec3::Zero();
+    simulation->world().set_state({2}, state);
+    run_ticks(*simulation, 1);
+    const double force = simulation->world().state({2}).velocity_m_per_s.z() / 1e-3;
+    if (i > 0) largest = std::max(largest, std::abs(force - before));
+    before = force;
+  }
+  std::printf("  the largest step of force: %.3g N; of the spring alone %.3g N\n", largest, 20000.0 * step);
+  EXPECT_LT(largest, 2.0 * 20000.0 * step);
+  EXPECT_GT(before, 300.0);
+}
+
 TEST(Effects, AFluidBringsABodyToTheSpeedOfItsFlow) {
   const std::string scene = moving("ball", "ball", 0, 0.5);
   const auto simulation =
@@ -376,6 +426,8 @@ TEST(Effects, RefuseWhatCannotWork) {
        "needs friction");
   says("[effects.contact]\n[effects.rolling_friction]\n", "does nothing");
   says("[effects.contact]\n[effects.restitution]\ncoefficient = 1.5\n", "out of range");
+  says("[effects.contact]\n[effects.deep_contact]\nfrom = 0.5\nfull = 0.4\n", "give more than 'from'");
+  says("[effects.contact]\n[effects.deep_contact]\nspheres = 1000\n", "8 to 512");
   says("[effects.attraction]\nbody = \"bal\"\nto = \"floor\"\nmax_force_n = 1\nrange_m = 1\n", "did you mean 'ball'");
   says("[effects.attraction]\nbody = \"floor\"\nto = \"ball\"\nmax_force_n = 1\nrange_m = 1\n", "never moves");
   says("[effects.attraction]\nbody = \"ball\"\nto = \"ball\"\nmax_force_n = 1\nrange_m = 1\n", "itself");
@@ -396,6 +448,20 @@ TEST(Effects, RefuseWhatCannotWork) {
   EXPECT_EQ(
       refusal(on_floor(ball + "[[effects.viscosity]]\ndrag_ns_per_m = 1\n[[effects.viscosity]]\ndrag_ns_per_m = 2\n")),
       "taken");
+}
+
+TEST(Effects, RefuseBodiesThatTheyCanDoNothingWith) {
+  auto parsed = parse_scene(
+      "format = \"odds.scene/1\"\n[loop]\nseconds = 1\n[[mesh]]\nname = \"sheet\"\nfile = \"made:terrain\"\n"
+      "[[body]]\nname = \"one\"\nmesh = \"sheet\"\n[[body]]\nname = \"two\"\nmesh = \"sheet\"\nmotion = "
+      "\"dynamic\"\nmass_kg = 1\n[effects.contact]\n[effects.deep_contact]\n",
+      "test.toml", ".");
+  ASSERT_TRUE(parsed.ok()) << parsed.error().message();
+  const auto made = Simulation::make(std::move(parsed).value(), {});
+  ASSERT_FALSE(made.ok());
+  const std::string message = made.error().message();
+  EXPECT_NE(message.find("test.toml:16"), std::string::npos) << message;
+  EXPECT_NE(message.find("two bodies with closed meshes"), std::string::npos) << message;
 }
 
 }  // namespace

@@ -33,6 +33,8 @@ std::string hand(const std::string& at, const std::string& down, const std::stri
 
 const std::string slab = mesh("slab", "made:box:x=0.2,y=0.2,z=0.04,cells=8");  // its top at z = 0.02
 const std::string contact = "[effects.contact]\n";
+// These knots are round tubes, which spheres fill well: they take over as soon as they meet.
+const std::string deep = "[effects.deep_contact]\nfrom = 0.01\nfull = 0.05\n";
 const std::string friction = "[effects.friction]\nmu = 0.3\n";
 const std::string pull = "[effects.virtual_coupling]\nk_t_n_per_m = 500\nb_t_ns_per_m = 2\n";
 const std::string gravity = "[effects.gravity]\n";
@@ -71,7 +73,7 @@ std::vector<HardCase> overlaps() {
        1.0, Trouble::none, 5.0, 0.05, 5e-4, 0.05, false},
       {"full_overlap", "Two equal knots lie exactly in each other; the hand draws one out.",
        mesh("knot", "made:torus_knot") + fixed("knot", "knot") + tool("knot") +
-           hand("[0, 0, 0]", "[0, 0, 0.4]", "[0.3, 0, 0.4]") + contact + pull,
+           hand("[0, 0, 0]", "[0, 0, 0.4]", "[0.3, 0, 0.4]") + contact + deep + pull,
        1.2, Trouble::none, 5.0, 0.1, 5e-4, 0.05, false},
       {"alternating_sets", "A gear is pushed into another's teeth and turned: contacts come and go.",
        mesh("gear", "made:gear") + fixed("gear", "gear") + tool("gear", "0.1") +
@@ -158,7 +160,7 @@ std::vector<HardCase> control() {
            "[device.hand]\ntype = \"scripted\"\nposition_m = [0.02, 0.25, 0.03]\n[[device.hand.motion]]\nkind = "
            "\"slide\"\n"
            "duration_s = 0.6\nby_m = [0.01, -0.5, 0]\nturn_rad = 1.0\n" +
-           contact + friction + pull,
+           contact + deep + friction + pull,
        0.8, Trouble::none, 5.0, 5e-3, 2e-3, 0.05, false},
   };
 }

@@ -169,7 +169,7 @@ TEST(Explain, ListsEffectsWithTheLinesThatAsked) {
   folder.write("scene.toml", scene);
   const Ran ran = run_tool(folder, "explain scene.toml --samples 5");
   ASSERT_EQ(ran.status, 0) << ran.errors;
-  for (const char* expected : {"2 of 18 effects are on", "on   virtual_coupling   line 26",
+  for (const char* expected : {"2 of 19 effects are on", "on   virtual_coupling   line 26",
                                "on   contact            line 25", "off  friction", "no [effects.gravity]"}) {
     EXPECT_NE(ran.output.find(expected), std::string::npos) << expected << "\n" << ran.output;
   }

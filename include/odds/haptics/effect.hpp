@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -93,8 +94,8 @@ class Effect {
 
   /// Sets what it wants of the world, before that is made.
   virtual void configure(ode::WorldOptions& /*options*/) const {}
-  /// Once the world is prepared. May allocate.
-  virtual void bind(const ode::World& /*world*/) {}
+  /// Once the world is prepared. May allocate, and refuse the bodies that it finds.
+  [[nodiscard]] virtual std::optional<Error> bind(const ode::World& /*world*/) { return std::nullopt; }
   /// At the start of a run: forgets what it kept from ticks.
   virtual void reset() noexcept {}
   /// For trials: remember the state, and go back to it.

@@ -35,8 +35,8 @@ class EffectSet {
   /// Effects that are switched off want nothing.
   void configure(ode::WorldOptions& options) const;
   /// Connects with the world, which outlives the set, is prepared, and calls back at meetings from now on. Costs are
-  /// by the world's clock.
-  void bind(ode::World& world);
+  /// by the world's clock. An effect's refusal names the place that asked for it.
+  [[nodiscard]] std::optional<Error> bind(ode::World& world);
   /// At the start of a run; costs begin anew.
   void reset() noexcept;
   /// For trials: an effect that is off is not called, nor are those that rest on it. Configuration is the caller's

@@ -45,6 +45,7 @@ struct Meeting {
   query::Basis basis = query::Basis::proved;
   double probability = 0.0;          ///< of a hit, [0, 1]
   std::span<ContactPoint> contacts;  ///< may be changed; what is not finite afterwards is left out
+  std::span<ContactPoint> room;      ///< begins with `contacts`, which may be made shorter, or longer up to its end
 };
 
 /// Called within World::step for each meeting, before its contacts become rows. Must not allocate, lock or throw.

@@ -193,6 +193,7 @@ class World {
   /// Puts a body somewhere, e.g. to begin a run anew. Ignored unless finite and rigid.
   void set_state(BodyId body, const BodyState& state) noexcept;
   [[nodiscard]] const MassProperties& mass(BodyId body) const noexcept;
+  [[nodiscard]] const std::shared_ptr<const query::Shape>& shape(BodyId body) const noexcept;
   [[nodiscard]] bool is_dynamic(BodyId body) const noexcept;
   [[nodiscard]] std::uint32_t body_count() const noexcept;
 

@@ -21,7 +21,7 @@ class Attraction final : public Effect {
   [[nodiscard]] std::uint32_t stages() const noexcept override { return stage_before_step; }
   [[nodiscard]] std::string_view evaluates() const noexcept override { return "pairs"; }
   [[nodiscard]] bool repeatable() const noexcept override { return true; }
-  void bind(const ode::World& world) override {
+  [[nodiscard]] std::optional<Error> bind(const ode::World& world) override {
     // Near the magnet the force is a spring: as stiff as one step can hold, and no stiffer.
     double inverse_mass = 0.0;
     for (const ode::BodyId body : {magnet_.body, magnet_.to}) {
@@ -29,6 +29,7 @@ class Attraction final : public Effect {
     }
     const double step_s = world.options().step_s;
     softening_ = 1.0 + step_s * step_s * steepest * magnet_.max_force_n / magnet_.range_m * inverse_mass;
+    return std::nullopt;
   }
   std::uint32_t before_step(const TickView& tick) noexcept override {
     const Vec3 away = center(*tick.world, magnet_.to) - center(*tick.world, magnet_.body);

@@ -13,12 +13,13 @@ class Events final : public Effect {
   [[nodiscard]] std::uint32_t needs() const noexcept override { return need_verdict | need_history; }
   [[nodiscard]] std::uint32_t stages() const noexcept override { return stage_meeting | stage_after_step; }
   [[nodiscard]] std::string_view evaluates() const noexcept override { return "meetings"; }
-  void bind(const ode::World& world) override {
+  [[nodiscard]] std::optional<Error> bind(const ode::World& world) override {
     const std::size_t n = world.body_count();
     now_.touching.clear();
     now_.touching.reserve(n * n / 2 + 1);
     kept_.touching.reserve(n * n / 2 + 1);
     log_.resize(capacity_);
+    return std::nullopt;
   }
   void reset() noexcept override {
     now_.touching.clear();

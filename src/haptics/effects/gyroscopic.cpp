@@ -25,11 +25,12 @@ class Gyroscopic final : public Effect {
   [[nodiscard]] std::uint32_t needs() const noexcept override { return need_motion; }
   [[nodiscard]] std::uint32_t stages() const noexcept override { return stage_before_step; }
   [[nodiscard]] std::string_view evaluates() const noexcept override { return "bodies"; }
-  void bind(const ode::World& world) override {
+  [[nodiscard]] std::optional<Error> bind(const ode::World& world) override {
     moving_.clear();
     for (std::uint32_t i = 0; i < world.body_count(); ++i) {
       if (world.is_dynamic({i})) moving_.push_back({i});
     }
+    return std::nullopt;
   }
   std::uint32_t before_step(const TickView& tick) noexcept override {
     for (const ode::BodyId body : moving_) {

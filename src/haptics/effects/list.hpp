@@ -6,7 +6,7 @@
 // clang-format off
 #define ODDS_EFFECTS(X) \
   X(virtual_coupling) X(gravity) X(damping) X(viscosity) X(attraction) X(snap) X(gyroscopic) X(contact) \
-  X(compliance) X(texture) X(surface_velocity) X(friction) X(rolling_friction) X(restitution) X(energy_tank) \
+  X(deep_contact) X(compliance) X(texture) X(surface_velocity) X(friction) X(rolling_friction) X(restitution) X(energy_tank) \
   X(events) X(vibration) X(passivity_control)
 // clang-format on
 

@@ -29,13 +29,14 @@ class Viscosity final : public Effect {
   [[nodiscard]] std::uint32_t stages() const noexcept override { return stage_before_step; }
   [[nodiscard]] std::string_view evaluates() const noexcept override { return "bodies"; }
   [[nodiscard]] bool repeatable() const noexcept override { return true; }
-  void bind(const ode::World& world) override {
+  [[nodiscard]] std::optional<Error> bind(const ode::World& world) override {
     moving_.clear();
     for (std::uint32_t i = 0; i < world.body_count(); ++i) {
       if (!world.is_dynamic({i})) continue;
       const Eigen::SelfAdjointEigenSolver<Mat3> axes(world.mass({i}).inertia_kg_m2);
       moving_.push_back({{i}, axes.eigenvalues().minCoeff()});
     }
+    return std::nullopt;
   }
   std::uint32_t before_step(const TickView& tick) noexcept override {
     std::uint32_t count = 0;
