@@ -21,6 +21,8 @@ class KnownDepth {
     known_ = true;
   }
   [[nodiscard]] bool known() const noexcept { return known_; }
+  /// What was noted, metres.
+  [[nodiscard]] double depth() const noexcept { return depth_; }
   /// Of any contact at this pose; infinite if nothing is known. `reach` of B's surface from its frame's origin.
   [[nodiscard]] double most(const math::Pose& pose, double reach) const noexcept {
     return known_ ? depth_ + math::motion_bound(pose_, pose, reach) : std::numeric_limits<double>::infinity();

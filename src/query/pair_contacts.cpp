@@ -24,6 +24,9 @@ constexpr std::int64_t hasty_finish_ns = 6500;   ///< of one that is hasty from 
 constexpr std::int64_t single_finish_ns = 3000;  ///< of a single contact
 constexpr std::int64_t rough_finish_ns = 1500;   ///< of one more rough contact, their direction, and writing the answer
 
+constexpr double fading = 0.5;  ///< of what was known of the depth, from one sample of a rim to the next
+constexpr double slack = 2.0;   ///< of what is believed of a depth that a sample has measured
+
 /// Pairs of triangles that a patch has time for.
 std::uint32_t hits_in(double microseconds, double per_microsecond) noexcept {
   return static_cast<std::uint32_t>(
@@ -68,9 +71,29 @@ void limit_to_believed(const PosedMeshes& meshes, Pair::Implementation& pair) no
   }
 }
 
-/// Part of the rim may be enough, and yet nothing is deeper than can be.
-void limit_depth(double most_depth, Pair::Implementation& pair) noexcept {
-  for (Contact& contact : own_contacts(pair)) contact.depth = std::min(contact.depth, most_depth);
+/// Part of the rim may be enough, and yet nothing is deeper than can be, nor much deeper than it has come along its own
+/// normal: a few pieces of a rim may be taken for one lump, which reaches from end to end.
+void limit_depth(const PosedMeshes& meshes, double most_depth, Pair::Implementation& pair) noexcept {
+  if (!pair.known_depth.known()) return;
+  const double smaller = std::min(pair.a->mesh().size(), pair.b->mesh().size());
+  for (Contact& contact : own_contacts(pair)) {
+    const Vec3 place = contact.position - meshes.origin_a();
+    const double believed = pair.known_depth.believed(place, contact.normal, meshes.pose());
+    const double most = std::max(slack * believed, tolerances::unmeasured_depth * smaller);
+    contact.depth = std::min({contact.depth, most_depth, most});
+  }
+}
+
+/// What a sample of the rim says of the depth is taken for known as far as motion allows it; and as it may have missed
+/// the deepest place, what was known before fades instead of being forgotten.
+void note_sample(const PosedMeshes& meshes, Pair::Implementation& pair) noexcept {
+  double deepest = fading * pair.known_depth.depth();
+  for (const Contact& contact : pair.answer.contacts) {
+    const Vec3 place = contact.position - meshes.origin_a();
+    deepest =
+        std::max(deepest, std::min(contact.depth, pair.known_depth.believed(place, contact.normal, meshes.pose())));
+  }
+  pair.known_depth.note(meshes.pose(), deepest);
 }
 
 /// What single pairs of triangles say, when there is no time for a patch.
@@ -162,7 +185,7 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   if (!pair.answer.contacts_complete && !measured) {
     limit_to_believed(meshes, pair);
   } else if (ended != Progressed::finished || part) {
-    limit_depth(most_depth, pair);
+    limit_depth(meshes, most_depth, pair);
   }
   if (pair.patches.finished() && request.max_contacts > 1) {
     const Contact& first = pair.answer.contacts.front();
@@ -181,8 +204,13 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
     pair.carried.keep(pair.answer.contacts, request.max_contacts, pair.hits.pairs(), pose_b_in_a,
                       pair.answer.contacts_complete ? 0 : pair.answer.contact_pairs);
   }
+  const bool whole = pair.answer.contacts_complete && ended == Progressed::finished;
+  if (whole) {
+    pair.known_depth.note(meshes.pose(), deepest_of(pair.answer.contacts));
+  } else if (pair.patches.finished() && request.max_contacts > 1 && pair.known_depth.known()) {
+    note_sample(meshes, pair);
+  }
   if (!pair.answer.contacts_complete) return;
-  if (ended == Progressed::finished) pair.known_depth.note(meshes.pose(), deepest_of(pair.answer.contacts));
   pair.previous_normal = pair.answer.contacts.front().normal;
   pair.previous_position = pair.answer.contacts.front().position;
 }
