@@ -12,11 +12,14 @@ namespace {
 constexpr double core = 0.25;
 // Of all weights: a part that has less pushes nothing.
 constexpr double least_part = 1e-9;
+// Of the square of the thickness: parts nearer together than its root have no lever to turn anything by.
+constexpr double turned_by_nothing = 1e-4;
 
 /// What pushes on some spheres, in units of `Law::unit`, with the weights that the eighth power gives the pairs.
 struct Sum {
   Vec3 push = Vec3::Zero();
-  Vec3 place = Vec3::Zero();  // times the weight
+  Vec3 torque = Vec3::Zero();  // about the origin
+  Vec3 place = Vec3::Zero();   // times the weight
   double weight = 0.0;
   double eighth_power = 0.0;
 };
@@ -37,8 +40,11 @@ struct Law {
     if (!(depth > 0.0)) return;
     const double squared = depth * depth;
     const double weight = least * least * least * per_cube * squared * squared * squared * depth;
-    sum.push += (weight / soft) * apart;
-    sum.place += weight * (other + apart * (other_radius / both));  // where they would just touch
+    const Vec3 push = (weight / soft) * apart;
+    const Vec3 place = other + apart * (other_radius / both);  // where they would just touch
+    sum.push += push;
+    sum.torque += place.cross(push);
+    sum.place += weight * place;
     sum.weight += weight;
     sum.eighth_power += weight * depth;
   }
@@ -57,6 +63,27 @@ Sum push_on(const Vec3& center, double radius, const InnerSpheres& larger, std::
     }
   }
   return sum;
+}
+
+/// Adds to the parts' pushes what turns the body besides: forces across the lines from their common middle, which sum
+/// up to nothing, each by the part's weight. What one place alone turns cannot be had, and is left out.
+void add_turning(const Vec3& torque, double weights, double unit, DeepOverlap& overlap,
+                 const std::array<double, InnerSpheres::corners>& weight) noexcept {
+  Vec3 middle = Vec3::Zero();
+  Vec3 missing = torque;
+  for (std::uint32_t i = 0; i < overlap.count; ++i) {
+    middle += (weight[i] / weights) * overlap.parts[i].position;
+    missing -= overlap.parts[i].position.cross(overlap.parts[i].push);
+  }
+  Mat3 inertia = turned_by_nothing * unit * unit * Mat3::Identity();
+  for (std::uint32_t i = 0; i < overlap.count; ++i) {
+    const Vec3 arm = overlap.parts[i].position - middle;
+    inertia += (weight[i] / weights) * (arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose());
+  }
+  const Vec3 turning = inertia.inverse() * missing;
+  for (std::uint32_t i = 0; i < overlap.count; ++i) {
+    overlap.parts[i].push += (weight[i] / weights) * turning.cross(overlap.parts[i].position - middle);
+  }
 }
 
 /// In the larger solid's frame, with what pushes the smaller one out.
@@ -83,6 +110,7 @@ DeepOverlap overlap_in(const InnerSpheres& larger, const InnerSpheres& smaller, 
       for (std::size_t c = 0; c < parts.size(); ++c) {
         const double share = smaller.corner_shares()[i][c];
         parts[c].push += share * sum.push;
+        parts[c].torque += share * sum.torque;
         parts[c].place += share * sum.place;
         parts[c].weight += share * sum.weight;
       }
@@ -91,10 +119,16 @@ DeepOverlap overlap_in(const InnerSpheres& larger, const InnerSpheres& smaller, 
   if (!(eighth_power > 0.0)) return result;
   const double mean = std::sqrt(std::sqrt(std::sqrt(eighth_power)));  // the depth, in units
   result.depth = mean * law.unit;
+  const double scale = mean / eighth_power;  // the depth, in units, to the power of -7
+  std::array<double, InnerSpheres::corners> weight;
+  Vec3 torque = Vec3::Zero();
   for (const Sum& sum : parts) {
+    torque += scale * sum.torque;
     if (!(sum.weight > least_part * weights)) continue;
-    result.parts[result.count++] = {sum.place / sum.weight, sum.push * (mean / eighth_power), sum.weight / weights};
+    weight[result.count] = sum.weight;
+    result.parts[result.count++] = {sum.place / sum.weight, scale * sum.push};
   }
+  add_turning(torque, weights, law.unit, result, weight);
   return result;
 }
 

@@ -12,13 +12,14 @@
 namespace odds::query {
 namespace {
 
-constexpr std::size_t samples = 2048;  // points of the surface under which balls are sought
-constexpr int most_shrinks = 40;       // they converge in some 5
-constexpr double shrunk = 1e-6;        // relative: nearer than that, the ball is empty
-constexpr double least_radius = 1e-6;  // of the mesh
-constexpr double point_size = 1e-9;    // of the mesh: a triangle so small stands for a point
-constexpr double least_gain = 1e-4;    // of the volume: what fills less is left out
-constexpr std::size_t depths = 2;      // points below each sample that tell what is filled
+constexpr std::size_t samples = 2048;       // points of the surface under which balls are sought
+constexpr std::uint64_t most_nodes = 2000;  // of one search; round bodies have all of their surface nearest
+constexpr int most_shrinks = 40;            // they converge in some 5
+constexpr double shrunk = 1e-6;             // relative: nearer than that, the ball is empty
+constexpr double least_radius = 1e-6;       // of the mesh
+constexpr double point_size = 1e-9;         // of the mesh: a triangle so small stands for a point
+constexpr double least_gain = 1e-3;         // of the volume: what fills less is left out
+constexpr std::size_t depths = 2;           // points below each sample that tell what is filled
 
 struct Ball {
   Vec3 center;
@@ -48,10 +49,9 @@ class Surface {
     return Surface(std::move(pair).value());
   }
 
-  [[nodiscard]] std::optional<Vec3> nearest(const Vec3& point) const noexcept {
-    const DistanceAnswer answer = pair_.distance({Mat3::Identity(), point});
-    if (!answer.proved || !std::isfinite(answer.upper)) return std::nullopt;
-    return answer.on_a;
+  /// The nearest point within a distance, and how far the surface is at least.
+  [[nodiscard]] DistanceAnswer nearest(const Vec3& point, double within) const noexcept {
+    return pair_.distance({Mat3::Identity(), point}, {.within = within, .budget = Budget::work(most_nodes)});
   }
 
  private:
@@ -107,14 +107,13 @@ std::optional<Ball> ball_under(const Shape& shape, const Surface& surface, const
   double radius = 0.5 * (across->distance + lifted);
   Vec3 center = sample.place + radius * sample.inward;
   for (int i = 0; i < most_shrinks; ++i) {
-    const std::optional<Vec3> nearest = surface.nearest(center);
-    if (!nearest) return std::nullopt;
-    const double distance = (*nearest - center).norm();
-    if (distance >= radius * (1.0 - shrunk)) return Ball{center, std::min(radius, distance)};
+    const DistanceAnswer nearest = surface.nearest(center, radius * (1.0 - shrunk));
+    if (!nearest.proved) return Ball{center, std::min(radius, nearest.lower)};
+    if (!std::isfinite(nearest.upper)) return Ball{center, radius * (1.0 - shrunk)};
     // The ball through both points that touches the surface at the sample.
-    const Vec3 apart = *nearest - sample.place;
+    const Vec3 apart = nearest.on_a - sample.place;
     const double smaller = apart.squaredNorm() / (2.0 * apart.dot(sample.inward));
-    if (!(smaller > 0.0) || !(smaller < radius)) return Ball{center, distance};
+    if (!(smaller > 0.0) || !(smaller < radius)) return Ball{center, nearest.upper};
     radius = smaller;
     center = sample.place + radius * sample.inward;
   }
@@ -189,13 +188,15 @@ void arrange(std::span<Ball> balls) {
   arrange(balls.subspan(half));
 }
 
-/// Trilinear: a sphere at a corner belongs to it alone, one in the middle to all alike.
-std::array<double, InnerSpheres::corners> shares_of_corners(const Vec3& point, const Vec3& lower, const Vec3& upper) {
+/// Trilinear: a sphere at a corner belongs to it alone, one in the middle to all alike. A box thinner than `least_side`
+/// has no two corners there.
+std::array<double, InnerSpheres::corners> shares_of_corners(const Vec3& point, const Vec3& lower, const Vec3& upper,
+                                                            double least_side) {
   std::array<double, InnerSpheres::corners> shares;
   shares.fill(1.0);
   for (int axis = 0; axis < 3; ++axis) {
     const double side = upper[axis] - lower[axis];
-    const double t = side > 0.0 ? (point[axis] - lower[axis]) / side : 0.5;
+    const double t = side > least_side ? (point[axis] - lower[axis]) / side : 0.0;
     for (std::size_t i = 0; i < shares.size(); ++i) shares[i] *= ((i >> axis) & 1U) != 0 ? t : 1.0 - t;
   }
   return shares;
@@ -224,7 +225,7 @@ Result<InnerSpheres> InnerSpheres::pack(const std::shared_ptr<const Shape>& shap
     balls.push_back(*ball);
   }
   if (balls.empty()) {
-    return Error{name, "", "the mesh has no room for a sphere", "it is too thin for its size: leave it out"};
+    return Error{name, "", "the mesh has no room for a sphere", "it is too thin for its size"};
   }
   std::vector<Ball> kept = filling(balls, std::move(points), count);
   arrange(kept);
@@ -242,7 +243,8 @@ Result<InnerSpheres> InnerSpheres::pack(const std::shared_ptr<const Shape>& shap
     made.thickness_ += cube * ball.radius;
   }
   made.thickness_ /= made.cubes_;
-  for (const Vec3& center : made.centers_) made.corner_shares_.push_back(shares_of_corners(center, lower, upper));
+  for (const Vec3& center : made.centers_)
+    made.corner_shares_.push_back(shares_of_corners(center, lower, upper, 0.5 * made.thickness_));
   for (std::size_t first = 0; first < kept.size(); first += group_size) {
     Group group;
     group.first = static_cast<std::uint32_t>(first);

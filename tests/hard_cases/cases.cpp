@@ -33,8 +33,8 @@ std::string hand(const std::string& at, const std::string& down, const std::stri
 
 const std::string slab = mesh("slab", "made:box:x=0.2,y=0.2,z=0.04,cells=8");  // its top at z = 0.02
 const std::string contact = "[effects.contact]\n";
-// These knots are round tubes, which spheres fill well: they take over as soon as they meet.
-const std::string deep = "[effects.deep_contact]\nfrom = 0.01\nfull = 0.05\n";
+// These knots are round tubes, which spheres fill well: these take over as soon as they meet.
+const std::string deep = "[effects.deep_contact]\nfrom = 0.001\nfull = 0.01\n";
 const std::string friction = "[effects.friction]\nmu = 0.3\n";
 const std::string pull = "[effects.virtual_coupling]\nk_t_n_per_m = 500\nb_t_ns_per_m = 2\n";
 const std::string gravity = "[effects.gravity]\n";
@@ -74,7 +74,7 @@ std::vector<HardCase> overlaps() {
       {"full_overlap", "Two equal knots lie exactly in each other; the hand draws one out.",
        mesh("knot", "made:torus_knot") + fixed("knot", "knot") + tool("knot") +
            hand("[0, 0, 0]", "[0, 0, 0.4]", "[0.3, 0, 0.4]") + contact + deep + pull,
-       1.2, Trouble::none, 5.0, 0.1, 5e-4, 0.05, false},
+       1.2, Trouble::none, 5.0, 0.2, 5e-4, 0.05, false},  // 0.8 J: 40 N at most, over 20 mm
       {"alternating_sets", "A gear is pushed into another's teeth and turned: contacts come and go.",
        mesh("gear", "made:gear") + fixed("gear", "gear") + tool("gear", "0.1") +
            "[device.hand]\ntype = \"scripted\"\nposition_m = [0.055, 0, 0.001]\n[[device.hand.motion]]\nkind = "

@@ -1,6 +1,7 @@
 // Spheres within solids: inside, and the depth of two packings is one smooth function whose gradient the parts are.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 #include "odds/mesh/enclosed_volume.hpp"
@@ -31,7 +32,7 @@ class Solids : public ::testing::TestWithParam<const char*> {};
 
 // A speck in the middle of each sphere is as far from the surface as the sphere reaches, and a ray from there crosses
 // the surface an odd number of times.
-TEST_P(Solids, SpheresTouchTheSurfaceFromWithin) {
+TEST_P(Solids, SpheresReachToTheSurfaceFromWithin) {
   const auto shape = made(GetParam());
   const InnerSpheres spheres = InnerSpheres::pack(shape).value();
   const double size = shape->mesh().size();
@@ -45,7 +46,8 @@ TEST_P(Solids, SpheresTouchTheSurfaceFromWithin) {
   for (std::size_t i = 0; i < spheres.radii().size(); ++i) {
     const Vec3& center = spheres.centers()[i];
     const double distance = pair.distance({Mat3::Identity(), center}).upper;
-    EXPECT_NEAR(spheres.radii()[i], distance, 1e-5 * size) << "sphere " << i;
+    EXPECT_LT(spheres.radii()[i], distance + 1e-6 * size) << "sphere " << i;
+    EXPECT_GT(spheres.radii()[i], 0.95 * distance) << "sphere " << i;
     int crossings = 0;
     double along = 0.0;
     while (const auto hit = cast_ray(*shape, center + along * aside, aside, 3.0 * size)) {
@@ -91,6 +93,7 @@ TEST_P(Solids, PartsAreTheGradientOfTheDepth) {
   std::mt19937_64 generator(5);
   std::normal_distribution<double> normal;
   int overlapping = 0;
+  std::vector<double> errors;
   for (int i = 0; i < 300; ++i) {
     // Around a sphere of each, so that they overlap.
     const auto pick = [&](const InnerSpheres& s) { return s.centers()[generator() % s.centers().size()]; };
@@ -101,9 +104,6 @@ TEST_P(Solids, PartsAreTheGradientOfTheDepth) {
     const DeepOverlap overlap = deep_overlap(own, other, pose);
     if (overlap.depth < 1e-3 * reach) continue;
     ++overlapping;
-    double shares = 0.0;
-    for (std::uint32_t k = 0; k < overlap.count; ++k) shares += overlap.parts[k].share;
-    EXPECT_NEAR(shares, 1.0, 1e-6);
     const Vec3 pushes = gradient(overlap);
     const double step = 1e-6 * reach;
     for (int axis = 0; axis < 3; ++axis) {
@@ -115,35 +115,78 @@ TEST_P(Solids, PartsAreTheGradientOfTheDepth) {
           (deep_overlap(own, other, there).depth - deep_overlap(own, other, back).depth) / (2.0 * step);
       EXPECT_NEAR(pushes[axis], slope, 1e-5) << "B along an axis is A against it";
     }
+    // Turning B about the middle of what pushes, which is turning A the other way.
+    Vec3 middle = Vec3::Zero();
+    Vec3 torque = Vec3::Zero();
+    for (std::uint32_t k = 0; k < overlap.count; ++k) middle += overlap.parts[k].position / overlap.count;
+    for (std::uint32_t k = 0; k < overlap.count; ++k) {
+      torque += (overlap.parts[k].position - middle).cross(overlap.parts[k].push);
+    }
+    Vec3 slope = Vec3::Zero();
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto turned_by = [&](double angle) {
+        const Mat3 turning = Eigen::AngleAxisd(angle, Vec3::Unit(axis)).toRotationMatrix();
+        const math::Pose about{turning, middle - turning * middle};
+        return deep_overlap(own, other, about * pose).depth;
+      };
+      slope[axis] = (turned_by(1e-6) - turned_by(-1e-6)) / 2e-6;
+    }
+    if (slope.norm() > 0.02 * reach) errors.push_back((torque - slope).norm() / slope.norm());
     // The other way round: the same depth, the opposite push.
     const DeepOverlap turned = deep_overlap(other, own, pose.inverse());
     EXPECT_NEAR(turned.depth, overlap.depth, 1e-12 * reach);
     EXPECT_LT((pose.rotation * gradient(turned) + pushes).norm(), 1e-9);
   }
   EXPECT_GT(overlapping, 150);
+  std::sort(errors.begin(), errors.end());
+  std::printf("  %s: torques are off by %.2g in the median, %.2g at the 90th percentile\n", GetParam(),
+              errors[errors.size() / 2], errors[errors.size() * 9 / 10]);
+  EXPECT_LT(errors[errors.size() / 2], 0.05);
 }
 
 INSTANTIATE_TEST_SUITE_P(Made, Solids,
                          ::testing::Values("torus_knot", "icosphere:radius=0.02", "box:x=0.2,y=0.2,z=0.04,cells=4",
                                            "gear", "bumpy_sphere", "uv_sphere"));
 
-// Where crossing triangles change their mind at once, the spheres do not: a micrometre of a body of 0.4 m.
-TEST(InnerSpheres, AMicrometreChangesLittleHoweverTheyOverlap) {
-  const InnerSpheres knot = packed("torus_knot");
+Vec3 of_contacts(Pair& pair, const math::Pose& pose) {
+  pair.reset();
+  Vec3 sum = Vec3::Zero();
+  const Answer& answer = pair.run(pose, {.method = Method::exact, .max_contacts = 8});
+  for (const Contact& contact : answer.contacts) {
+    sum += contact.depth / static_cast<double>(answer.contacts.size()) * contact.normal;
+  }
+  return sum;
+}
+
+// Where crossing triangles change their mind, the spheres do not: 0.1 mm of a body of 0.4 m.
+TEST(InnerSpheres, TheForceChangesLessThanThatOfContacts) {
+  const auto shape = made("torus_knot");
+  const InnerSpheres knot = InnerSpheres::pack(shape).value();
+  auto pair = Pair::make(shape, shape).value();
   std::mt19937_64 generator(9);
   std::normal_distribution<double> normal;
+  std::vector<double> of_spheres;
+  std::vector<double> of_patches;
   for (int i = 0; i < 200; ++i) {
-    const double far = i % 4 == 0 ? 0.0 : 0.01 * (i % 20);
-    const auto pose = math::Pose::from_quaternion(
-        far * Vec3(normal(generator), normal(generator), normal(generator)),
-        Quat(1.0, 0.1 * far * normal(generator), far * normal(generator), far * normal(generator)).normalized());
+    // As a hand draws one out of the other.
+    const math::Pose pose{Mat3::Identity(),
+                          Vec3(2e-4 * normal(generator), 2e-4 * normal(generator), 1.5e-4 * (1.0 + i))};
     math::Pose moved = pose;
-    moved.translation += 1e-6 * Vec3(normal(generator), normal(generator), normal(generator)).normalized();
+    moved.translation += 1e-4 * Vec3(normal(generator), normal(generator), normal(generator)).normalized();
     const DeepOverlap before = deep_overlap(knot, knot, pose);
     const DeepOverlap after = deep_overlap(knot, knot, moved);
-    EXPECT_LT(std::abs(before.depth - after.depth), 2e-6);
-    EXPECT_LT((gradient(before) - gradient(after)).norm(), 2e-3);
+    EXPECT_LT(std::abs(before.depth - after.depth), 2e-4);
+    const Vec3 push = before.depth * gradient(before);
+    of_spheres.push_back((after.depth * gradient(after) - push).norm() / push.norm());
+    const Vec3 patch = of_contacts(pair, pose);
+    of_patches.push_back((of_contacts(pair, moved) - patch).norm() / patch.norm());
   }
+  std::sort(of_spheres.begin(), of_spheres.end());
+  std::sort(of_patches.begin(), of_patches.end());
+  std::printf("  0.1 mm changes the force of spheres by %.2g %% (p90 %.2g), of 8 contacts by %.2g %% (p90 %.2g)\n",
+              100.0 * of_spheres[100], 100.0 * of_spheres[180], 100.0 * of_patches[100], 100.0 * of_patches[180]);
+  EXPECT_LT(of_spheres[180], 0.1);
+  EXPECT_GT(of_patches[180], 3.0 * of_spheres[180]);
 }
 
 TEST(InnerSpheres, AShallowPairOfBallsIsAsDeepAsItIs) {

@@ -31,9 +31,10 @@ struct Surface {
 /// One point of contact, world frame.
 struct ContactPoint {
   Vec3 position_m = Vec3::Zero();
-  Vec3 normal = Vec3::UnitZ();           ///< unit, into a
-  double depth_m = 0.0;                  ///< >= 0
-  Vec3 velocity_m_per_s = Vec3::Zero();  ///< of a against b at this point; zero unless the world was asked for it
+  Vec3 normal = Vec3::UnitZ();  ///< unit, into a
+  double depth_m = 0.0;         ///< >= 0
+  Vec3 velocity_m_per_s =
+      Vec3::Zero();  ///< of a against b at this point; may be zero unless the world was asked for it
   Surface surface;
 };
 

@@ -1,6 +1,7 @@
 // A soft body: its own spring in series with that of the contact.
 #include "haptics/effects/body_key.hpp"
 #include "haptics/effects/list.hpp"
+#include "haptics/effects/shares.hpp"
 
 namespace odds::haptics::effects {
 namespace {
@@ -15,11 +16,12 @@ class Compliance final : public Effect {
   [[nodiscard]] bool repeatable() const noexcept override { return true; }
   std::uint32_t meet(const TickView&, ode::Meeting& meeting) noexcept override {
     if (!involves(meeting, body_)) return 0;
-    const auto count = static_cast<double>(meeting.contacts.size());
+    const double all = stiffness_of_all(meeting);
     for (ode::ContactPoint& point : meeting.contacts) {
       double& k = point.surface.stiffness_n_per_m;
-      k = k * (k_ / count) / (k + k_ / count);
-      point.surface.damping_ns_per_m = b_ / count;
+      const double share = k / all;
+      k = k * (k_ * share) / (k + k_ * share);
+      point.surface.damping_ns_per_m = b_ * share;
     }
     return static_cast<std::uint32_t>(meeting.contacts.size());
   }

@@ -1,5 +1,6 @@
 // Where solids lie deep in each other: crossing triangles no longer say which way is out, the spheres within them do.
 #include <algorithm>
+#include <array>
 #include <map>
 #include <vector>
 
@@ -33,15 +34,15 @@ class DeepContact final : public Effect {
     for (std::uint32_t i = 0; i < world.body_count(); ++i) {
       const std::shared_ptr<const query::Shape>& shape = world.shape({i});
       if (!shape->is_solid()) continue;
-      ++solids;
       auto [entry, is_new] = known.try_emplace(shape.get(), nullptr);
       if (is_new) {
         auto packed = query::InnerSpheres::pack(shape, static_cast<std::uint32_t>(parameters_.spheres));
-        if (!packed) return packed.error();
+        if (!packed) continue;  // too thin to hold any: it keeps its patches, as an open mesh does
         packed_.push_back(std::make_unique<const query::InnerSpheres>(std::move(packed).value()));
         entry->second = packed_.back().get();
       }
       of_body_[i] = entry->second;
+      if (entry->second != nullptr) ++solids;
     }
     if (solids < 2) {
       return Error{"", "", "'deep_contact' needs two bodies with closed meshes; of others the inside is not known",
@@ -62,25 +63,19 @@ class DeepContact final : public Effect {
     if (!(way > 0.0)) return 1;
     const double x = std::min(1.0, way);
     const double weight = x * x * (3.0 - 2.0 * x);
-    if (weight >= 1.0) meeting.contacts = meeting.contacts.first(0);
-    for (ode::ContactPoint& point : meeting.contacts) {
-      point.surface.stiffness_n_per_m *= 1.0 - weight;
-      point.surface.damping_ns_per_m *= 1.0 - weight;
-    }
-    add(*tick.world, overlap, pose_a, weight, meeting);
+    take_over(*tick.world, overlap, pose_a, weight, meeting);
     return 1;
   }
 
  private:
-  static Vec3 velocity_at(const ode::World& world, ode::BodyId body, const Vec3& place) noexcept {
-    const ode::BodyState state = world.state(body);
-    const Vec3 arm = place - state.pose * world.mass(body).center_m;
-    return state.velocity_m_per_s + state.angular_velocity_rad_per_s.cross(arm);
-  }
-  static void add(const ode::World& world, const query::DeepOverlap& overlap, const math::Pose& pose_a, double weight,
-                  ode::Meeting& meeting) noexcept {
+  // The spheres' contacts come first: where the world has room for no more, it is the fading ones that are left out.
+  static void take_over(const ode::World& world, const query::DeepOverlap& overlap, const math::Pose& pose_a,
+                        double weight, ode::Meeting& meeting) noexcept {
+    std::array<ode::ContactPoint, query::InnerSpheres::corners> patch;
+    const std::size_t of_patch = weight < 1.0 ? std::min(meeting.contacts.size(), patch.size()) : 0;
+    std::copy_n(meeting.contacts.begin(), of_patch, patch.begin());
     const ode::ContactModel& model = world.options().contact;
-    std::size_t count = meeting.contacts.size();
+    std::size_t count = 0;
     for (std::uint32_t i = 0; i < overlap.count && count < meeting.room.size(); ++i) {
       const query::DeepOverlap::Part& part = overlap.parts[i];
       const double push = part.push.norm();
@@ -89,14 +84,25 @@ class DeepContact final : public Effect {
       point = {};
       point.position_m = pose_a * part.position;
       point.normal = pose_a.rotation * (part.push / push);
-      point.depth_m = overlap.depth * push / part.share;
-      point.surface.stiffness_n_per_m = weight * part.share * model.stiffness_n_per_m;
-      point.surface.damping_ns_per_m = weight * part.share * model.damping_ns_per_m;
+      point.depth_m = overlap.depth;  // of all alike, so that a bound of the correcting velocity turns no force
+      point.surface.stiffness_n_per_m = weight * push * model.stiffness_n_per_m;
+      point.surface.damping_ns_per_m = weight * push * model.damping_ns_per_m;
       point.surface.friction = model.friction;
       point.velocity_m_per_s =
           velocity_at(world, meeting.a, point.position_m) - velocity_at(world, meeting.b, point.position_m);
     }
+    for (std::size_t i = 0; i < of_patch && count < meeting.room.size(); ++i) {
+      ode::ContactPoint& point = meeting.room[count++] = patch[i];
+      point.surface.stiffness_n_per_m *= 1.0 - weight;
+      point.surface.damping_ns_per_m *= 1.0 - weight;
+    }
     meeting.contacts = meeting.room.first(count);
+  }
+  static Vec3 velocity_at(const ode::World& world, ode::BodyId body, const Vec3& place) noexcept {
+    if (!world.is_dynamic(body)) return Vec3::Zero();
+    const ode::BodyState state = world.state(body);
+    const Vec3 arm = place - state.pose * world.mass(body).center_m;
+    return state.velocity_m_per_s + state.angular_velocity_rad_per_s.cross(arm);
   }
 
   Parameters parameters_;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "haptics/effects/list.hpp"
+#include "haptics/effects/shares.hpp"
 
 namespace odds::haptics::effects {
 namespace {
@@ -25,7 +26,10 @@ class Friction final : public Effect {
   [[nodiscard]] std::string_view rests_on() const noexcept override { return "contact"; }
   void configure(ode::WorldOptions& options) const override { options.contact.friction = parameters_.mu; }
   std::uint32_t meet(const TickView&, ode::Meeting& meeting) noexcept override {
-    for (ode::ContactPoint& point : meeting.contacts) point.surface.friction = at(point, meeting.contacts.size());
+    const double all = stiffness_of_all(meeting);
+    for (ode::ContactPoint& point : meeting.contacts) {
+      point.surface.friction = at(point, point.surface.stiffness_n_per_m / all);
+    }
     return 0;  // counted by the rows
   }
   std::uint32_t after_step(const TickView& tick) noexcept override { return tick.step->friction_rows / 2; }
@@ -36,14 +40,14 @@ class Friction final : public Effect {
   }
   // The viscous force as a share of the normal force: the solver bounds friction by mu times that, and never lets it
   // turn the slip round, however large it is.
-  [[nodiscard]] double at(const ode::ContactPoint& point, std::size_t count) const noexcept {
+  [[nodiscard]] double at(const ode::ContactPoint& point, double share) const noexcept {
     const Vec3 relative = point.velocity_m_per_s - point.surface.surface_velocity;
     const double out = relative.dot(point.normal);
     const double slip = (relative - out * point.normal).norm();
     const double r = slip / parameters_.stick_m_per_s;
     double mu = parameters_.mu + (parameters_.static_mu - parameters_.mu) * std::exp(-r * r);
     const double normal_n = point.surface.stiffness_n_per_m * point.depth_m - point.surface.damping_ns_per_m * out;
-    if (normal_n > 0.0) mu += parameters_.viscous_ns_per_m / static_cast<double>(count) * slip / normal_n;
+    if (normal_n > 0.0) mu += parameters_.viscous_ns_per_m * share * slip / normal_n;
     return std::min(mu, most_mu);
   }
   static constexpr double most_mu = 1e3;
