@@ -71,7 +71,8 @@ std::vector<HardCase> overlaps() {
        slab + mesh("ball", "made:icosphere:radius=0.01") + fixed("plate", "slab") + tool("ball") +
            hand("[0, 0, 0.015]", "[0, 0, 0.02]", "[0.01, 0, 0]") + contact + pull,
        1.0, Trouble::none, 5.0, 0.05, 5e-4, 0.05, false},
-      {"full_overlap", "Two equal knots lie exactly in each other; the hand draws one out.",
+      {"full_overlap",
+       "Two equal knots lie exactly in each other; the hand draws one out. The scene asks for deep_contact.",
        mesh("knot", "made:torus_knot") + fixed("knot", "knot") + tool("knot") +
            hand("[0, 0, 0]", "[0, 0, 0.4]", "[0.3, 0, 0.4]") + contact + deep + pull,
        1.2, Trouble::none, 5.0, 0.2, 5e-4, 0.05, false},  // 0.8 J: 40 N at most, over 20 mm
@@ -155,7 +156,7 @@ std::vector<HardCase> control() {
        pressed +
            hand("[0, 0, 0.032]", "[0, 0, -0.008]", "[0.03, 0.01, 0]", "type = \"troubled\"\ntrouble = \"nan\"\n") +
            contact + friction + pull},
-      {"meshes_at_speed", "Two knots brush past each other at 1.5 m/s.",
+      {"meshes_at_speed", "Two knots brush past each other at 1.5 m/s. The scene asks for deep_contact.",
        mesh("knot", "made:torus_knot") + fixed("knot", "knot") + tool("knot", "0.2") +
            "[device.hand]\ntype = \"scripted\"\nposition_m = [0.02, 0.25, 0.03]\n[[device.hand.motion]]\nkind = "
            "\"slide\"\n"

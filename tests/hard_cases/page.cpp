@@ -12,8 +12,8 @@ namespace odds::hard_cases {
 namespace {
 
 constexpr const char* colours[] = {"#222", "#0072b2", "#d55e00"};
-constexpr double width = 420.0;
-constexpr double height = 90.0;
+constexpr double width = 900.0;
+constexpr double height = 130.0;
 
 double size_of(const Sample& s) { return std::hypot(s.force_n[0], s.force_n[1], s.force_n[2]); }
 
@@ -57,31 +57,61 @@ std::optional<double> at_poses(const Figures& f, double report::ForceDifference:
   return (*f.at_same_poses).*figure;
 }
 
+const char* class_of(bool good, bool judged) { return good ? "good" : judged ? "bad" : "weak"; }
+
+std::string safety_cell(const Figures& f) {
+  return fmt::format("<td class=\"{}\">{}</td>", class_of(f.safe(), f.judged() || !f.harmful.empty()),
+                     f.safe()            ? "safe"
+                     : f.harmful.empty() ? "misses"
+                                         : "harm");
+}
+
+std::string feel_cell(const Figures& f) {
+  if (!f.off.empty()) return fmt::format("<td class=\"{}\">different</td>", class_of(false, f.judged()));
+  return f.budget == "none" ? "<td>–</td>" : compared(f) ? "<td class=\"good\">the same</td>" : "<td>not compared</td>";
+}
+
 std::string row(const Figures& f) {
-  std::string unsafe;
-  for (const auto* list : {&f.harmful, &f.missed}) {
-    for (const std::string& what : *list) unsafe += what + "<br>";
-  }
-  std::string off;
-  for (const std::string& what : f.off) off += what + "<br>";
-  const char* none = f.budget == "none" ? "" : compared(f) ? "as without a budget" : "nothing to compare";
   return fmt::format(
       "<tr><td>{}</td><td>{}</td><td>{}</td><td>{:.3g}</td><td>{:.2g}</td><td>{} of "
       "{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td>"
-      "<td>{}</td><td>{:.3g}</td><td>{}</td><td class=\"{}\">{}</td><td class=\"{}\">{}</td></tr>\n",
+      "<td>{}</td><td>{:.3g}</td><td>{}</td>{}{}</tr>\n",
       f.budget, f.ticks, f.not_finite, f.largest_force_n, f.given_j, f.missed_deep, f.deep,
       or_dash(at_poses(f, &report::ForceDifference::error_p95), 100.0, " %"),
       or_dash(at_poses(f, &report::ForceDifference::angle_p95_deg), 1.0, "°"), or_dash(f.force_error_p95, 100.0, " %"),
       or_dash(f.angle_error_p95_deg, 1.0, "°"), f.onset_ticks ? fmt::format("{:+d}", *f.onset_ticks) : "–",
-      or_dash(f.noise_share, 100.0, " %"), f.most_contacts, 1e3 * f.deepest_m, f.safety_ticks,
-      f.safe()                           ? "good"
-      : f.judged() || !f.harmful.empty() ? "bad"
-                                         : "weak",
-      unsafe.empty() ? "safe" : unsafe,
-      f.off.empty() ? "good"
-      : f.judged()  ? "bad"
-                    : "weak",
-      off.empty() ? none : off);
+      or_dash(f.noise_share, 100.0, " %"), f.most_contacts, 1e3 * f.deepest_m, f.safety_ticks, safety_cell(f),
+      feel_cell(f));
+}
+
+// What was found, a line each.
+std::string findings(const Figures& f) {
+  std::string html;
+  const auto add = [&](const std::vector<std::string>& list, bool harmful) {
+    for (const std::string& what : list) {
+      html += fmt::format("<li class=\"{}\">{}: {}</li>\n", class_of(false, harmful || f.judged()), f.budget, what);
+    }
+  };
+  add(f.harmful, true);
+  add(f.missed, false);
+  add(f.off, false);
+  return html;
+}
+
+// Every case with every budget: where to look.
+std::string index_of(const std::vector<Outcome>& outcomes) {
+  if (outcomes.empty()) return {};
+  std::string html = "<table><tr><th>case</th>";
+  for (const Figures& f : outcomes.front().runs) {
+    html += fmt::format("<th>{}</th>{}", f.budget, f.budget == "none" ? "" : "<th>feels</th>");
+  }
+  html += "</tr>\n";
+  for (const Outcome& outcome : outcomes) {
+    html += fmt::format("<tr><td><a href=\"#{0}\">{0}</a></td>", outcome.hard_case->name);
+    for (const Figures& f : outcome.runs) html += safety_cell(f) + (f.budget == "none" ? "" : feel_cell(f));
+    html += "</tr>\n";
+  }
+  return html + "</table>\n";
 }
 
 // How many runs hold, and what that means.
@@ -114,24 +144,29 @@ std::string counts(const std::vector<Tally>& tallies, double seconds_taken) {
 std::string page_of(const std::vector<Outcome>& outcomes, double seconds_taken) {
   std::string html =
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Hard cases</title><style>"
-      "body{font:14px/1.4 sans-serif;max-width:1500px;margin:1em auto;padding:0 "
+      "body{font:14px/1.4 sans-serif;max-width:1100px;margin:1em auto;padding:0 "
       "1em}table{border-collapse:collapse;font-size:12px}"
       "td,th{border-bottom:1px solid #ccc;padding:2px "
       "6px;text-align:right}td:first-child,th:first-child,td:nth-last-child(-n+2),th:nth-last-child(-n+2){text-align:"
       "left}"
-      "td:nth-last-child(-n+2){min-width:11em}td:nth-child(n+2):nth-last-child(n+3){white-space:nowrap}"
+      "td{white-space:nowrap}svg{display:block;max-width:100%}ul{margin:.5em 0;font-size:13px}"
       ".good{color:#060}.bad{color:#b00}.weak{color:#960}</style></head><body>\n<h1>Hard cases</h1>\n";
-  html += counts(tally(outcomes), seconds_taken);
+  html += counts(tally(outcomes), seconds_taken) + index_of(outcomes);
   for (const Outcome& outcome : outcomes) {
     html += fmt::format(
-        "<h2>{}</h2>\n<p>{}</p>\n{}\n<table><tr><th>budget</th><th>ticks</th><th>not finite</th><th>largest "
+        "<h2 id=\"{0}\">{0}</h2>\n<p>{1}</p>\n{2}\n<table><tr><th>budget</th><th>ticks</th><th>not "
+        "finite</th><th>largest "
         "N</th><th>given J</th>"
         "<th>deep missed</th><th>contacts p95</th><th>angle p95</th><th>hand p95</th><th>angle "
         "p95</th><th>onset</th><th>noise</th><th>contacts</th><th>deepest mm</th>"
         "<th>safety ticks</th><th>safety</th><th>feel</th></tr>\n",
         outcome.hard_case->name, outcome.hard_case->what, picture(outcome));
-    for (const Figures& f : outcome.runs) html += row(f);
-    html += "</table>\n";
+    std::string found;
+    for (const Figures& f : outcome.runs) {
+      html += row(f);
+      found += findings(f);
+    }
+    html += "</table>\n" + (found.empty() ? "" : "<ul>\n" + found + "</ul>\n");
   }
   return html + "</body></html>\n";
 }
