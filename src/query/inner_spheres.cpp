@@ -8,18 +8,21 @@
 
 #include "odds/query/pair.hpp"
 #include "odds/query/ray.hpp"
+#include "query/spread_step.hpp"
 
 namespace odds::query {
 namespace {
 
-constexpr std::size_t samples = 2048;       // points of the surface under which balls are sought
-constexpr std::uint64_t most_nodes = 2000;  // of one search; round bodies have all of their surface nearest
-constexpr int most_shrinks = 40;            // they converge in some 5
-constexpr double shrunk = 1e-6;             // relative: nearer than that, the ball is empty
-constexpr double least_radius = 1e-6;       // of the mesh
-constexpr double point_size = 1e-9;         // of the mesh: a triangle so small stands for a point
-constexpr double least_gain = 1e-3;         // of the volume: what fills less is left out
-constexpr std::size_t depths = 2;           // points below each sample that tell what is filled
+constexpr std::size_t samples = 2048;  // points of the surface under which balls are sought
+// Units of all distance searches together: from the middle of a round body all of its surface is nearest. What balls
+// they were enough for are spread over all of the surface.
+constexpr std::uint64_t most_units = 3000000;
+constexpr int most_shrinks = 40;       // they converge in some 5
+constexpr double shrunk = 1e-6;        // relative: nearer than that, the ball is empty
+constexpr double least_radius = 1e-6;  // of the mesh
+constexpr double point_size = 1e-9;    // of the mesh: a triangle so small stands for a point
+constexpr double least_gain = 1e-3;    // of the volume: what fills less is left out
+constexpr std::size_t depths = 2;      // points below each sample that tell what is filled
 
 struct Ball {
   Vec3 center;
@@ -50,13 +53,20 @@ class Surface {
   }
 
   /// The nearest point within a distance, and how far the surface is at least.
-  [[nodiscard]] DistanceAnswer nearest(const Vec3& point, double within) const noexcept {
-    return pair_.distance({Mat3::Identity(), point}, {.within = within, .budget = Budget::work(most_nodes)});
+  [[nodiscard]] DistanceAnswer nearest(const Vec3& point, double within) noexcept {
+    const DistanceAnswer answer =
+        pair_.distance({Mat3::Identity(), point}, {.within = within, .budget = Budget::work(units_left_)});
+    const std::uint64_t spent = answer.cost.node_pairs + answer.cost.triangle_pairs;
+    units_left_ -= std::min(spent, units_left_ - 1);
+    return answer;
   }
+  /// Whether there are units for another ball.
+  [[nodiscard]] bool may_go_on() const noexcept { return units_left_ > 1; }
 
  private:
   explicit Surface(Pair pair) : pair_(std::move(pair)) {}
   Pair pair_;
+  std::uint64_t units_left_ = most_units;
 };
 
 /// A point of the surface, and which way is in.
@@ -99,7 +109,7 @@ std::vector<Sample> spread(const mesh::TriangleMesh& mesh) {
 
 // The greatest ball that touches the surface at the sample and holds none of it: shrunk until nothing is nearer to its
 // centre than the sample.
-std::optional<Ball> ball_under(const Shape& shape, const Surface& surface, const Sample& sample) {
+std::optional<Ball> ball_under(const Shape& shape, Surface& surface, const Sample& sample) {
   const double size = shape.mesh().size();
   const double lifted = 1e-7 * size;  // off the triangle that the ray starts from
   const auto across = cast_ray(shape, sample.place + lifted * sample.inward, sample.inward, 2.0 * size);
@@ -108,7 +118,7 @@ std::optional<Ball> ball_under(const Shape& shape, const Surface& surface, const
   Vec3 center = sample.place + radius * sample.inward;
   for (int i = 0; i < most_shrinks; ++i) {
     const DistanceAnswer nearest = surface.nearest(center, radius * (1.0 - shrunk));
-    if (!nearest.proved) return Ball{center, std::min(radius, nearest.lower)};
+    if (!nearest.proved) return std::nullopt;  // the units are spent
     if (!std::isfinite(nearest.upper)) return Ball{center, radius * (1.0 - shrunk)};
     // The ball through both points that touches the surface at the sample.
     const Vec3 apart = nearest.on_a - sample.place;
@@ -218,10 +228,13 @@ Result<InnerSpheres> InnerSpheres::pack(const std::shared_ptr<const Shape>& shap
   if (!surface) return surface.error();
   std::vector<Ball> balls;
   std::vector<Inside> points;
-  for (const Sample& sample : spread(shape->mesh())) {
-    const auto ball = ball_under(*wide.value(), surface.value(), sample);
+  const std::vector<Sample> all = spread(shape->mesh());
+  const std::size_t step = spread_step(std::max<std::size_t>(all.size(), 1));
+  for (std::size_t i = 0, next = 0; i < all.size() && surface.value().may_go_on();
+       ++i, next = (next + step) % all.size()) {
+    const auto ball = ball_under(*wide.value(), surface.value(), all[next]);
     if (!ball || !(ball->radius > least_radius * shape->mesh().size())) continue;
-    add_points_below(sample, ball->radius, balls.size(), points);
+    add_points_below(all[next], ball->radius, balls.size(), points);
     balls.push_back(*ball);
   }
   if (balls.empty()) {

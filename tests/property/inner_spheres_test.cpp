@@ -189,10 +189,11 @@ TEST(InnerSpheres, TheForceChangesLessThanThatOfContacts) {
   EXPECT_GT(of_patches[180], 3.0 * of_spheres[180]);
 }
 
-TEST(InnerSpheres, AShallowPairOfBallsIsAsDeepAsItIs) {
+TEST(InnerSpheres, AShallowPairOfBallsIsNoDeeperThanItIs) {
   const InnerSpheres ball = packed("uv_sphere:radius=0.02", 8);
   const DeepOverlap overlap = deep_overlap(ball, ball, {Mat3::Identity(), Vec3(0.036, 0, 0)});
-  EXPECT_NEAR(overlap.depth, 0.004, 0.0012);
+  EXPECT_GT(overlap.depth, 0.002) << "of some spheres that fill it, not of one";
+  EXPECT_LT(overlap.depth, 0.004);
   EXPECT_LT(gradient(overlap).normalized().x(), -0.999) << "A goes away from B";
   EXPECT_EQ(deep_overlap(ball, ball, {Mat3::Identity(), Vec3(0.041, 0, 0)}).count, 0U);
 }
