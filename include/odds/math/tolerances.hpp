@@ -64,6 +64,8 @@ inline constexpr double hysteresis = 0.8;  ///< see same_as_before
 inline constexpr double area_preferred = 0.5;
 /// Vector area below this part of (coordinates x length of the rim) is rounding.
 inline constexpr double rim_noise = 1e-12;
+/// Rays that measure an overlap start this part of the coordinates inside of a rim: on it they may miss both bodies.
+inline constexpr double within_both = 1e-9;
 /// Isoperimetric quotient from which a rim's vector area is its direction without a comparison; an open rim, of which
 /// some is missing, must be rounder. Tests: ContactPatch.CrossedPlatesPartTheShortWay,
 /// ContactPatch.FewHitsStillGiveTheNormal.
