@@ -164,7 +164,7 @@ class LeastOverlap {
   /// Whether the bodies overlap along the best direction by more than the rim is wide (and than rounding).
   [[nodiscard]] bool is_a_long_way() const noexcept {
     const double reach = view_.rim.origin.cwiseAbs().maxCoeff();
-    const double wide = view_.sums.diagonal() + tolerances::rim_noise * reach;
+    const double wide = view_.sums.width() + tolerances::rim_noise * reach;
     return !found_ || std::max(through_, overlap_of_pairs(best_, Vec3::Zero())) > wide;
   }
 
@@ -208,7 +208,7 @@ class LeastOverlap {
       if (here > depth) deepest = i;
       depth = std::max(depth, here);
     }
-    if (!view_.sums.closed()) places_[place_count_++] = places_[0] + 2.0 * inwards * unit_or_zero(into_all);
+    if (is_part_of_a_rim(view_)) places_[place_count_++] = places_[0] + 2.0 * inwards * unit_or_zero(into_all);
     add(deepest);
     add(view_.pieces.size() / 5);
     add(view_.pieces.size() / 2);
@@ -228,14 +228,19 @@ class LeastOverlap {
     for (std::size_t i = 0; i < place_count_ && !(found_ && factor * deepest >= least_); ++i) {
       Witness through;
       switch (probe_line(view_.input, places_[i], direction, reach, watch_, through)) {
-        case Probing::overlap: deepest = std::max(deepest, through.depth); break;
-        case Probing::apart: seen = true; break;
-        case Probing::unknown: break;
+        case Probing::overlap:
+          deepest = std::max(deepest, through.depth);
+          break;
+        case Probing::apart:
+          seen = true;
+          break;
+        case Probing::unknown:
+          break;
       }
     }
     if (deepest >= 0.0) return deepest;
     if (seen) return width_of_rim(direction);
-    return view_.sums.closed() ? view_.sums.diagonal() : std::numeric_limits<double>::max();
+    return is_part_of_a_rim(view_) ? std::numeric_limits<double>::max() : view_.sums.diagonal();
   }
 
   [[nodiscard]] double width_of_rim(const Vec3& direction) const noexcept {
@@ -263,6 +268,26 @@ class LeastOverlap {
   bool spread_ = false;
 };
 
+/// A crumb of a rim may be of walls only, of which no face leads out: where two walls cross, at a corner, the line in
+/// which they do leads there, and where two lie on each other, the ways across their triangles' sides.
+Directions ways_along_walls(const PatchView& view, Watch& watch) noexcept {
+  Directions ways;
+  const auto across_sides = [&ways](const std::array<Vec3, 3>& t, const Vec3& normal) noexcept {
+    for (std::size_t k = 0; k < 3; ++k) ways.add(unit_or_zero(normal.cross(t[(k + 1) % 3] - t[k])), 1.0);
+  };
+  for (std::size_t i = 0; i < view.pieces.size() && ways.count < ways.ones.size() && !watch.late(i); ++i) {
+    const PlacedPair& placed = view.rim.pairs[view.rim.pieces[view.pieces[i]].pair];
+    const Vec3 line = placed.normal_b.cross(placed.normal_a);
+    if (line.norm() > tolerances::steep) {
+      ways.add(line.normalized(), 1.0);
+    } else if (line.norm() < tolerances::flat_from && placed.normal_a.dot(placed.normal_b) > 0.0) {
+      across_sides(placed.a, placed.normal_a);
+      across_sides(placed.b, placed.normal_b);
+    }
+  }
+  return ways;
+}
+
 /// The candidates: the faces' normals, the area, the mean of the normals, the last run's normal.
 Vec3 least_overlap(const PatchView& view, const Vec3& area, Watch& watch) noexcept {
   LeastOverlap search(view, watch);
@@ -272,7 +297,7 @@ Vec3 least_overlap(const PatchView& view, const Vec3& area, Watch& watch) noexce
     if (!solid) search.offer(-direction, factor);  // a sheet's normal may point either way
   };
   // The area of a rim of which pieces are missing is one candidate of many: where it is small, so may be what is left.
-  offer(area, view.sums.closed() ? tolerances::area_preferred : 1.0);
+  offer(area, is_part_of_a_rim(view) ? 1.0 : tolerances::area_preferred);
   Directions faces;
   for (std::size_t i = 0; i < view.pieces.size() && !watch.late(i); ++i) {
     const RimPiece& piece = view.rim.pieces[view.pieces[i]];
@@ -286,16 +311,9 @@ Vec3 least_overlap(const PatchView& view, const Vec3& area, Watch& watch) noexce
   }
   offer(view.sums.normals_b - view.sums.normals_a, 1.0);
   if (view.input.previous_normal != nullptr) search.offer(*view.input.previous_normal, 1.0);
-  // A crumb where walls cross, at a corner: no face leads out of it, but the line in which they cross does.
-  if (search.is_a_long_way()) {
-    Directions lines;
-    for (std::size_t i = 0; i < view.pieces.size() && !watch.late(i); ++i) {
-      const RimPiece& piece = view.rim.pieces[view.pieces[i]];
-      const PlacedPair& placed = view.rim.pairs[piece.pair];
-      const Vec3 line = placed.normal_b.cross(placed.normal_a);
-      if (line.norm() > tolerances::steep) lines.add(line.normalized(), 1.0);
-    }
-    for (std::size_t i = 0; i < lines.count; ++i) search.offer_both(lines.ones[i].first, 1.0);
+  if ((is_part_of_a_rim(view) || view.sums.length == 0.0) && search.is_a_long_way()) {
+    const Directions ways = ways_along_walls(view, watch);
+    for (std::size_t i = 0; i < ways.count; ++i) search.offer_both(ways.ones[i].first, 1.0);
   }
   if (search.best() != Vec3::Zero()) return search.best();
   return unit_or_zero(view.input.reference_a - view.input.reference_b);
@@ -312,8 +330,8 @@ Vec3 patch_normal(const PatchView& view, Watch& watch) noexcept {
   const double roundness = sums.length > 0.0 ? 4.0 * std::numbers::pi * area.norm() / (sums.length * sums.length) : 0.0;
   Vec3 normal = Vec3::Zero();
   // Above 1 more is missing of a rim than is there: what its pieces seem to span is where they lie.
-  const bool round = sums.closed() ? roundness > tolerances::round_closed_rim
-                                   : roundness > tolerances::round_open_rim && roundness <= 1.0;
+  const bool round = roundness > (sums.closed() ? tolerances::round_closed_rim : tolerances::round_open_rim) &&
+                     !(roundness > 1.0 && is_part_of_a_rim(view));
   if (noticeable && round) {
     normal = area.normalized();
     if (normal.dot(side_of_bodies(view)) < 0.0) normal = -normal;

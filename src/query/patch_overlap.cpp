@@ -25,7 +25,7 @@ Vec3 normal_of(const Probed& body, std::uint32_t triangle) noexcept {
 /// Whether a line in that direction leaves a solid through the triangle; one that runs along it tells nothing.
 bool leaves_through(const Probed& body, std::uint32_t triangle, const Vec3& outwards) noexcept {
   const Vec3 normal = normal_of(body, triangle);
-  return normal.dot(outwards) > tolerances::edge_on * normal.norm();
+  return normal.dot(outwards) > tolerances::along_a_face * normal.norm();
 }
 
 /// Signed distance from `point` along `outwards` to the surface where a line in that direction leaves the body.

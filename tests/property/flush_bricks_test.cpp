@@ -22,7 +22,7 @@ std::shared_ptr<const Shape> brick(int cells) {
 }
 
 struct Stand {
-  math::Pose below;   ///< of the lower brick, B, in the upper one's frame
+  math::Pose below;  ///< of the lower brick, B, in the upper one's frame
   double dip = 0.0;  ///< how deep its highest corner is in the upper brick, metres
 };
 

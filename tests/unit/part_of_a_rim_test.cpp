@@ -84,9 +84,9 @@ TEST(PartOfARim, ThatIsFlushAgreesOnADirection) {
 // lie, and along it the bricks overlap from end to end. A brick of a stack was once pushed so, by its whole width.
 TEST(PartOfARim, OfCrumbsOnAWallIsNotPushedFromEndToEnd) {
   const Vec3 t(1.2698042840935044e-07, -4.5861708410430903e-08, -1.7590640712448442e-07);
-  const math::Pose below = math::Pose::from_quaternion(
-      {3.410650466266676e-08, -1.2567780565118662e-12, -0.24799612868773069},
-      Quat(1.0, 0.5 * t.x(), 0.5 * t.y(), 0.5 * t.z()).normalized());
+  const math::Pose below =
+      math::Pose::from_quaternion({3.410650466266676e-08, -1.2567780565118662e-12, -0.24799612868773069},
+                                  Quat(1.0, 0.5 * t.x(), 0.5 * t.y(), 0.5 * t.z()).normalized());
   ContactScene scene{Body::box(0.2, 0.5, 0.248, 11), Body::box(0.2, 0.5, 0.248, 1), below};
   scene.find_hits();
   std::erase_if(scene.hits, [](const TrianglePair& hit) { return hit.b != 5 || (hit.a > 1 && hit.a != 484); });
