@@ -196,28 +196,37 @@ bool PatchBuilder::Scratch::make_patches(const PatchInput& input, Watch& watch) 
     patches[patch_count++] = make_patch(input, sums[i], indices, thorough, watch);
     if (watch.late()) return false;
   }
-  if (input.believed_depth > 0.0) straighten(input, sums, watch);
+  if (input.believed_depth > 0.0 || (input.solid_a && input.solid_b && patch_count > 1)) straighten(input, sums, watch);
   return true;
 }
 
 /// A few pieces that a search without time has left of a rim, say along the side of a brick that stands flush on
-/// another, span an area of their own: where a brick hangs over by as little as it is deep, that points anywhere. What
-/// is no deeper than is believed along the direction that is known, or else that on which most of the rim agrees,
+/// another, span an area of their own: where a brick hangs over by as little as it is deep, that points anywhere. Nor
+/// has a crumb that rounding has left of a whole rim a direction of its own. What is no deeper than is believed (of a
+/// whole rim: than the rest is) along the direction that is known, or else that on which most of the rim agrees,
 /// belongs to that.
 void PatchBuilder::Scratch::straighten(const PatchInput& input, std::span<const patch::RimSums> sums,
                                        Watch& watch) noexcept {
   const Vec3* chosen = input.known_normal;
   double most = 0.0;
+  double deepest = 0.0;
+  const double rounding = tolerances::rim_noise * rim.origin.cwiseAbs().maxCoeff();
   for (std::size_t p = 0; p < patch_count && input.known_normal == nullptr; ++p) {
     double agreeing = 0.0;
+    double depth = 0.0;
     for (std::size_t q = 0; q < patch_count; ++q) {
-      if (patches[q].normal.dot(patches[p].normal) > tolerances::same_face) agreeing += patches[q].length;
+      if (!(patches[q].normal.dot(patches[p].normal) > tolerances::same_face)) continue;
+      agreeing += patches[q].length + rounding;
+      depth = std::max(depth, patches[q].depth);
     }
-    if (agreeing > most) chosen = &patches[p].normal;
-    most = std::max(most, agreeing);
+    if (!(agreeing > most)) continue;
+    chosen = &patches[p].normal;
+    most = agreeing;
+    deepest = depth;
   }
   if (chosen == nullptr) return;
   const Vec3 direction = *chosen;
+  const double limit = input.believed_depth > 0.0 ? input.believed_depth : deepest + rounding;
   for (std::size_t i = 0, made = 0; i < sums.size() && !watch.late(); ++i) {
     const Indices indices = pieces_of(i);
     if (indices.empty()) continue;
@@ -225,10 +234,10 @@ void PatchBuilder::Scratch::straighten(const PatchInput& input, std::span<const 
     const bool is_whole = sums[i].closed() && sums[i].length > 0.0;
     if (is_whole || own.normal.dot(direction) > tolerances::same_face) continue;
     const patch::PatchView view{input, rim, sums[i], indices, thorough.sample};
-    if (!patch::is_of_direction(view, direction, input.believed_depth, watch)) continue;
+    if (!patch::is_of_direction(view, direction, limit, watch)) continue;
     const Patch straight = patch_along(direction, input, sums[i], indices, thorough, watch);
     if (watch.late()) return;  // it was not measured to its end
-    if (straight.depth <= input.believed_depth) own = straight;
+    if (straight.depth <= limit) own = straight;
   }
 }
 
@@ -324,8 +333,9 @@ Patch PatchBuilder::Scratch::make_patch(const PatchInput& input, const patch::Ri
   const patch::PatchView view{input, rim, sums, indices, effort.sample};
   Patch made = patch_along(patch::patch_normal(view, watch), input, sums, indices, effort, watch);
   // A lump at the corner of two faces that nearly coincide has an area of its own, along which the bodies overlap from
-  // end to end.
-  if (!(made.depth > tolerances::lump_depth * sums.diagonal()) || sums.length == 0.0) return made;
+  // end to end. Where pieces of a rim are missing, what is left of it may be such a lump whatever its size.
+  const double wide = (patch::is_part_of_a_rim(view) ? 1.0 : tolerances::lump_depth) * sums.diagonal();
+  if (!(made.depth > wide) || sums.length == 0.0) return made;
   const Patch other = patch_along(patch::shortest_way_out(view, watch), input, sums, indices, effort, watch);
   return other.depth < made.depth ? other : made;
 }

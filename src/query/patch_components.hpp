@@ -1,6 +1,7 @@
 // Which pieces of rim belong together: connected curves first, then curves that bound one overlap.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -29,6 +30,8 @@ struct RimSums {
   void add(const RimSums& other) noexcept;
   [[nodiscard]] bool closed() const noexcept { return loose_ends == 0; }
   [[nodiscard]] double diagonal() const noexcept { return (upper - lower).norm(); }
+  /// Of what there is of the rim: crumbs far from each other are no wider than they are long.
+  [[nodiscard]] double width() const noexcept { return std::min(diagonal(), length); }
   /// Mean of the pieces' middles, weighted by length; the middle of the box if there is no length.
   [[nodiscard]] Vec3 centre(const Vec3& origin) const noexcept;
   /// Vector area about the centre: independent of `origin` also where the curve is open.

@@ -144,12 +144,16 @@ class LeastOverlap {
     if (facing < -tolerances::weak_side) return;  // towards the wrong side of a sheet
     const Vec3* previous = view_.input.previous_normal;
     if (previous != nullptr && previous->dot(unit) > tolerances::same_as_before) factor *= tolerances::hysteresis;
-    double overlap = factor * overlap_of_pairs(unit);
-    if (found_ && !(overlap < least_)) return;
-    overlap = std::max(overlap, factor * overlap_through(unit, factor));
-    if (found_ && !(overlap < least_)) return;
+    const double of_pairs = overlap_of_pairs(unit, shift_);
+    if (found_ && !(factor * of_pairs < least_)) return;
+    const double through = overlap_through(unit, factor);
+    const double overlap = factor * std::max(of_pairs, through);
+    const bool equal = overlap == least_ && factor * of_pairs < least_of_pairs_;
+    if (found_ && !(overlap < least_ || equal)) return;
     found_ = true;
     least_ = overlap;
+    least_of_pairs_ = factor * of_pairs;
+    through_ = through;
     best_ = unit;
   }
   void offer_both(const Vec3& direction, double factor) noexcept {
@@ -157,6 +161,12 @@ class LeastOverlap {
     offer(-direction, factor);
   }
   [[nodiscard]] Vec3 best() const noexcept { return found_ ? best_ : Vec3::Zero(); }
+  /// Whether the bodies overlap along the best direction by more than the rim is wide (and than rounding).
+  [[nodiscard]] bool is_a_long_way() const noexcept {
+    const double reach = view_.rim.origin.cwiseAbs().maxCoeff();
+    const double wide = view_.sums.width() + tolerances::rim_noise * reach;
+    return !found_ || std::max(through_, overlap_of_pairs(best_, Vec3::Zero())) > wide;
+  }
 
  private:
   [[nodiscard]] std::size_t stride() const noexcept {
@@ -165,11 +175,11 @@ class LeastOverlap {
   [[nodiscard]] const PlacedPair& pair_at(std::size_t i) const noexcept {
     return view_.rim.pairs[view_.rim.pieces[view_.pieces[i]].pair];
   }
-  [[nodiscard]] double overlap_of_pairs(const Vec3& direction) const noexcept {
+  [[nodiscard]] double overlap_of_pairs(const Vec3& direction, const Vec3& shift) const noexcept {
     const Frame frame(direction);
     double deepest = 0.0;
     for (std::size_t i = 0; i < view_.pieces.size(); i += stride()) {
-      deepest = std::max(deepest, pair_depth(pair_at(i), frame, shift_));
+      deepest = std::max(deepest, pair_depth(pair_at(i), frame, shift));
     }
     return deepest;
   }
@@ -179,8 +189,10 @@ class LeastOverlap {
   void find_places(const Frame& pressing) noexcept {
     places_[place_count_++] = view_.sums.centre(view_.rim.origin);
     if (!view_.input.solid_a || !view_.input.solid_b) return;
-    // A quarter of the mean width of the surface that the rim spans.
-    const double inwards = 0.5 * view_.sums.vector_area(view_.rim.origin).norm() / view_.sums.length;
+    // A quarter of the mean width of the surface that the rim spans; no less than what rays tell apart.
+    const double reach = view_.rim.origin.cwiseAbs().maxCoeff() + view_.sums.diagonal();
+    const double inwards = std::max(0.5 * view_.sums.vector_area(view_.rim.origin).norm() / view_.sums.length,
+                                    tolerances::within_both * reach);
     const auto add = [&](std::size_t i) noexcept {
       const RimPiece& piece = view_.rim.pieces[view_.pieces[i]];
       const PlacedPair& placed = pair_at(i);
@@ -189,11 +201,14 @@ class LeastOverlap {
     };
     std::size_t deepest = 0;
     double depth = -1.0;
+    Vec3 into_all = Vec3::Zero();  // from a crumb at a corner, one face's side is not inside of the others
     for (std::size_t i = 0; i < view_.pieces.size(); i += stride()) {
+      into_all -= pair_at(i).normal_a + pair_at(i).normal_b;
       const double here = pair_depth(pair_at(i), pressing, shift_);
       if (here > depth) deepest = i;
       depth = std::max(depth, here);
     }
+    if (is_part_of_a_rim(view_)) places_[place_count_++] = places_[0] + 2.0 * inwards * unit_or_zero(into_all);
     add(deepest);
     add(view_.pieces.size() / 5);
     add(view_.pieces.size() / 2);
@@ -201,19 +216,31 @@ class LeastOverlap {
   }
 
   /// The rim's triangles reach only as far as they are large: a direction that seems the shortest is measured right
-  /// through, until it is seen not to be. Where nothing can be measured it is taken for as long as the rim is wide, for
-  /// the rim bounds the common volume on all sides.
+  /// through, until it is seen not to be. Where no place lies in the overlap it is taken for as long as the rim is wide
+  /// that way, for the rim bounds the common volume on all sides; where no ray comes to an end (along a face of many
+  /// triangles it may not), for as long as the rim is wide at all, and for longer than any that is known if some of the
+  /// rim is missing: a way that nobody has seen the end of is not short.
   [[nodiscard]] double overlap_through(const Vec3& direction, double factor) noexcept {
     if (!spread_) return 0.0;
     const double reach = 4.0 * view_.sums.diagonal();
     double deepest = -1.0;
+    bool seen = !view_.input.probe_a || !view_.input.probe_b || !view_.input.solid_a || !view_.input.solid_b;
     for (std::size_t i = 0; i < place_count_ && !(found_ && factor * deepest >= least_); ++i) {
       Witness through;
-      if (probe_overlap(view_.input, places_[i], direction, reach, watch_, through)) {
-        deepest = std::max(deepest, through.depth);
+      switch (probe_line(view_.input, places_[i], direction, reach, watch_, through)) {
+        case Probing::overlap:
+          deepest = std::max(deepest, through.depth);
+          break;
+        case Probing::apart:
+          seen = true;
+          break;
+        case Probing::unknown:
+          break;
       }
     }
-    return deepest >= 0.0 ? deepest : width_of_rim(direction);
+    if (deepest >= 0.0) return deepest;
+    if (seen) return width_of_rim(direction);
+    return is_part_of_a_rim(view_) ? std::numeric_limits<double>::max() : view_.sums.diagonal();
   }
 
   [[nodiscard]] double width_of_rim(const Vec3& direction) const noexcept {
@@ -233,11 +260,33 @@ class LeastOverlap {
   Vec3 shift_ = Vec3::Zero();
   Vec3 best_ = Vec3::Zero();
   double least_ = 0.0;
-  std::array<Vec3, 5> places_;
+  double least_of_pairs_ = 0.0;  ///< decides between directions that nobody has seen the end of
+  double through_ = 0.0;
+  std::array<Vec3, 6> places_;
   std::size_t place_count_ = 0;
   bool found_ = false;
   bool spread_ = false;
 };
+
+/// A crumb of a rim may be of walls only, of which no face leads out: where two walls cross, at a corner, the line in
+/// which they do leads there, and where two lie on each other, the ways across their triangles' sides.
+Directions ways_along_walls(const PatchView& view, Watch& watch) noexcept {
+  Directions ways;
+  const auto across_sides = [&ways](const std::array<Vec3, 3>& t, const Vec3& normal) noexcept {
+    for (std::size_t k = 0; k < 3; ++k) ways.add(unit_or_zero(normal.cross(t[(k + 1) % 3] - t[k])), 1.0);
+  };
+  for (std::size_t i = 0; i < view.pieces.size() && ways.count < ways.ones.size() && !watch.late(i); ++i) {
+    const PlacedPair& placed = view.rim.pairs[view.rim.pieces[view.pieces[i]].pair];
+    const Vec3 line = placed.normal_b.cross(placed.normal_a);
+    if (line.norm() > tolerances::steep) {
+      ways.add(line.normalized(), 1.0);
+    } else if (line.norm() < tolerances::flat_from && placed.normal_a.dot(placed.normal_b) > 0.0) {
+      across_sides(placed.a, placed.normal_a);
+      across_sides(placed.b, placed.normal_b);
+    }
+  }
+  return ways;
+}
 
 /// The candidates: the faces' normals, the area, the mean of the normals, the last run's normal.
 Vec3 least_overlap(const PatchView& view, const Vec3& area, Watch& watch) noexcept {
@@ -247,7 +296,8 @@ Vec3 least_overlap(const PatchView& view, const Vec3& area, Watch& watch) noexce
     search.offer(direction, factor);
     if (!solid) search.offer(-direction, factor);  // a sheet's normal may point either way
   };
-  offer(area, tolerances::area_preferred);
+  // The area of a rim of which pieces are missing is one candidate of many: where it is small, so may be what is left.
+  offer(area, is_part_of_a_rim(view) ? 1.0 : tolerances::area_preferred);
   Directions faces;
   for (std::size_t i = 0; i < view.pieces.size() && !watch.late(i); ++i) {
     const RimPiece& piece = view.rim.pieces[view.pieces[i]];
@@ -261,6 +311,10 @@ Vec3 least_overlap(const PatchView& view, const Vec3& area, Watch& watch) noexce
   }
   offer(view.sums.normals_b - view.sums.normals_a, 1.0);
   if (view.input.previous_normal != nullptr) search.offer(*view.input.previous_normal, 1.0);
+  if ((is_part_of_a_rim(view) || view.sums.length == 0.0) && search.is_a_long_way()) {
+    const Directions ways = ways_along_walls(view, watch);
+    for (std::size_t i = 0; i < ways.count; ++i) search.offer_both(ways.ones[i].first, 1.0);
+  }
   if (search.best() != Vec3::Zero()) return search.best();
   return unit_or_zero(view.input.reference_a - view.input.reference_b);
 }
@@ -275,7 +329,10 @@ Vec3 patch_normal(const PatchView& view, Watch& watch) noexcept {
   // The isoperimetric quotient: 1 for a circle, 0.8 for a square, 0 for a line.
   const double roundness = sums.length > 0.0 ? 4.0 * std::numbers::pi * area.norm() / (sums.length * sums.length) : 0.0;
   Vec3 normal = Vec3::Zero();
-  if (noticeable && roundness > (sums.closed() ? tolerances::round_closed_rim : tolerances::round_open_rim)) {
+  // Above 1 more is missing of a rim than is there: what its pieces seem to span is where they lie.
+  const bool round = roundness > (sums.closed() ? tolerances::round_closed_rim : tolerances::round_open_rim) &&
+                     !(roundness > 1.0 && is_part_of_a_rim(view));
+  if (noticeable && round) {
     normal = area.normalized();
     if (normal.dot(side_of_bodies(view)) < 0.0) normal = -normal;
     if (is_hole_alone(view, normal)) normal = -normal;

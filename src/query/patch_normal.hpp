@@ -17,6 +17,11 @@ struct PatchView {
   std::size_t sample = 24;                ///< most triangle pairs to look at when candidates are compared
 };
 
+/// Whether some of the rim is missing. Solids cross in closed curves; a sheet's rim ends where the sheet does.
+[[nodiscard]] inline bool is_part_of_a_rim(const PatchView& view) noexcept {
+  return view.input.solid_a && view.input.solid_b && !view.sums.closed();
+}
+
 /// Unit normal into A. When the time is up, what is known by then. See PatchBuilder for the rule. Always finite and of
 /// unit length.
 [[nodiscard]] Vec3 patch_normal(const PatchView& view, Watch& watch) noexcept;

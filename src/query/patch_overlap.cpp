@@ -22,6 +22,12 @@ Vec3 normal_of(const Probed& body, std::uint32_t triangle) noexcept {
   return (body.vertices[t[1]] - p).cross(body.vertices[t[2]] - p);
 }
 
+/// Whether a line in that direction leaves a solid through the triangle; one that runs along it tells nothing.
+bool leaves_through(const Probed& body, std::uint32_t triangle, const Vec3& outwards) noexcept {
+  const Vec3 normal = normal_of(body, triangle);
+  return normal.dot(outwards) > tolerances::along_a_face * normal.norm();
+}
+
 /// Signed distance from `point` along `outwards` to the surface where a line in that direction leaves the body.
 bool exit_along(const Probed& body, const Vec3& point, const Vec3& outwards, double reach, double* distance,
                 std::uint32_t* triangle) noexcept {
@@ -29,7 +35,7 @@ bool exit_along(const Probed& body, const Vec3& point, const Vec3& outwards, dou
   double ahead = 0.0;
   std::uint32_t triangle_ahead = no_feature;
   const bool found_ahead = body.probe.ray(body.probe.self, point, outwards, limit, &ahead, &triangle_ahead);
-  if (body.solid && found_ahead && normal_of(body, triangle_ahead).dot(outwards) > 0.0) {
+  if (body.solid && found_ahead && leaves_through(body, triangle_ahead, outwards)) {
     *distance = ahead;
     *triangle = triangle_ahead;
     return true;
@@ -38,7 +44,7 @@ bool exit_along(const Probed& body, const Vec3& point, const Vec3& outwards, dou
   std::uint32_t triangle_behind = no_feature;
   const Vec3 backwards = -outwards;
   bool found_behind = body.probe.ray(body.probe.self, point, backwards, limit, &behind, &triangle_behind);
-  if (body.solid) found_behind = found_behind && normal_of(body, triangle_behind).dot(outwards) > 0.0;
+  if (body.solid) found_behind = found_behind && leaves_through(body, triangle_behind, outwards);
   if (!body.solid && found_ahead && (!found_behind || ahead <= behind)) {
     *distance = ahead;
     *triangle = triangle_ahead;
@@ -72,26 +78,32 @@ double pair_depth(const PlacedPair& placed, const Frame& frame, const Vec3& shif
   return deepest;
 }
 
-bool probe_overlap(const PatchInput& input, const Vec3& point, const Vec3& normal, double reach, Watch& watch,
+Probing probe_line(const PatchInput& input, const Vec3& point, const Vec3& normal, double reach, Watch& watch,
                    Witness& witness) noexcept {
-  if (!input.probe_a || !input.probe_b) return false;
+  if (!input.probe_a || !input.probe_b) return Probing::unknown;
   const Probed a{input.probe_a, input.vertices_a, input.triangles_a, input.solid_a};
   const Probed b{input.probe_b, input.vertices_b, input.triangles_b, input.solid_b};
   const Mat3 to_b = input.pose_b_in_a.rotation.transpose();
   double down = 0.0;
   double up = 0.0;
   Witness found;
-  if (watch.late() || !exit_along(a, point, -normal, reach, &down, &found.triangle_a)) return false;
-  if (watch.late()) return false;
+  if (watch.late() || !exit_along(a, point, -normal, reach, &down, &found.triangle_a)) return Probing::unknown;
+  if (watch.late()) return Probing::unknown;
   if (!exit_along(b, to_b * (point - input.pose_b_in_a.translation), to_b * normal, reach, &up, &found.triangle_b)) {
-    return false;
+    return Probing::unknown;
   }
   found.depth = up + down;
-  if (!(found.depth >= 0.0) || !std::isfinite(found.depth)) return false;
+  if (!std::isfinite(found.depth)) return Probing::unknown;
+  if (!(found.depth >= 0.0)) return Probing::apart;
   found.on_a = point - down * normal;
   found.on_b = point + up * normal;
   witness = found;
-  return true;
+  return Probing::overlap;
+}
+
+bool probe_overlap(const PatchInput& input, const Vec3& point, const Vec3& normal, double reach, Watch& watch,
+                   Witness& witness) noexcept {
+  return probe_line(input, point, normal, reach, watch, witness) == Probing::overlap;
 }
 
 Witness climb(const PatchInput& input, const Witness& start, const Vec3& normal, double radius, double reach,

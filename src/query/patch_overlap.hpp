@@ -106,9 +106,19 @@ void overlap_corners(const PlacedPair& placed, const Frame& frame, const Vec3& s
 /// Largest depth of one pair along a direction, at least 0.
 [[nodiscard]] double pair_depth(const PlacedPair& placed, const Frame& frame, const Vec3& shift) noexcept;
 
+enum class Probing : std::uint8_t {
+  unknown,  ///< a probe is missing, or has found no surface
+  apart,    ///< the bodies do not overlap on the line
+  overlap,
+};
+
 /// The overlap on the line through `point` along `normal`, by the probes: from A's surface up to B's. For solids the
-/// crossing at which the line leaves the body, for sheets the nearest within `reach`. False if a probe is missing or
-/// finds none.
+/// crossing at which the line leaves the body, for sheets the nearest within `reach`. Writes `witness` where they
+/// overlap.
+[[nodiscard]] Probing probe_line(const PatchInput& input, const Vec3& point, const Vec3& normal, double reach,
+                                 Watch& watch, Witness& witness) noexcept;
+
+/// Whether the bodies are known to overlap there: see probe_line.
 [[nodiscard]] bool probe_overlap(const PatchInput& input, const Vec3& point, const Vec3& normal, double reach,
                                  Watch& watch, Witness& witness) noexcept;
 

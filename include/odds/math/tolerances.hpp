@@ -60,12 +60,18 @@ inline constexpr double pressing_share = 1e-4;
 /// Test: ContactPatch.PreviousNormalBreaksTies.
 inline constexpr double same_as_before = 0.9;
 inline constexpr double hysteresis = 0.8;  ///< see same_as_before
-/// By how much the vector area is preferred to a face's normal where it is small.
+/// By how much the vector area of a whole rim is preferred to a face's normal where it is small.
 inline constexpr double area_preferred = 0.5;
 /// Vector area below this part of (coordinates x length of the rim) is rounding.
 inline constexpr double rim_noise = 1e-12;
+/// Rays that measure an overlap start this part of the coordinates inside of a rim: on it they may miss both bodies.
+/// Test: FlushBricks.AreNotPushedSidewaysHoweverLittleTimeThereIs.
+inline constexpr double within_both = 1e-9;
+/// A ray that leaves a solid through a face at less than this sine runs along it, and rounding says which way.
+/// Test: FlushBricks.ThatTouchWithinRoundingAreNotPushedFromEndToEnd.
+inline constexpr double along_a_face = 1e-8;
 /// Isoperimetric quotient from which a rim's vector area is its direction without a comparison; an open rim, of which
-/// some is missing, must be rounder. Tests: ContactPatch.CrossedPlatesPartTheShortWay,
+/// some is missing, must be rounder, and no rounder than a circle. Tests: ContactPatch.CrossedPlatesPartTheShortWay,
 /// ContactPatch.FewHitsStillGiveTheNormal.
 inline constexpr double round_closed_rim = 0.05;
 inline constexpr double round_open_rim = 0.2;  ///< see round_closed_rim
@@ -81,8 +87,8 @@ inline constexpr double opposed = -0.3;
 /// By how much the patch with the last run's normal is preferred as the first, so that the order does not flicker.
 inline constexpr double keep_first = 1.05;
 /// An overlap that is this many times deeper than its rim is wide, more than any needle, is looked at in other
-/// directions too.
-/// Test: Pair.ALumpAtACornerOfFlushBricksIsNotPushedFromEndToEnd.
+/// directions too; one of solids of whose rim pieces are missing, if it is deeper than wide at all.
+/// Test: Pair.ALumpAtACornerOfFlushBricksIsNotPushedFromEndToEnd, PartOfARim.OfCrumbsOnAWallIsNotPushedFromEndToEnd.
 inline constexpr double lump_depth = 1000.0;
 /// Depth of a contact, as a part of the smaller body's size, that is believed where no run has measured any: a solver
 /// then holds up what rests on it, and a wrong direction moves a body by no more than this in a few steps.

@@ -1,0 +1,111 @@
+// Bricks that lie flush on each other, or touch along an edge or at a corner: whatever part of the rim a budget leaves,
+// no contact points sideways or is stated deeper than one brick is in the other.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "odds/math/random.hpp"
+#include "odds/mesh/made/by_name.hpp"
+#include "odds/query/pair.hpp"
+
+namespace odds::query {
+namespace {
+
+const Vec3 half(0.1, 0.25, 0.124);  ///< of the bricks' sides, metres
+
+std::shared_ptr<const Shape> brick(int cells) {
+  auto made = mesh::made::make_shape("made:box:x=0.2,y=0.5,z=0.248,cells=" + std::to_string(cells));
+  return Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(made.value()))).value();
+}
+
+struct Stand {
+  math::Pose below;  ///< of the lower brick, B, in the upper one's frame
+  double dip = 0.0;  ///< how deep its highest corner is in the upper brick, metres
+};
+
+/// `most` is the power of ten of each: of the turn (radians), the offset and the dip (metres); each is spread over
+/// `less` powers below it. One stand in two turns about one axis only, or is offset along one only.
+struct Powers {
+  double turn, offset, dip, less;
+};
+Stand random_stand(math::Random& random, const Powers& most) {
+  const auto power = [&](double ten) { return std::pow(10.0, ten - random.uniform(0.0, most.less)); };
+  const double angle = power(most.turn);
+  Vec3 turn(angle * random.uniform(-1, 1), angle * random.uniform(-1, 1), angle * random.uniform(-1, 1));
+  if (const auto axis = random.below(4); axis < 2) turn[static_cast<Eigen::Index>(axis)] *= 1e-3;
+  const double offset = power(most.offset);
+  Vec3 place(offset * random.uniform(-1, 1), offset * random.uniform(-1, 1), 0.0);
+  if (const auto axis = random.below(4); axis < 2) place[static_cast<Eigen::Index>(axis)] *= 1e-4;
+  const Quat rotation = Quat(1.0, 0.5 * turn.x(), 0.5 * turn.y(), 0.5 * turn.z()).normalized();
+  double top = -1.0;
+  for (const double x : {-half.x(), half.x()}) {
+    for (const double y : {-half.y(), half.y()}) top = std::max(top, (rotation * Vec3(x, y, half.z())).z());
+  }
+  const double dip = power(most.dip);
+  place.z() = -half.z() + dip - top;
+  return {math::Pose::from_quaternion(place, rotation), dip};
+}
+
+struct Found {
+  int contacts = 0;
+  int sideways = 0;
+  int deep = 0;  ///< ten times deeper than a brick is in the other, and not by what is believed where none has measured
+};
+Found over_stands(int cells_a, int cells_b, int stands, const Powers& most, const Budget& budget, double unmeasured) {
+  auto pair = std::move(Pair::make(brick(cells_a), brick(cells_b))).value();
+  math::Random random(5, 8);
+  Found found;
+  for (int i = 0; i < stands; ++i) {
+    const Stand stand = random_stand(random, most);
+    pair.reset();
+    Request request;
+    request.max_contacts = most_contacts;
+    request.budget = budget;
+    for (const Contact& contact : pair.run(stand.below, request).contacts) {
+      ++found.contacts;
+      found.sideways += contact.normal.z() < 0.99 ? 1 : 0;
+      found.deep += contact.depth > std::max(10.0 * stand.dip, unmeasured) ? 1 : 0;
+    }
+  }
+  return found;
+}
+
+constexpr Powers settled{-4.5, -4.0, -5.0, 5.0};
+
+TEST(FlushBricks, AreNotPushedSidewaysHoweverLittleTimeThereIs) {
+  for (const std::uint64_t units : {400, 500, 900, 2000}) {
+    for (const auto& [a, b] : {std::pair{11, 11}, {8, 11}, {11, 1}}) {
+      const Found found = over_stands(a, b, 2500, settled, Budget::work(units), 2e-5);
+      EXPECT_GT(found.contacts, 2500);
+      EXPECT_EQ(found.sideways, 0) << units << " units, " << a << " and " << b << " cells";
+      EXPECT_EQ(found.deep, 0) << units << " units, " << a << " and " << b << " cells";
+    }
+  }
+}
+
+TEST(FlushBricks, AreNotPushedSidewaysWithoutABudget) {
+  for (const auto& [a, b] : {std::pair{1, 1}, {8, 8}, {11, 1}}) {
+    const Found found = over_stands(a, b, 1500, settled, {}, 0.0);
+    EXPECT_GT(found.contacts, 1500);
+    EXPECT_EQ(found.sideways, 0) << a << " and " << b << " cells";
+    EXPECT_EQ(found.deep, 0) << a << " and " << b << " cells";
+  }
+}
+
+// By so little that a rim is what rounding has left of it: a point where two walls cross has no face that leads out.
+TEST(FlushBricks, ThatTouchWithinRoundingAreNotPushedFromEndToEnd) {
+  for (const auto& [a, b] : {std::pair{1, 1}, {8, 8}, {11, 1}}) {
+    const Found found = over_stands(a, b, 6000, {-5.5, -2.0, -14.0, 5.0}, {}, 1e-9);
+    EXPECT_GT(found.contacts, 2000);
+    EXPECT_EQ(found.deep, 0) << a << " and " << b << " cells";
+    if (a == b) {
+      EXPECT_EQ(found.sideways, 0) << a << " and " << b << " cells";
+    }
+  }
+}
+
+}  // namespace
+}  // namespace odds::query
