@@ -76,7 +76,7 @@ Found over_stands(int cells_a, int cells_b, int stands, const Powers& most, cons
 constexpr Powers settled{-4.5, -4.0, -5.0, 5.0};
 
 TEST(FlushBricks, AreNotPushedSidewaysHoweverLittleTimeThereIs) {
-  for (const std::uint64_t units : {400, 500, 900, 2000}) {
+  for (const std::uint64_t units : {400U, 500U, 900U, 2000U}) {
     for (const auto& [a, b] : {std::pair{11, 11}, {8, 11}, {11, 1}}) {
       const Found found = over_stands(a, b, 2500, settled, Budget::work(units), 2e-5);
       EXPECT_GT(found.contacts, 2500);

@@ -62,7 +62,7 @@ TEST(PartOfARim, ThatIsFlushAgreesOnADirection) {
     ContactScene scene{brick, brick, turn({1, 0.5, 0}, tilt, {3e-6, 2e-6, 0.1 * tilt + 8e-6 - 0.248})};
     scene.find_hits();
     const std::vector<TrianglePair> all = scene.hits;
-    for (const std::size_t share : {2, 4, 7, 13}) {
+    for (const std::size_t share : {2U, 4U, 7U, 13U}) {
       for (std::size_t skip = 0; skip < 20; ++skip) {
         scene.hits.clear();
         for (std::size_t i = 0; i < all.size(); ++i) {
