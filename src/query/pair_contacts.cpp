@@ -24,9 +24,7 @@ constexpr std::int64_t hasty_finish_ns = 6500;   ///< of one that is hasty from 
 constexpr std::int64_t single_finish_ns = 3000;  ///< of a single contact
 constexpr std::int64_t rough_finish_ns = 1500;   ///< of one more rough contact, their direction, and writing the answer
 
-/// Of what was known of the depth, from one sample of a rim to the next; and where there was no time to measure it.
-constexpr double fading = 0.5;
-constexpr double fading_unmeasured = 0.9;
+constexpr double fading = 0.5;  ///< of what was known of the depth, from one sample of a rim to the next
 constexpr double slack = 2.0;   ///< of what is believed of a depth that a sample has measured
 
 /// Pairs of triangles that a patch has time for.
@@ -88,9 +86,8 @@ void limit_depth(const PosedMeshes& meshes, double most_depth, Pair::Implementat
 
 /// What a sample of the rim says of the depth is taken for known as far as motion allows it; and as it may have missed
 /// the deepest place, what was known before fades instead of being forgotten.
-void note_sample(const PosedMeshes& meshes, double kept, Pair::Implementation& pair) noexcept {
-  if (!pair.known_depth.known()) return;
-  double deepest = kept * pair.known_depth.depth();
+void note_sample(const PosedMeshes& meshes, Pair::Implementation& pair) noexcept {
+  double deepest = fading * pair.known_depth.depth();
   for (const Contact& contact : pair.answer.contacts) {
     const Vec3 place = contact.position - meshes.origin_a();
     deepest =
@@ -111,7 +108,6 @@ void make_rough_contacts(const PosedMeshes& meshes, const Vec3* known_normal, co
                                            towards_a, known_normal, room, [&] { return spending.may_make_contacts(); });
   pair.answer.contacts = room.first(count);
   limit_to_believed(meshes, pair);
-  if (request.max_contacts > 1) note_sample(meshes, fading_unmeasured, pair);
   pair.answer.contacts_complete = false;
   pair.answer.contact_pairs = static_cast<std::uint32_t>(count);
 }
@@ -211,8 +207,8 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   const bool whole = pair.answer.contacts_complete && ended == Progressed::finished;
   if (whole) {
     pair.known_depth.note(meshes.pose(), deepest_of(pair.answer.contacts));
-  } else if (request.max_contacts > 1) {
-    note_sample(meshes, pair.patches.finished() ? fading : fading_unmeasured, pair);
+  } else if (pair.patches.finished() && request.max_contacts > 1 && pair.known_depth.known()) {
+    note_sample(meshes, pair);
   }
   if (!pair.answer.contacts_complete) return;
   pair.previous_normal = pair.answer.contacts.front().normal;
