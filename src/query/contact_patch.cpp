@@ -34,7 +34,7 @@ struct Effort {
   bool ends_only;      ///< of all pairs only those at the ends of the patch are asked for witnesses
 };
 constexpr Effort thorough{24, false};
-constexpr Effort hasty{24, true};
+constexpr Effort hasty{12, true};
 constexpr std::size_t hasty_pieces = 48;
 
 /// A finished patch.

@@ -24,7 +24,7 @@ constexpr std::int64_t hasty_finish_ns = 6500;   ///< of one that is hasty from 
 constexpr std::int64_t single_finish_ns = 3000;  ///< of a single contact
 constexpr std::int64_t rough_finish_ns = 1500;   ///< of one more rough contact, their direction, and writing the answer
 
-constexpr double fading = 0.5;  ///< of what was known of the depth, from one sample of a rim to the next
+constexpr double fading = 0.9;  ///< of what was known of the depth, from one sample of a rim to the next
 constexpr double slack = 2.0;   ///< of what is believed of a depth that a sample has measured
 
 /// Pairs of triangles that a patch has time for.
