@@ -1,7 +1,9 @@
+// Contacts from the pairs of triangles that a search has found, within what is left of the budget.
 #include "query/pair_contacts.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "odds/math/tolerances.hpp"
 #include "odds/query/ray.hpp"
@@ -24,8 +26,7 @@ constexpr std::int64_t hasty_finish_ns = 6500;   ///< of one that is hasty from 
 constexpr std::int64_t single_finish_ns = 3000;  ///< of a single contact
 constexpr std::int64_t rough_finish_ns = 1500;   ///< of one more rough contact, their direction, and writing the answer
 
-constexpr double fading = 0.9;  ///< of what was known of the depth, from one sample of a rim to the next
-constexpr double slack = 2.0;   ///< of what is believed of a depth that a sample has measured
+constexpr double unbounded = std::numeric_limits<double>::infinity();
 
 /// Pairs of triangles that a patch has time for.
 std::uint32_t hits_in(double microseconds, double per_microsecond) noexcept {
@@ -59,11 +60,16 @@ std::span<Contact> own_contacts(Pair::Implementation& pair) noexcept {
   return own;
 }
 
-/// From a part of the rim a depth may be anything. What nobody has measured is pushed apart no harder than is known
-/// from motion, or than that a body does not sink in.
+/// Metres: what nobody need have measured.
+double unmeasured_depth(const Pair::Implementation& pair) noexcept {
+  return tolerances::unmeasured_depth * std::min(pair.a->mesh().size(), pair.b->mesh().size());
+}
+
+/// From a part of the rim a depth may be anything: a few pieces of a rim may be taken for one lump, which reaches from
+/// end to end. No contact is deeper than is believed from motion along its own normal, but as deep as it takes to hold
+/// a body up.
 void limit_to_believed(const PosedMeshes& meshes, Pair::Implementation& pair) noexcept {
-  const double smaller = std::min(pair.a->mesh().size(), pair.b->mesh().size());
-  const double unmeasured = tolerances::unmeasured_depth * smaller;
+  const double unmeasured = unmeasured_depth(pair);
   for (Contact& contact : own_contacts(pair)) {
     const Vec3 place = contact.position - meshes.origin_a();
     const double believed = pair.known_depth.believed(place, contact.normal, meshes.pose());
@@ -71,29 +77,22 @@ void limit_to_believed(const PosedMeshes& meshes, Pair::Implementation& pair) no
   }
 }
 
-/// Part of the rim may be enough, and yet nothing is deeper than can be, nor much deeper than it has come along its own
-/// normal: a few pieces of a rim may be taken for one lump, which reaches from end to end.
-void limit_depth(const PosedMeshes& meshes, double most_depth, Pair::Implementation& pair) noexcept {
-  if (!pair.known_depth.known()) return;
-  const double smaller = std::min(pair.a->mesh().size(), pair.b->mesh().size());
-  for (Contact& contact : own_contacts(pair)) {
-    const Vec3 place = contact.position - meshes.origin_a();
-    const double believed = pair.known_depth.believed(place, contact.normal, meshes.pose());
-    const double most = std::max(slack * believed, tolerances::unmeasured_depth * smaller);
-    contact.depth = std::min({contact.depth, most_depth, most});
-  }
-}
-
-/// What a sample of the rim says of the depth is taken for known as far as motion allows it; and as it may have missed
-/// the deepest place, what was known before fades instead of being forgotten.
+/// What a sample of the rim says of the depth is taken for known as far as motion allows it.
 void note_sample(const PosedMeshes& meshes, Pair::Implementation& pair) noexcept {
-  double deepest = fading * pair.known_depth.depth();
+  double deepest = 0.0;
   for (const Contact& contact : pair.answer.contacts) {
     const Vec3 place = contact.position - meshes.origin_a();
     deepest =
         std::max(deepest, std::min(contact.depth, pair.known_depth.believed(place, contact.normal, meshes.pose())));
   }
   pair.known_depth.note(meshes.pose(), deepest);
+}
+
+/// Bodies that were never seen apart, and never measured, may be as deep as they are; but what they come from here on
+/// is known. Without it they would go through each other against a push that never grows.
+void note_first_contact(const PosedMeshes& meshes, Pair::Implementation& pair) noexcept {
+  const double most = pair.answer.contacts_complete ? unbounded : unmeasured_depth(pair);
+  pair.known_depth.note(meshes.pose(), std::min(deepest_of(pair.answer.contacts), most));
 }
 
 /// What single pairs of triangles say, when there is no time for a patch.
@@ -109,6 +108,7 @@ void make_rough_contacts(const PosedMeshes& meshes, const Vec3* known_normal, co
   pair.answer.contacts = room.first(count);
   limit_to_believed(meshes, pair);
   pair.answer.contacts_complete = false;
+  if (!pair.known_depth.known() && count > 0) note_first_contact(meshes, pair);
   pair.answer.contact_pairs = static_cast<std::uint32_t>(count);
 }
 
@@ -116,7 +116,7 @@ void make_rough_contacts(const PosedMeshes& meshes, const Vec3* known_normal, co
 /// nobody need have measured.
 double believed_depth(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Vec3* known_normal,
                       const Pair::Implementation& pair) noexcept {
-  const double unmeasured = tolerances::unmeasured_depth * std::min(pair.a->mesh().size(), pair.b->mesh().size());
+  const double unmeasured = unmeasured_depth(pair);
   if (known_normal == nullptr) return unmeasured;
   const Vec3 place = pair.known_direction.place(pose_b_in_a) - meshes.origin_a();
   return std::max(unmeasured, pair.known_depth.believed(place, *known_normal, meshes.pose()));
@@ -180,12 +180,13 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   if (pair.answer.contacts.empty()) return;
   pair.answer.contact_pairs = pair.patches.pairs_used();
   pair.answer.contacts_complete = pair.patches.finished() && all;
-  // A finished patch of a part of the rim has measured its depth, and errs seldom; a hasty one has not.
-  const bool measured = pair.patches.finished() && pair.known_depth.known();
-  if (!pair.answer.contacts_complete && !measured) {
+  const bool moved_little = most_depth - pair.known_depth.depth() <= tolerances::coherent_motion * smaller;
+  const bool known = pair.known_depth.known() && moved_little;
+  const bool sample = request.max_contacts > 1 && ended != Progressed::finished;
+  if (!pair.answer.contacts_complete || (sample && known)) {
     limit_to_believed(meshes, pair);
-  } else if (ended != Progressed::finished || part) {
-    limit_depth(meshes, most_depth, pair);
+  } else if (ended != Progressed::finished) {  // a single contact
+    for (Contact& contact : own_contacts(pair)) contact.depth = std::min(contact.depth, most_depth);
   }
   if (pair.patches.finished() && request.max_contacts > 1) {
     const Contact& first = pair.answer.contacts.front();
@@ -204,11 +205,14 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
     pair.carried.keep(pair.answer.contacts, request.max_contacts, pair.hits.pairs(), pose_b_in_a,
                       pair.answer.contacts_complete ? 0 : pair.answer.contact_pairs);
   }
-  const bool whole = pair.answer.contacts_complete && ended == Progressed::finished;
-  if (whole) {
+  if (pair.answer.contacts_complete && ended == Progressed::finished) {
     pair.known_depth.note(meshes.pose(), deepest_of(pair.answer.contacts));
-  } else if (pair.patches.finished() && request.max_contacts > 1 && pair.known_depth.known()) {
-    note_sample(meshes, pair);
+  } else if (request.max_contacts > 1) {
+    if (!pair.known_depth.known() || (!known && pair.answer.contacts_complete)) {
+      note_first_contact(meshes, pair);
+    } else if (pair.patches.finished()) {
+      note_sample(meshes, pair);
+    }
   }
   if (!pair.answer.contacts_complete) return;
   pair.previous_normal = pair.answer.contacts.front().normal;
