@@ -1,6 +1,7 @@
 #include "ode/held_contacts.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "odds/math/motion.hpp"
 
@@ -17,11 +18,36 @@ std::span<const query::Contact> HeldContacts::best_of(const query::Answer& answe
     }
     return answer.contacts;
   }
-  const std::span<const query::Contact> still_held = at(b_in_a, size);
+  const std::span<const query::Contact> still_held =
+      at(b_in_a, size, answer.contacts.empty() ? most_slip_undecided : most_slip);
   const bool rough = answer.contact_pairs < enough_pairs;
   if (answer.contacts.empty() || (rough && better_than_rough() && !still_held.empty())) return still_held;
+  if (rough && !still_held.empty()) {
+    add(answer.contacts, b_in_a, size);
+    return at(b_in_a, size);
+  }
   keep(answer.contacts, b_in_a, !rough);
   return answer.contacts;
+}
+
+/// A few pairs of triangles, of whose rim each run finds others: what they touched is kept beside what they touch now
+/// (a persistent manifold), the nearest one's place is taken where there are as many as can be.
+void HeldContacts::add(std::span<const query::Contact> found, const math::Pose& b_in_a, double size) noexcept {
+  for (const query::Contact& contact : found) {
+    std::size_t nearest = count_;
+    double least = count_ < most ? same_place * size : std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < count_; ++i) {
+      const double distance = (held_[i].at(b_in_a).position - contact.position).norm();
+      if (distance < least) {
+        least = distance;
+        nearest = i;
+      }
+    }
+    held_[nearest] = query::HeldContact(contact, b_in_a);
+    count_ = std::max(count_, nearest + 1);
+  }
+  made_at_ = b_in_a;
+  runs_ = 0;
 }
 
 /// Bodies that are proved apart: what would overlap by what is held has not gone where its points say.
@@ -40,12 +66,12 @@ void HeldContacts::keep(std::span<const query::Contact> found, const math::Pose&
   runs_ = 0;
 }
 
-std::span<const query::Contact> HeldContacts::at(const math::Pose& b_in_a, double size) noexcept {
+std::span<const query::Contact> HeldContacts::at(const math::Pose& b_in_a, double size, double most_slid) noexcept {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < count_; ++i) {
     const query::HeldContact held = held_[i];
     const auto [depth, slip] = held.parted(b_in_a);
-    if (!(slip <= most_slip * size && depth >= -most_gap * size)) continue;
+    if (!(slip <= most_slid * size && depth >= -most_gap * size)) continue;
     touching_[kept] = held.at(b_in_a);
     held_[kept++] = held;
   }

@@ -17,9 +17,14 @@ namespace odds::ode {
 class HeldContacts {
  public:
   static constexpr std::size_t most = 8;
-  /// Of the smaller body's size: how far the two points of a contact may slide, or come apart, until it is let go.
+  /// Of the smaller body's size: how far the two points of a contact may slide, or come apart, until it is let go; and
+  /// how far they may slide while queries end undecided, and so there is nothing better than the plane in which the
+  /// bodies last touched (an intermediate representation: Adachi, Kumano and Ogino 1995, Mark et al. 1996).
   static constexpr double most_slip = 0.02;
+  static constexpr double most_slip_undecided = 0.1;
   static constexpr double most_gap = 0.002;
+  /// Of the smaller body's size: nearer to each other two contacts are one.
+  static constexpr double same_place = 0.02;
   /// A stalled processor is away for some milliseconds.
   static constexpr int most_runs = 10;
   /// Of the smaller body's size: bodies that have moved less since what is held was made have not sunk in deeper than
@@ -45,10 +50,12 @@ class HeldContacts {
   [[nodiscard]] bool better_than_rough() const noexcept { return careful_ && (runs_ <= most_runs || rests_); }
 
   /// Lets go what has slid or parted by the new pose; the others as contacts, deepest first, those that have parted by
-  /// less with depth 0. Valid until the next call. `size`: diameter of the smaller body.
-  [[nodiscard]] std::span<const query::Contact> at(const math::Pose& b_in_a, double size) noexcept;
+  /// less with depth 0. Valid until the next call. `size`: diameter of the smaller body; `most_slid`: part of it.
+  [[nodiscard]] std::span<const query::Contact> at(const math::Pose& b_in_a, double size,
+                                                   double most_slid = most_slip) noexcept;
 
  private:
+  void add(std::span<const query::Contact> found, const math::Pose& b_in_a, double size) noexcept;
   void let_go_of_overlaps(const math::Pose& b_in_a, double size) noexcept;
 
   std::array<query::HeldContact, most> held_;

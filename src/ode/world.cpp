@@ -13,6 +13,7 @@
 #include "ode/contact_rows.hpp"
 #include "ode/contact_work.hpp"
 #include "ode/coupling_joint.hpp"
+#include "ode/first_look.hpp"
 #include "ode/mass_properties.hpp"
 #include "ode/vectors.hpp"
 #include "ode/world_frame.hpp"
@@ -388,7 +389,7 @@ std::optional<Error> World::prepare() {
   if (self.options.contact_work) self.momenta.resize(self.bodies.size());
   if (self.dynamic_bodies > 0) self.warm_up_solver();
   dSpaceClean(self.space);
-  return std::nullopt;
+  return self.options.contact.enabled ? first_look(self.space, self.options.query) : std::nullopt;
 }
 
 StepSummary World::step() noexcept {

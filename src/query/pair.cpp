@@ -47,12 +47,6 @@ void remember_witness(Pair::Implementation& pair) noexcept {
   if (pair.has_witness) pair.witness = pair.hits.pairs().front();
 }
 
-/// With less than a dozen looks at it a front finds less than the likeliest pairs do: at 1 us 12 of 19 hard cases are
-/// safe without it, and 9 with it.
-bool is_enough_for_front(const Budget& budget) noexcept {
-  return budget.work_units >= 100 && budget.microseconds >= 5.0;
-}
-
 template <volume::BoundingVolume V>
 SearchResult search(const Encounter<V>& encounter, const PosedMeshes&, const Request& request,
                     Pair::Implementation& pair, Spending& spending) noexcept {
@@ -91,7 +85,7 @@ SearchResult search(const wide::Encounter& encounter, const PosedMeshes& meshes,
     pair.wide->time_critical(task);
     return result;
   }
-  if (!is_enough_for_front(request.budget) || (request.budget.is_limited() && pair.front.pauses())) {
+  if (request.budget.is_limited() && wide::is_enough_from_roots(request.budget) && pair.front.pauses()) {
     pair.wide->time_critical(task);
     remember_witness(pair);
     return result;
@@ -145,7 +139,7 @@ wide::Encounter encounter_of(const tree::WideTree& a, const tree::WideTree& b, c
 /// Verdict, probability and place from what the search left undecided, if it did.
 template <class Met>
 void forecast(const Met& met, const SearchResult& result, const Request& request, const Spending& spending,
-              Pair::Implementation& pair) noexcept {
+              double still_meets, Pair::Implementation& pair) noexcept {
   Answer& answer = pair.answer;
   for (const NodePair& open : result.shortlist) met.prefetch(open);
   double undecided = 0.5;  // of a hit; even odds if nothing is known of what is open
@@ -156,6 +150,7 @@ void forecast(const Met& met, const SearchResult& result, const Request& request
     cell_probability = met.probability(likeliest.a, likeliest.b);
     undecided =
         pair.recalibration(probability_of_hit(odds, remains_of(met, result, spending.so_far(), cell_probability)));
+    undecided = std::max(undecided, still_meets);
   }
   judge(result, undecided, request, !pair.hits.empty(), answer);
   if (answer.basis == Basis::proved || result.shortlist.empty()) return;
@@ -206,7 +201,11 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
   } else {
     const auto encounter = encounter_of(a, b, meshes, request);
     result = search(encounter, meshes, request, pair, spending);
-    forecast(encounter, result, request, spending, pair);
+    const double size = std::min(pair.a->mesh().size(), pair.b->mesh().size());
+    forecast(encounter, result, request, spending, pair.last_hit.probability(meshes.pose(), b.reach(), size), pair);
+  }
+  if (answer.basis == Basis::proved) {
+    answer.verdict == Verdict::hit ? pair.last_hit.note(meshes.pose()) : pair.last_hit.forget();
   }
   pair.within_is_of_front = false;
   if (!pair.hits.empty()) pair.within = Within::neither;
@@ -308,6 +307,7 @@ void Pair::reset() noexcept {
   implementation_->previous_normal.setZero();
   implementation_->known_depth.forget();
   implementation_->known_direction.forget();
+  implementation_->last_hit.forget();
   implementation_->carried.forget();
   implementation_->has_witness = false;
   implementation_->within = Within::neither;

@@ -59,7 +59,7 @@ class Oracle {
     for (auto& [body, pair] : pairs_) {
       const math::Pose pose = world.state({body}).pose.inverse() * world.state({*tool_}).pose;
       pair.reset();
-      for (const query::Contact& contact : pair.run(pose, {.solids = true}).contacts) {
+      for (const query::Contact& contact : pair.run(pose, {.max_contacts = 8, .solids = true}).contacts) {
         deepest = std::max(deepest, contact.depth);
       }
     }

@@ -56,7 +56,9 @@ class KineticFront {
   /// Notes where B stands now; `reach` bounds the distance of B's surface from its tree's origin. Starts from the roots
   /// if there is nothing yet, if the last search found no room, or if much of what is kept is of no use any more.
   void move_to(const math::Pose& pose, double reach) noexcept {
-    if (size_ == 0 || overflowed_ || (!fresh_ && size_ > 2 * fresh_size_ + least_size)) {
+    const bool lost = irreplaceable_ && lost_runs_ >= patience && travelled_ > lost_after * reach;
+    if (size_ == 0 || overflowed_ || lost || (!fresh_ && size_ > 2 * fresh_size_ + least_size)) {
+      lost_runs_ = 0;
       clear();
       fresh_ = true;
       travelled_ = 0.0;
@@ -71,8 +73,10 @@ class KineticFront {
   struct Outcome {
     std::uint32_t resume_at = 0;      ///< where the next one begins, after the entries that met
     std::uint32_t next_crossing = 0;  ///< which of the entries that met is next
+    std::uint32_t next_leaf = 0;      ///< which of the others, of a search that looks at leaves first
     bool explored = false;            ///< nothing is left that had expired, but for what met
     bool starved = false;             ///< its budget ended it
+    bool irreplaceable = false;       ///< such a budget finds nothing without a front
     std::uint32_t looked_at = 0;      ///< of the entries that met before
     std::uint32_t still_met = 0;
   };
@@ -81,12 +85,15 @@ class KineticFront {
   void note_end(const Outcome& outcome) noexcept {
     if (fresh_) fresh_size_ = size_;
     fresh_ = fresh_ && !outcome.explored;
+    irreplaceable_ = outcome.irreplaceable;
+    lost_runs_ = outcome.starved && outcome.looked_at == 0 ? lost_runs_ + 1 : 0;
     if (is_no_use(outcome)) return give_up();
     move_changed();
     const bool may_miss = !outcome.explored || fresh_ || overflowed_ || crossing_ > 0;
     next_expiry_ = may_miss ? at_once : earliest_;
     resume_at_ = outcome.resume_at;
     next_crossing_ = outcome.next_crossing;
+    next_leaf_ = outcome.next_leaf;
   }
 
   /// Whether no search has finished since the last one from the roots: there may be more that meets.
@@ -96,6 +103,7 @@ class KineticFront {
   [[nodiscard]] std::uint32_t crossing() const noexcept { return crossing_; }
   [[nodiscard]] std::uint32_t resume_at() const noexcept { return resume_at_; }
   [[nodiscard]] std::uint32_t next_crossing() const noexcept { return next_crossing_; }
+  [[nodiscard]] std::uint32_t next_leaf() const noexcept { return next_leaf_; }
   /// Whether the two leaves of an entry have triangles that meet.
   void set_met(std::uint32_t index, bool met) noexcept {
     if (met != entries_[index].met) changed_[changed_count_++] = index;
@@ -138,6 +146,10 @@ class KineticFront {
 
  private:
   static constexpr std::uint32_t least_size = 64;
+  /// Runs in a row that found nothing to meet and were ended by their budget, and the share of B's reach that it has
+  /// moved since the front was new, after which all of it is stale: what opening it took is not worth keeping.
+  static constexpr std::uint32_t patience = 8;
+  static constexpr double lost_after = 0.1;
   static constexpr std::uint32_t first_pause = 64;
   static constexpr std::uint32_t longest_pause = 8192;
 
@@ -146,6 +158,7 @@ class KineticFront {
     crossing_ = 0;
     resume_at_ = 0;
     next_crossing_ = 0;
+    next_leaf_ = 0;
     changed_count_ = 0;
     overflowed_ = false;
     next_expiry_ = at_once;
@@ -165,7 +178,7 @@ class KineticFront {
       still_met_ += weight * (still - still_met_);
     }
     if (starved_ < 0.1) next_pause_ = first_pause;
-    return starved_ > 0.5 && still_met_ < 0.95;
+    return starved_ > 0.5 && still_met_ < 0.95 && !outcome.irreplaceable;
   }
   /// Longer each time, until it is of use again.
   void give_up() noexcept {
@@ -199,6 +212,9 @@ class KineticFront {
   std::uint32_t crossing_ = 0;
   std::uint32_t resume_at_ = 0;
   std::uint32_t next_crossing_ = 0;
+  std::uint32_t next_leaf_ = 0;
+  std::uint32_t lost_runs_ = 0;
+  bool irreplaceable_ = false;
   double next_expiry_ = at_once;
   double earliest_ = at_once;  ///< expiry of what the search that is under way has passed over
   std::uint32_t changed_count_ = 0;
