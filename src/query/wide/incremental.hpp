@@ -16,16 +16,15 @@ class Incremental {
  public:
   static void run(Task& task, KineticFront& front) noexcept {
     Incremental search(task, front);
-    search.outcome_.irreplaceable = !is_enough_from_roots(task.request.budget);
     search.outcome_.resume_at = search.run();
     search.outcome_.starved = task.result.ended == Progressed::spent;
+    search.outcome_.irreplaceable = !is_enough_from_roots(task.request.budget);
     front.note_end(search.outcome_);
   }
 
  private:
   /// Entries passed over between two looks at the clock: some 100 ns.
   static constexpr std::uint32_t entries_between_polls = 256;
-  static constexpr float far = 1e30F;  ///< empty lanes are farther
 
   Incremental(Task& task, KineticFront& front) noexcept : task_(task), met_(task.encounter), front_(front) {}
 
@@ -38,10 +37,6 @@ class Incremental {
     if (!goes_on()) {
       leave_rest_open(0, crossing);
       leave_rest_open(middle, kept);
-      return middle;
-    }
-    if (!look_at_leaves(crossing, kept)) {
-      leave_rest_open(crossing, kept);
       return middle;
     }
     std::uint32_t stopped = look_at(middle, kept);
@@ -83,30 +78,6 @@ class Incremental {
     }
     outcome_.next_crossing = 0;
     return true;
-  }
-
-  /// Of a small budget, where nothing is known to meet: leaves that were opened before are the shortest way to where
-  /// the bodies touch now. False if the search has ended.
-  bool look_at_leaves(std::uint32_t begin, std::uint32_t end) noexcept {
-    constexpr double share = 0.5;
-    if (!outcome_.irreplaceable || !task_.hits.empty() || begin == end) return true;
-    task_.spending.begin_start(share, share, std::numeric_limits<std::uint64_t>::max());
-    const std::uint32_t first = std::clamp(front_.next_leaf(), begin, end - 1);
-    outcome_.next_leaf = first;
-    std::uint32_t i = first;
-    for (std::uint32_t k = begin; k < end; ++k, i = i + 1 < end ? i + 1 : begin) {
-      const KineticFront::Entry& entry = front_.entry(i);
-      if (!front_.expired(i) || !met_.are_leaves(entry.a, entry.b)) continue;
-      outcome_.next_leaf = i;
-      if (!task_.spending.start_may_go_on_after(units_between_polls)) break;
-      if (!may_go_on() || !look_at(i)) return false;
-      if (!task_.hits.empty()) break;
-    }
-    return goes_on();
-  }
-
-  [[nodiscard]] double expiry_at(float gap) const noexcept {
-    return front_.travelled() + static_cast<double>(gap) - static_cast<double>(met_.margin());
   }
 
   [[nodiscard]] std::uint64_t spent() const noexcept {
@@ -187,11 +158,11 @@ class Incremental {
     entry.opened = static_cast<std::uint16_t>(entry.opened | expanded.lanes);
     alignas(64) float gap[wide_lanes];
     L::store(gap, expanded.gaps);
-    float least = far;
+    float least = 1e30F;  // empty lanes are farther
     for (std::uint32_t lane = 0; lane < wide_lanes; ++lane) {
       if ((entry.opened >> lane & 1U) == 0) least = std::min(least, gap[lane]);
     }
-    return expiry_at(least);
+    return front_.travelled() + static_cast<double>(least) - static_cast<double>(met_.margin());
   }
 
   /// Down from the stack. False ends the search; what it did not look into is kept as expired.

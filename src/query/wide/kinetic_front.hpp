@@ -73,7 +73,6 @@ class KineticFront {
   struct Outcome {
     std::uint32_t resume_at = 0;      ///< where the next one begins, after the entries that met
     std::uint32_t next_crossing = 0;  ///< which of the entries that met is next
-    std::uint32_t next_leaf = 0;      ///< which of the others, of a search that looks at leaves first
     bool explored = false;            ///< nothing is left that had expired, but for what met
     bool starved = false;             ///< its budget ended it
     bool irreplaceable = false;       ///< such a budget finds nothing without a front
@@ -93,7 +92,6 @@ class KineticFront {
     next_expiry_ = may_miss ? at_once : earliest_;
     resume_at_ = outcome.resume_at;
     next_crossing_ = outcome.next_crossing;
-    next_leaf_ = outcome.next_leaf;
   }
 
   /// Whether no search has finished since the last one from the roots: there may be more that meets.
@@ -103,7 +101,6 @@ class KineticFront {
   [[nodiscard]] std::uint32_t crossing() const noexcept { return crossing_; }
   [[nodiscard]] std::uint32_t resume_at() const noexcept { return resume_at_; }
   [[nodiscard]] std::uint32_t next_crossing() const noexcept { return next_crossing_; }
-  [[nodiscard]] std::uint32_t next_leaf() const noexcept { return next_leaf_; }
   /// Whether the two leaves of an entry have triangles that meet.
   void set_met(std::uint32_t index, bool met) noexcept {
     if (met != entries_[index].met) changed_[changed_count_++] = index;
@@ -158,7 +155,6 @@ class KineticFront {
     crossing_ = 0;
     resume_at_ = 0;
     next_crossing_ = 0;
-    next_leaf_ = 0;
     changed_count_ = 0;
     overflowed_ = false;
     next_expiry_ = at_once;
@@ -212,7 +208,6 @@ class KineticFront {
   std::uint32_t crossing_ = 0;
   std::uint32_t resume_at_ = 0;
   std::uint32_t next_crossing_ = 0;
-  std::uint32_t next_leaf_ = 0;
   std::uint32_t lost_runs_ = 0;
   bool irreplaceable_ = false;
   double next_expiry_ = at_once;
