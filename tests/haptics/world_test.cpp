@@ -307,6 +307,20 @@ TEST(WorldContact, AToolThatBeginsInsideLeavesWithoutAnExplosion) {
   }
 }
 
+TEST(World, KnowsBeforeTheFirstStepHowDeepABodyBegins) {
+  // With twenty pairs of nodes a step can at best tell that they touch.
+  WorldOptions options = repeatable_options();
+  options.query.budget = query::Budget::work(20);
+  World world = make(options);
+  ASSERT_TRUE(world.add_fixed(floor_plate(), {}, "plate").ok());
+  ASSERT_TRUE(world.add_dynamic(cube(), at(0.0, 0.0, 0.098), {}, "cube").ok());  // 2 mm deep
+  ASSERT_FALSE(world.prepare());
+  const StepSummary first = world.step();
+  EXPECT_GE(first.contacts, 4U);
+  EXPECT_NEAR(first.max_depth_m, 0.002, 1e-4);
+  EXPECT_LE(first.node_pairs + first.triangle_pairs, 20U) << "the budget is the scene's own again";
+}
+
 TEST(World, TakesNoMemoryInAStepAfterPrepare) {
   if (!support::counts_allocations) GTEST_SKIP() << "a sanitizer owns the allocator";
   for (const Solver solver : {Solver::exact, Solver::iterative}) {

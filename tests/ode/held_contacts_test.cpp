@@ -107,6 +107,46 @@ TEST(HeldContacts, AHopForgetsNothing) {
   EXPECT_EQ(held.best_of(rough, {}, 1.0)[0].normal, Vec3::UnitX());
 }
 
+// A run that had time for a pair of triangles touches here, the next one there: a box stands on all that were found.
+TEST(HeldContacts, AFewAtATimeAddUp) {
+  HeldContacts held;
+  query::Answer answer;
+  answer.verdict = query::Verdict::hit;
+  answer.contacts_complete = false;
+  answer.contact_pairs = 2;
+  query::Contact found[1];
+  answer.contacts = found;
+  const auto give = [&](double x, double y, const math::Pose& pose) {
+    found[0] = contact_at({x, y, 0}, Vec3::UnitZ(), 0.001);
+    return held.best_of(answer, pose, 1.0);
+  };
+  EXPECT_EQ(give(0.5, 0.5, {}).size(), 1U);
+  EXPECT_EQ(give(-0.5, 0.5, {}).size(), 2U);
+  EXPECT_EQ(give(0.5 + 0.5 * HeldContacts::same_place, 0.5, {}).size(), 2U) << "the same place";
+  for (int i = 0; i < 20; ++i) EXPECT_LE(give(0.5 - 0.05 * i, -0.5, {}).size(), HeldContacts::most);
+  const auto deeper = give(0.0, 0.0, moved({0, 0, 0.0005}));
+  ASSERT_EQ(deeper.size(), HeldContacts::most);
+  EXPECT_NEAR(deeper.front().depth, 0.0015, 1e-12) << "what is held goes with the bodies";
+  EXPECT_NEAR(deeper.back().depth, 0.001, 1e-12) << "what was found has its own depth";
+  EXPECT_EQ(give(0.3, 0.3, moved({2.0 * HeldContacts::most_slip, 0, 0.0005})).size(), 1U) << "the others slid off";
+}
+
+TEST(HeldContacts, WhereNothingIsDecidedThePlaneOfTheLastTouchHolds) {
+  HeldContacts held;
+  const query::Contact found[] = {contact_at({0, 0, 0}, Vec3::UnitZ(), 0.001)};
+  held.keep(found, {}, true);
+  const query::Answer undecided = [] {
+    query::Answer answer;
+    answer.basis = query::Basis::budget;
+    return answer;
+  }();
+  const double far = 0.9 * HeldContacts::most_slip_undecided;
+  const auto given = held.best_of(undecided, moved({far, 0, 0.0004}), 1.0);
+  ASSERT_EQ(given.size(), 1U) << "farther than a contact slides that can be made anew";
+  EXPECT_NEAR(given[0].depth, 0.0014, 1e-12) << "it goes on to follow the bodies";
+  EXPECT_TRUE(held.best_of(undecided, moved({1.2 * HeldContacts::most_slip_undecided, 0, 0}), 1.0).empty());
+}
+
 math::Pose pose_of(dBodyID body) {
   return {ode::matrix_of(dBodyGetRotation(body)), ode::vector_of(dBodyGetPosition(body))};
 }

@@ -1,9 +1,13 @@
 // The incremental search against a fresh one, along coherent motions.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <memory>
 #include <optional>
 #include <random>
 
+#include "odds/mesh/made/by_name.hpp"
 #include "odds/query/pair.hpp"
 #include "support/all_kinds.hpp"
 #include "support/shapes.hpp"
@@ -132,6 +136,35 @@ TEST(IncrementalRuns, TakeUpWhereTheLastOneWasEnded) {
   }
   EXPECT_GT(runs, 2);
   EXPECT_LT(runs, 12) << "a fifth of the work a run";
+}
+
+// Twenty pairs of nodes a run are less than one way from the roots to a leaf takes: what earlier runs have left finds
+// the contact all the same.
+TEST(IncrementalSmallBudget, ProvesNearlyEveryContact) {
+  const auto shape_of = [](const char* name) {
+    return Shape::build(std::make_shared<const mesh::TriangleMesh>(mesh::made::make_shape(name).value())).value();
+  };
+  const auto plate = shape_of("box:x=0.2,y=0.2,z=0.04,cells=8");
+  const auto ball = shape_of("icosphere:radius=0.01");
+  auto small = std::move(Pair::make(plate, ball)).value();
+  auto exact = std::move(Pair::make(plate, ball)).value();
+  int hits = 0;
+  int proved = 0;
+  for (int run = 0; run < 4000; ++run) {  // in, and along, and out and in again
+    const double t = 1e-3 * run;
+    const math::Pose pose{Mat3::Identity(),
+                          {0.003 * t, 0.002 * t, 0.0305 - 0.002 * std::min(t, 1.0) + 0.0015 * std::sin(3.0 * t)}};
+    const bool meets = exact.run(pose, {.method = Method::exact}).verdict == Verdict::hit;
+    const Answer& answer =
+        small.run(pose, {.method = Method::incremental, .budget = Budget::work(20), .max_contacts = 8});
+    ASSERT_LE(answer.cost.node_pairs + answer.cost.triangle_pairs, 20U);
+    hits += meets ? 1 : 0;
+    if (answer.basis != Basis::proved) continue;
+    ASSERT_EQ(answer.verdict == Verdict::hit, meets) << "run " << run;
+    proved += meets ? 1 : 0;
+  }
+  EXPECT_GT(hits, 3000);
+  EXPECT_GE(proved, hits - hits / 50);
 }
 
 INSTANTIATE_TEST_SUITE_P(AllVolumes, Incremental,

@@ -150,5 +150,40 @@ TEST(KineticFront, StaysWhereWhatMetGoesOnMeeting) {
   }
 }
 
+TEST(KineticFront, IsKeptWhereNothingReplacesIt) {
+  KineticFront front = filled(100);
+  for (int run = 0; run < 200; ++run) {
+    front.move_to({}, reach);
+    front.note_end({.starved = true, .irreplaceable = true, .looked_at = 10, .still_met = 1});
+    ASSERT_FALSE(front.pauses()) << run;
+  }
+  EXPECT_EQ(front.size(), 100U);
+}
+
+/// In how many of 40 runs, each farther along, a front of 100 entries starts from the roots.
+int starts_over(const KineticFront::Outcome& outcome, double step) {
+  KineticFront front = filled(100);
+  int starts = 0;
+  for (int run = 1; run <= 40; ++run) {
+    front.move_to({Mat3::Identity(), Vec3(step * run, 0.0, 0.0)}, reach);
+    if (front.size() == 1) {
+      ++starts;
+      for (std::uint32_t i = 1; i < 100; ++i) front.add({i, 0, 0}, KineticFront::at_once);
+    }
+    front.note_end(outcome);
+  }
+  return starts;
+}
+
+TEST(KineticFront, StartsOverWhereAllOfItIsStale) {
+  const KineticFront::Outcome lost{.starved = true, .irreplaceable = true};
+  EXPECT_GE(starts_over(lost, 0.02), 3) << "it has moved by 80 % of its reach and found nothing";
+  EXPECT_LE(starts_over(lost, 0.02), 5) << "what was begun needs its time";
+  EXPECT_EQ(starts_over(lost, 1e-3), 0) << "it has hardly moved";
+  EXPECT_EQ(starts_over({.irreplaceable = true}, 0.02), 0) << "it had time to look at all";
+  EXPECT_EQ(starts_over({.starved = true, .irreplaceable = true, .looked_at = 1, .still_met = 1}, 0.02), 0);
+  EXPECT_EQ(starts_over({.starved = true}, 0.02), 0) << "a larger budget pauses instead";
+}
+
 }  // namespace
 }  // namespace odds::query::wide

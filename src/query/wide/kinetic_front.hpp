@@ -36,6 +36,7 @@ class KineticFront {
   /// As if it were new.
   void reset() noexcept {
     clear();
+    lost_runs_ = 0;
     starved_ = 0.0;
     still_met_ = 1.0;
     pause_ = 0;
