@@ -22,7 +22,6 @@ void look(void*, dGeomID a, dGeomID b) noexcept {
 }  // namespace
 
 std::optional<Error> first_look(dSpaceID space, const query::Request& query) {
-  if (!query.budget.is_limited()) return std::nullopt;
   query::Request unlimited = query;
   unlimited.budget = query::Budget::unlimited();
   const bool looked = configure_all(space, unlimited);
