@@ -65,7 +65,7 @@ std::vector<HardCase> shapes() {
   };
 }
 
-std::vector<HardCase> overlaps() {
+std::vector<HardCase> overlaps(const std::string& knot) {
   return {
       {"starts_inside", "The tool starts 15 mm inside a block.",
        slab + mesh("ball", "made:icosphere:radius=0.01") + fixed("plate", "slab") + tool("ball") +
@@ -73,8 +73,8 @@ std::vector<HardCase> overlaps() {
        1.0, Trouble::none, 5.0, 0.05, 5e-4, 0.05, false},
       {"full_overlap",
        "Two equal knots lie exactly in each other; the hand draws one out. The scene asks for deep_contact.",
-       mesh("knot", "made:torus_knot") + fixed("knot", "knot") + tool("knot") +
-           hand("[0, 0, 0]", "[0, 0, 0.4]", "[0.3, 0, 0.4]") + contact + deep + pull,
+       mesh("knot", knot) + fixed("knot", "knot") + tool("knot") + hand("[0, 0, 0]", "[0, 0, 0.4]", "[0.3, 0, 0.4]") +
+           contact + deep + pull,
        1.2, Trouble::none, 5.0, 0.2, 5e-4, 0.05, false},  // 0.8 J: 40 N at most, over 20 mm
       {"alternating_sets", "A gear is pushed into another's teeth and turned: contacts come and go.",
        mesh("gear", "made:gear") + fixed("gear", "gear") + tool("gear", "0.1") +
@@ -121,7 +121,7 @@ std::vector<HardCase> scales() {
   };
 }
 
-std::vector<HardCase> control() {
+std::vector<HardCase> control(const std::string& knot) {
   const std::string pressed = slab + mesh("ball", "made:icosphere:radius=0.01") + fixed("plate", "slab") + tool("ball");
   const std::string light =
       slab + mesh("ball", "made:icosphere:radius=0.01") + fixed("plate", "slab") + tool("ball", "0.001");
@@ -157,7 +157,7 @@ std::vector<HardCase> control() {
            hand("[0, 0, 0.032]", "[0, 0, -0.008]", "[0.03, 0.01, 0]", "type = \"troubled\"\ntrouble = \"nan\"\n") +
            contact + friction + pull},
       {"meshes_at_speed", "Two knots brush past each other at 1.5 m/s. The scene asks for deep_contact.",
-       mesh("knot", "made:torus_knot") + fixed("knot", "knot") + tool("knot", "0.2") +
+       mesh("knot", knot) + fixed("knot", "knot") + tool("knot", "0.2") +
            "[device.hand]\ntype = \"scripted\"\nposition_m = [0.02, 0.25, 0.03]\n[[device.hand.motion]]\nkind = "
            "\"slide\"\n"
            "duration_s = 0.6\nby_m = [0.01, -0.5, 0]\nturn_rad = 1.0\n" +
@@ -168,10 +168,10 @@ std::vector<HardCase> control() {
 
 }  // namespace
 
-std::vector<HardCase> all_cases(const std::string& folder) {
+std::vector<HardCase> all_cases(const std::string& folder, const std::string& knot) {
   write_meshes(folder);
   std::vector<HardCase> all;
-  for (auto part : {shapes(), overlaps(), scales(), control()}) {
+  for (auto part : {shapes(), overlaps(knot), scales(), control(knot)}) {
     for (HardCase& one : part) all.push_back(std::move(one));
   }
   return all;

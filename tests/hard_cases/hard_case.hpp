@@ -32,7 +32,8 @@ struct HardCase {
       -1e300;  ///< ... above this height at the end, or whatever else says that it did not fall through
 };
 
-/// All of them; meshes that no made shape gives are written into `folder`, relative names refer to it.
-std::vector<HardCase> all_cases(const std::string& folder);
+/// All of them; meshes that no made shape gives are written into `folder`, relative names refer to it. `knot`: the mesh
+/// of the two cases in which two alike overlap deeply, a scene's `file`.
+std::vector<HardCase> all_cases(const std::string& folder, const std::string& knot = "made:torus_knot");
 
 }  // namespace odds::hard_cases

@@ -60,14 +60,14 @@ std::optional<double> at_poses(const Figures& f, double report::ForceDifference:
 const char* class_of(bool good, bool judged) { return good ? "good" : judged ? "bad" : "weak"; }
 
 std::string safety_cell(const Figures& f) {
-  return fmt::format("<td class=\"{}\">{}</td>", class_of(f.safe(), f.judged() || !f.harmful.empty()),
+  return fmt::format("<td class=\"{}\">{}</td>", class_of(f.safe(), true),
                      f.safe()            ? "safe"
                      : f.harmful.empty() ? "misses"
                                          : "harm");
 }
 
 std::string feel_cell(const Figures& f) {
-  if (!f.off.empty()) return fmt::format("<td class=\"{}\">different</td>", class_of(false, f.judged()));
+  if (!f.off.empty()) return fmt::format("<td class=\"{}\">different</td>", class_of(false, f.feel_is_judged()));
   return f.budget == "none" ? "<td>–</td>" : compared(f) ? "<td class=\"good\">the same</td>" : "<td>not compared</td>";
 }
 
@@ -87,14 +87,14 @@ std::string row(const Figures& f) {
 // What was found, a line each.
 std::string findings(const Figures& f) {
   std::string html;
-  const auto add = [&](const std::vector<std::string>& list, bool harmful) {
+  const auto add = [&](const std::vector<std::string>& list, bool judged) {
     for (const std::string& what : list) {
-      html += fmt::format("<li class=\"{}\">{}: {}</li>\n", class_of(false, harmful || f.judged()), f.budget, what);
+      html += fmt::format("<li class=\"{}\">{}: {}</li>\n", class_of(false, judged), f.budget, what);
     }
   };
   add(f.harmful, true);
-  add(f.missed, false);
-  add(f.off, false);
+  add(f.missed, true);
+  add(f.off, f.feel_is_judged());
   return html;
 }
 
@@ -130,8 +130,8 @@ std::string counts(const std::vector<Tally>& tallies, double seconds_taken) {
              "beyond the case's bound. <b>Safe</b>: besides, no deep contact missed in two ticks in a row, and "
              "nothing falls through. <b>Feel</b>: contact forces within 7 % and 18° at the 95th percentile of "
              "those without a budget, at the same poses, and of the hand where two runs can be compared; contact "
-             "begins within a tick; at most 1 % of noise added. A microsecond is 20 pairs of nodes: what such "
-             "runs miss is told in brown, not judged.</p>\n<p>Force on the hand over time: <b>without a "
+             "begins within a tick; at most 1 % of noise added. A microsecond is 20 pairs of nodes: how such "
+             "runs feel is told in brown, not judged.</p>\n<p>Force on the hand over time: <b>without a "
              "budget</b>, <b style=\"color:{}\">50 µs</b> (1000 work units), <b style=\"color:{}\">1 µs</b> "
              "(20). <i>Contacts</i>: the force of contacts on the tool, in each tick at the pose of the run "
              "without a budget; <i>hand</i>: the force on the hand, each run on its own. Simulated time, the "
