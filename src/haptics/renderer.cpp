@@ -52,7 +52,10 @@ bool Renderer::begin() noexcept {
   effects_->reset();
   world_->abandon_step();
   parts_done_ = 0;
-  if (!hand_) return true;
+  if (!hand_) {
+    world_->look();
+    return true;
+  }
   DeviceState state;
   if (!hand_->device->read(0, state) || !finite(state)) return false;
   state_ = state;
@@ -62,6 +65,7 @@ bool Renderer::begin() noexcept {
   safety_.emplace(hand_->limits);
   world_->set_state(hand_->tool,
                     {{state.orientation.toRotationMatrix(), state.position_m}, Vec3::Zero(), Vec3::Zero()});
+  world_->look();
   return true;
 }
 

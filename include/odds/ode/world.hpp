@@ -174,6 +174,11 @@ class World {
   /// Call it when all bodies are there. Later additions need another call.
   [[nodiscard]] std::optional<Error> prepare();
 
+  /// Collides all bodies once where they are, without a budget and without consequence: what begins in another body or
+  /// on it, and how deeply, is then known before a budget leaves time for a part of it only. Call it after prepare(),
+  /// and after set_state() has put bodies elsewhere; never within a loop, for it takes its time.
+  void look() noexcept;
+
   /// Collides, solves and moves all bodies by step_s; or does the next part of that (WorldOptions::parts). Does not
   /// call the solver if no body is dynamic.
   StepSummary step() noexcept;
