@@ -63,9 +63,17 @@ bool Renderer::begin() noexcept {
   fresh_ns_ = 0;
   energy_.reset(state);
   safety_.emplace(hand_->limits);
-  world_->set_state(hand_->tool,
-                    {{state.orientation.toRotationMatrix(), state.position_m}, Vec3::Zero(), Vec3::Zero()});
+  const auto place_tool = [&] {
+    world_->set_state(hand_->tool,
+                      {{state.orientation.toRotationMatrix(), state.position_m}, Vec3::Zero(), Vec3::Zero()});
+  };
+  place_tool();
   world_->look();
+  if (!hand_->device->read(0, state) || !finite(state)) return false;  // it may have moved while that took its time
+  state_ = state;
+  before_ = state;
+  energy_.reset(state);
+  place_tool();
   return true;
 }
 

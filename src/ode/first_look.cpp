@@ -22,6 +22,7 @@ void look(void*, dGeomID a, dGeomID b) noexcept {
 void first_look(dSpaceID space, const query::Request& query) noexcept {
   query::Request unlimited = query;
   unlimited.budget = query::Budget::unlimited();
+  unlimited.p_min = 1.0;
   configure_all(space, unlimited);
   dSpaceCollide(space, nullptr, &look);
   configure_all(space, query);

@@ -1,6 +1,7 @@
 #include "ode/held_contacts.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "odds/math/motion.hpp"
@@ -31,10 +32,22 @@ std::span<const query::Contact> HeldContacts::best_of(const query::Answer& answe
 }
 
 /// A few pairs of triangles, of whose rim each run finds others: what they touched is kept beside what they touch now
-/// (a persistent manifold), the nearest one's place is taken where there are as many as can be.
+/// (a persistent manifold), the nearest one's place is taken where there are as many as can be. What pushes where none
+/// of those found now does was a wrong guess, or is another side; and what no run has found for a while is gone.
 void HeldContacts::add(std::span<const query::Contact> found, const math::Pose& b_in_a, double size) noexcept {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < count_; ++i) {
+    const Vec3 normal = held_[i].at(b_in_a).normal;
+    const bool supported =
+        std::any_of(found.begin(), found.end(), [&](const auto& f) { return f.normal.dot(normal) > same_side; });
+    if (!supported || added_[i] >= most_added) continue;
+    held_[kept] = held_[i];
+    added_[kept++] = added_[i] + 1;
+  }
+  count_ = kept;
   for (const query::Contact& contact : found) {
-    std::size_t nearest = count_;
+    if (!contact.position.allFinite() || !contact.normal.allFinite() || !std::isfinite(contact.depth)) continue;
+    std::size_t nearest = count_ < most ? count_ : 0;
     double least = count_ < most ? same_place * size : std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < count_; ++i) {
       const double distance = (held_[i].at(b_in_a).position - contact.position).norm();
@@ -44,10 +57,11 @@ void HeldContacts::add(std::span<const query::Contact> found, const math::Pose& 
       }
     }
     held_[nearest] = query::HeldContact(contact, b_in_a);
+    added_[nearest] = 0;
     count_ = std::max(count_, nearest + 1);
   }
   made_at_ = b_in_a;
-  runs_ = 0;
+  careful_ = false;
 }
 
 /// Bodies that are proved apart: what would overlap by what is held has not gone where its points say.
@@ -61,6 +75,7 @@ void HeldContacts::let_go_of_overlaps(const math::Pose& b_in_a, double size) noe
 void HeldContacts::keep(std::span<const query::Contact> found, const math::Pose& b_in_a, bool careful) noexcept {
   count_ = std::min(found.size(), most);
   for (std::size_t i = 0; i < count_; ++i) held_[i] = query::HeldContact(found[i], b_in_a);
+  added_.fill(0);
   made_at_ = b_in_a;
   careful_ = careful;
   runs_ = 0;
@@ -73,6 +88,7 @@ std::span<const query::Contact> HeldContacts::at(const math::Pose& b_in_a, doubl
     const auto [depth, slip] = held.parted(b_in_a);
     if (!(slip <= most_slid * size && depth >= -most_gap * size)) continue;
     touching_[kept] = held.at(b_in_a);
+    added_[kept] = added_[i];
     held_[kept++] = held;
   }
   count_ = kept;

@@ -25,6 +25,11 @@ class HeldContacts {
   static constexpr double most_gap = 0.002;
   /// Of the smaller body's size: nearer to each other two contacts are one.
   static constexpr double same_place = 0.02;
+  /// Runs that add contacts and do not find one again, after which it is let go: a rim of which each run finds a tenth
+  /// is found in fewer.
+  static constexpr int most_added = 40;
+  /// Cosine above which two contacts push to the same side.
+  static constexpr double same_side = 0.5;
   /// A stalled processor is away for some milliseconds.
   static constexpr int most_runs = 10;
   /// Of the smaller body's size: bodies that have moved less since what is held was made have not sunk in deeper than
@@ -59,6 +64,7 @@ class HeldContacts {
   void let_go_of_overlaps(const math::Pose& b_in_a, double size) noexcept;
 
   std::array<query::HeldContact, most> held_;
+  std::array<int, most> added_{};  ///< of each, in how many runs contacts were added since it was found
   std::array<query::Contact, most> touching_;
   std::size_t count_ = 0;
   math::Pose made_at_;

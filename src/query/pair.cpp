@@ -139,7 +139,7 @@ wide::Encounter encounter_of(const tree::WideTree& a, const tree::WideTree& b, c
 /// Verdict, probability and place from what the search left undecided, if it did.
 template <class Met>
 void forecast(const Met& met, const SearchResult& result, const Request& request, const Spending& spending,
-              double still_meets, Pair::Implementation& pair) noexcept {
+              Pair::Implementation& pair) noexcept {
   Answer& answer = pair.answer;
   for (const NodePair& open : result.shortlist) met.prefetch(open);
   double undecided = 0.5;  // of a hit; even odds if nothing is known of what is open
@@ -150,7 +150,6 @@ void forecast(const Met& met, const SearchResult& result, const Request& request
     cell_probability = met.probability(likeliest.a, likeliest.b);
     undecided =
         pair.recalibration(probability_of_hit(odds, remains_of(met, result, spending.so_far(), cell_probability)));
-    undecided = std::max(undecided, still_meets);
   }
   judge(result, undecided, request, !pair.hits.empty(), answer);
   if (answer.basis == Basis::proved || result.shortlist.empty()) return;
@@ -201,11 +200,7 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
   } else {
     const auto encounter = encounter_of(a, b, meshes, request);
     result = search(encounter, meshes, request, pair, spending);
-    const double size = std::min(pair.a->mesh().size(), pair.b->mesh().size());
-    forecast(encounter, result, request, spending, pair.last_hit.probability(meshes.pose(), b.reach(), size), pair);
-  }
-  if (answer.basis == Basis::proved) {
-    answer.verdict == Verdict::hit ? pair.last_hit.note(meshes.pose()) : pair.last_hit.forget();
+    forecast(encounter, result, request, spending, pair);
   }
   pair.within_is_of_front = false;
   if (!pair.hits.empty()) pair.within = Within::neither;
@@ -307,7 +302,6 @@ void Pair::reset() noexcept {
   implementation_->previous_normal.setZero();
   implementation_->known_depth.forget();
   implementation_->known_direction.forget();
-  implementation_->last_hit.forget();
   implementation_->carried.forget();
   implementation_->has_witness = false;
   implementation_->within = Within::neither;

@@ -66,37 +66,45 @@ double unmeasured_depth(const Pair::Implementation& pair) noexcept {
 }
 
 /// From a part of the rim a depth may be anything: a few pieces of a rim may be taken for one lump, which reaches from
-/// end to end. No contact is deeper than is believed from motion along its own normal, but as deep as it takes to hold
-/// a body up.
-void limit_to_believed(const PosedMeshes& meshes, Pair::Implementation& pair) noexcept {
+/// end to end. No contact is deeper than `slack` times what is believed from motion along its own normal, but as deep
+/// as it takes to hold a body up.
+void limit_to_believed(const PosedMeshes& meshes, double slack, Pair::Implementation& pair) noexcept {
   const double unmeasured = unmeasured_depth(pair);
   for (Contact& contact : own_contacts(pair)) {
     const Vec3 place = contact.position - meshes.origin_a();
     const double believed = pair.known_depth.believed(place, contact.normal, meshes.pose());
-    contact.depth = std::min(contact.depth, std::max(believed, unmeasured));
+    contact.depth = std::min(contact.depth, slack * std::max(believed, unmeasured));
   }
 }
 
-/// What a sample of the rim says of the depth is taken for known as far as motion allows it.
+/// What a sample of the rim says of the depth is taken for known as far as motion allows it; all of what one says that
+/// is complete, whose depth was bounded before, so that runs at one pose come to what they find there.
 void note_sample(const PosedMeshes& meshes, Pair::Implementation& pair) noexcept {
   double deepest = 0.0;
   for (const Contact& contact : pair.answer.contacts) {
     const Vec3 place = contact.position - meshes.origin_a();
-    deepest =
-        std::max(deepest, std::min(contact.depth, pair.known_depth.believed(place, contact.normal, meshes.pose())));
+    const double believed =
+        pair.answer.contacts_complete ? contact.depth : pair.known_depth.believed(place, contact.normal, meshes.pose());
+    deepest = std::max(deepest, std::min(contact.depth, believed));
   }
   pair.known_depth.note(meshes.pose(), deepest);
 }
 
-/// Bodies that were never seen apart, and never measured, may be as deep as they are; but what they come from here on
-/// is known. Without it they would go through each other against a push that never grows.
+/// Bodies that were never seen apart, and never measured, or elsewhere only, may be as deep as they are; but what they
+/// come from here on is known. Without it they would go through each other against a push that never grows.
 void note_first_contact(const PosedMeshes& meshes, Pair::Implementation& pair) noexcept {
   const double most = pair.answer.contacts_complete ? unbounded : unmeasured_depth(pair);
   pair.known_depth.note(meshes.pose(), std::min(deepest_of(pair.answer.contacts), most));
 }
 
+/// Whether what is known of the depth says nothing of contacts that were limited to it: it is of another side.
+bool knows_nothing_here(bool moved_little, const Pair::Implementation& pair) noexcept {
+  return !pair.known_depth.known() ||
+         (!moved_little && deepest_of(pair.answer.contacts) <= unmeasured_depth(pair) * (1.0 + 1e-9));
+}
+
 /// What single pairs of triangles say, when there is no time for a patch.
-void make_rough_contacts(const PosedMeshes& meshes, const Vec3* known_normal, const Request& request,
+void make_rough_contacts(const PosedMeshes& meshes, const Vec3* known_normal, bool moved_little, const Request& request,
                          Pair::Implementation& pair, Spending& spending) noexcept {
   const Vec3 centre_b = meshes.pose().translation + meshes.origin_a();
   const Vec3 towards_a = pair.previous_normal.isZero() ? Vec3(meshes.origin_a() - centre_b) : pair.previous_normal;
@@ -106,9 +114,9 @@ void make_rough_contacts(const PosedMeshes& meshes, const Vec3* known_normal, co
   const std::size_t count = rough_contacts(meshes, pair.hits.pairs(), pair.a->is_solid() && pair.b->is_solid(),
                                            towards_a, known_normal, room, [&] { return spending.may_make_contacts(); });
   pair.answer.contacts = room.first(count);
-  limit_to_believed(meshes, pair);
+  limit_to_believed(meshes, 1.0, pair);
   pair.answer.contacts_complete = false;
-  if (!pair.known_depth.known() && count > 0) note_first_contact(meshes, pair);
+  if (request.max_contacts > 1 && count > 0 && knows_nothing_here(moved_little, pair)) note_first_contact(meshes, pair);
   pair.answer.contact_pairs = static_cast<std::uint32_t>(count);
 }
 
@@ -137,8 +145,9 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   spending.reserve_for_contacts(request.max_contacts > 1 ? hasty_finish_ns : single_finish_ns);
   const double smaller = std::min(pair.a->mesh().size(), pair.b->mesh().size());
   const Vec3* known_normal = pair.known_direction.at(pose_b_in_a, smaller);
+  const bool moved_little = most_depth - pair.known_depth.depth() <= tolerances::coherent_motion * smaller;
   if (!spending.may_make_contacts()) {
-    make_rough_contacts(meshes, known_normal, request, pair, spending);
+    make_rough_contacts(meshes, known_normal, moved_little, request, pair, spending);
     return;
   }
   if (request.max_contacts > 1) spending.reserve_for_contacts(patch_finish_ns);
@@ -180,11 +189,12 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   if (pair.answer.contacts.empty()) return;
   pair.answer.contact_pairs = pair.patches.pairs_used();
   pair.answer.contacts_complete = pair.patches.finished() && all;
-  const bool moved_little = most_depth - pair.known_depth.depth() <= tolerances::coherent_motion * smaller;
   const bool known = pair.known_depth.known() && moved_little;
   const bool sample = request.max_contacts > 1 && ended != Progressed::finished;
-  if (!pair.answer.contacts_complete || (sample && known)) {
-    limit_to_believed(meshes, pair);
+  if (!pair.answer.contacts_complete) {
+    limit_to_believed(meshes, 1.0, pair);
+  } else if (sample && known) {
+    limit_to_believed(meshes, tolerances::sampled_depth, pair);
   } else if (ended != Progressed::finished) {  // a single contact
     for (Contact& contact : own_contacts(pair)) contact.depth = std::min(contact.depth, most_depth);
   }
@@ -208,7 +218,7 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   if (pair.answer.contacts_complete && ended == Progressed::finished) {
     pair.known_depth.note(meshes.pose(), deepest_of(pair.answer.contacts));
   } else if (request.max_contacts > 1) {
-    if (!pair.known_depth.known() || (!known && pair.answer.contacts_complete)) {
+    if (pair.answer.contacts_complete ? !known : knows_nothing_here(moved_little, pair)) {
       note_first_contact(meshes, pair);
     } else if (pair.patches.finished()) {
       note_sample(meshes, pair);

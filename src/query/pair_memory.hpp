@@ -10,7 +10,6 @@
 #include "query/ending_reserve.hpp"
 #include "query/known_depth.hpp"
 #include "query/known_direction.hpp"
-#include "query/last_hit.hpp"
 #include "query/recalibration.hpp"
 #include "query/wide/searches.hpp"
 #include "query/within.hpp"
@@ -48,7 +47,6 @@ struct Pair::Implementation {
   Vec3 previous_position = Vec3::Zero();  ///< of that contact
   KnownDepth known_depth;
   KnownDirection known_direction;
-  LastHit last_hit;
   CarriedContacts carried;
   EndingReserve ending;
   std::array<Contact, most_contacts> rough;  ///< contacts that there was no time to make with care

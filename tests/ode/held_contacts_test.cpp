@@ -131,6 +131,34 @@ TEST(HeldContacts, AFewAtATimeAddUp) {
   EXPECT_EQ(give(0.3, 0.3, moved({2.0 * HeldContacts::most_slip, 0, 0.0005})).size(), 1U) << "the others slid off";
 }
 
+TEST(HeldContacts, WhatNoRunFindsAgainIsLetGo) {
+  // A careful contact, then a body that rocks onto another edge, of which each run finds a little.
+  HeldContacts held;
+  const query::Contact careful[] = {contact_at({0.5, 0, 0}, Vec3::UnitZ(), 0.001)};
+  const query::Contact guessed[] = {contact_at({0, 0, 0}, Vec3::UnitX(), 0.001)};
+  query::Contact found[] = {contact_at({-0.5, 0, 0}, Vec3::UnitZ(), 0.002)};
+  query::Answer rough;
+  rough.verdict = query::Verdict::hit;
+  rough.contacts_complete = false;
+  rough.contact_pairs = 2;
+  rough.contacts = found;
+  held.keep(careful, {}, true);
+  int given = 0;
+  const math::Pose rocked = moved({0, 0.5 * HeldContacts::most_slip, 0});
+  for (int run = 0; run < 60; ++run) {
+    const auto contacts = held.best_of(rough, rocked, 1.0);
+    given += std::any_of(contacts.begin(), contacts.end(), [](const auto& c) { return c.position.x() < 0.0; }) ? 1 : 0;
+    EXPECT_TRUE(run < 59 || contacts.size() == 1U) << "the old edge is long gone";
+  }
+  EXPECT_GE(given, 60 - HeldContacts::most_runs - 1) << "care is preferred for a while, and only once";
+  // A guess in a wrong direction does not grow into a wall.
+  held.keep(guessed, {}, false);
+  for (int run = 1; run <= 20; ++run) {
+    const auto contacts = held.best_of(rough, moved({0.001 * run, 0, 0}), 1.0);
+    for (const query::Contact& contact : contacts) EXPECT_GT(contact.normal.z(), 0.9);
+  }
+}
+
 TEST(HeldContacts, WhereNothingIsDecidedThePlaneOfTheLastTouchHolds) {
   HeldContacts held;
   const query::Contact found[] = {contact_at({0, 0, 0}, Vec3::UnitZ(), 0.001)};

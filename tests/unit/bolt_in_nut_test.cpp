@@ -10,6 +10,7 @@
 #include "odds/math/pose.hpp"
 #include "odds/mesh/made/by_name.hpp"
 #include "odds/query/pair.hpp"
+#include "odds/realtime/clock.hpp"
 
 namespace odds::query {
 namespace {
@@ -55,25 +56,59 @@ TEST_P(BoltInItsNut, IsHeldByAsMuchAsItIsDeep) {
       if (exact < 5e-6) continue;
       ++touching;
       shallow += found < 0.8 * exact ? 1 : 0;
-      deep += found > 1.6 * exact ? 1 : 0;
+      deep += found > 2.6 * exact ? 1 : 0;
     }
     EXPECT_GT(touching, 500);
     EXPECT_LE(shallow, 2) << units << " units";  // where it begins
-    EXPECT_LE(deep, 2) << units << " units";
+    EXPECT_LE(deep, 4) << units << " units";
   }
 }
 
-TEST_P(BoltInItsNut, AnExactRunDoesNotDependOnThePoseBefore) {
-  // Far from where it last was, a body is as deep as it is found to be, however it was known there.
+TEST_P(BoltInItsNut, ExactRunsForgetThePoseBefore) {
+  // More pairs meet than are kept. Far from where it last was, a body is as deep as it is found to be; nearby it comes
+  // to be, in a few runs.
   const math::Pose deep{Mat3::Identity(), {0.0, 0.0, 0.0023}};
   auto fresh = std::move(Pair::make(nut, bolt)).value();
   const double once = deepest(fresh.run(deep, {.max_contacts = 8}));
   EXPECT_GT(once, 1e-4);
-  for (const Vec3& elsewhere : {Vec3(0.0, 0.0, 1.0), Vec3(0.0, 0.01, 0.0), Vec3(0.0, 0.0, -0.003)}) {
+  for (const Vec3& far : {Vec3(0.0, 0.0, 1.0), Vec3(0.0, 0.01, 0.0), Vec3(0.0, 0.0, -0.003)}) {
     auto pair = std::move(Pair::make(nut, bolt)).value();
-    static_cast<void>(pair.run({Mat3::Identity(), elsewhere}, {.max_contacts = 8}));
+    static_cast<void>(pair.run({Mat3::Identity(), far}, {.max_contacts = 8}));
     EXPECT_EQ(deepest(pair.run(deep, {.max_contacts = 8})), once);
   }
+  for (const double higher : {4e-4, 2e-4, 1.5e-4, -1e-4, -3e-4}) {
+    auto pair = std::move(Pair::make(nut, bolt)).value();
+    static_cast<void>(pair.run({Mat3::Identity(), {0.0, 0.0, 0.0023 + higher}}, {.max_contacts = 8}));
+    for (int run = 0; run < 8; ++run) static_cast<void>(pair.run(deep, {.max_contacts = 8}));
+    const double found = deepest(pair.run(deep, {.max_contacts = 8}));
+    EXPECT_GE(found, 0.5 * once) << higher;  // which of several patches comes first is also the last one's choice
+    EXPECT_LE(found, 2.5 * once) << higher;
+  }
+}
+
+TEST_P(BoltInItsNut, OneStarvedRunDoesNotMakeASingleContactShallow) {
+  const math::Pose deep{Mat3::Identity(), {0.0, 0.0, 0.0023}};
+  auto pair = std::move(Pair::make(nut, bolt)).value();
+  const double once = deepest(pair.run(deep, {}));
+  EXPECT_GT(once, 0.0);
+  realtime::ManualClock clock(900);
+  static_cast<void>(pair.run(deep, {.budget = {.microseconds = 2.0, .clock = clock.clock()}}));
+  EXPECT_EQ(deepest(pair.run(deep, {})), once);
+}
+
+TEST(StarvedBall, IsHeldOnTheOtherSideOfAPlateToo) {
+  // It lay on top; what is known of that says nothing of the side below, where no run has time to measure.
+  const auto plate = shape_of("box:x=0.2,y=0.2,z=0.02,cells=8");
+  const auto ball = shape_of("icosphere:radius=0.01");
+  auto pair = std::move(Pair::make(plate, ball)).value();
+  static_cast<void>(pair.run({Mat3::Identity(), {0.0, 0.0, 0.0195}}, {.max_contacts = 8}));
+  double last = 0.0;
+  for (int run = 0; run <= 100; ++run) {
+    const math::Pose pose{Mat3::Identity(), {0.0, 0.0, -0.0201 + 1e-5 * run}};
+    last = deepest(pair.run(pose, {.method = Method::incremental, .budget = Budget::work(60), .max_contacts = 8}));
+  }
+  EXPECT_GT(last, 3e-4) << "of 0.9 mm";
+  EXPECT_LT(last, 1.2e-3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Threads, BoltInItsNut, ::testing::Values("", ":around=36,rows=2"));

@@ -94,8 +94,12 @@ inline constexpr double lump_depth = 1000.0;
 /// then holds up what rests on it, and a wrong direction moves a body by no more than this in a few steps.
 /// Test: StarvedCrate.DoesNotSinkIn, StarvedCrate.IsNeverThrown.
 inline constexpr double unmeasured_depth = 1e-4;
-/// Of the smaller body's size: from one run to the next a body that moves farther is elsewhere, and its depth there is
-/// what a run finds. Test: BoltInItsNut.AnExactRunDoesNotDependOnThePoseBefore.
+/// How many times what is believed of a depth from motion, or need not be measured, a run may say that has looked at as
+/// many pairs as are kept: they may be taken for one lump, but runs at one pose must come to what they find there.
+/// Tests: BoltInItsNut.IsHeldByAsMuchAsItIsDeep, BoltInItsNut.ExactRunsForgetThePoseBefore.
+inline constexpr double sampled_depth = 2.0;
+/// Of the smaller body's size: what has moved farther since its depth was known last is elsewhere, and its depth there
+/// is what a run finds. Test: BoltInItsNut.ExactRunsForgetThePoseBefore.
 inline constexpr double coherent_motion = 0.05;
 /// A mesh within a solid leaves it the way it came in, unless another way is shorter than this part of that one: one
 /// that has fallen half through a floor goes up all the same. Test: MeshWithinASolid.GoesBackTheWayItCame.

@@ -17,7 +17,8 @@ enum class Verdict : std::uint8_t {
 
 enum class Basis : std::uint8_t {
   /// An intersecting pair of triangles was found (hit), or every pair was excluded (clear). Where Request::solids asks
-  /// for it, also: every pair was excluded, and rays tell that one mesh lies within the other (hit), or neither (clear).
+  /// for it, also: every pair was excluded, and rays tell that one mesh lies within the other (hit), or neither
+  /// (clear).
   proved,
   estimated,  ///< the probability passed the threshold that the caller set (p_min, k_min), or polygons were dropped
   budget,     ///< the budget ran out; the verdict is the likelier one
@@ -73,11 +74,13 @@ struct Answer {
   double probability = 0.0;           ///< of a hit, in [0, 1]; exactly 1 or 0 where proved
   std::span<const Contact> contacts;  ///< in A's mesh frame, best first; valid until the pair's next run
   /// False if the time ended before the contacts were made with care: they come from some of the pairs of triangles
-  /// that meet, have one direction, and a depth that is bounded by what earlier runs proved, not measured.
+  /// that meet, have one direction, and a depth that is bounded by what earlier runs proved, not measured. Where more
+  /// pairs meet than are kept (PairOptions::hit_capacity), depths are at most twice what earlier runs at nearby poses
+  /// say; runs at one pose come to what they find there.
   bool contacts_complete = true;
   /// Pairs of triangles that the contacts were made from. Where they are not complete, some twenty tell a direction; of
-  /// fewer than that it is a guess, and a caller that has good contacts of the last tick may prefer those. 0 for the way
-  /// out of a solid (Request::solids).
+  /// fewer than that it is a guess, and a caller that has good contacts of the last tick may prefer those. 0 for the
+  /// way out of a solid (Request::solids).
   std::uint32_t contact_pairs = 0;
   bool contacts_carried = false;  ///< they are those of an earlier run, moved along (Request::carry_motion)
   bool has_cell_pair = false;     ///< whether `cell_pair` is set: some pair of nodes remained undecided

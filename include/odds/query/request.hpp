@@ -11,8 +11,7 @@ enum class Method : std::uint8_t {
   exact,  ///< depth-first search (Algorithm 4.2), no estimates; obeys the budget too
   /// From the bottom slice of the previous run (Li and Chen 98), with the verdicts of exact: for poses that follow each
   /// other. With the wide engine a run that its budget ends is taken up by the next one. With p_min < 1 it is as
-  /// time_critical; also, for some runs, where a budget was too short for it; and, with the wide engine, within less
-  /// than 5 us or 100 work units.
+  /// time_critical; also, for some runs, where a budget of more than 25 us and 500 work units was too short for it.
   incremental,
   time_critical,  ///< likeliest pair first (Algorithm 4.3)
 };

@@ -37,6 +37,7 @@ class KineticFront {
   void reset() noexcept {
     clear();
     lost_runs_ = 0;
+    irreplaceable_ = false;
     starved_ = 0.0;
     still_met_ = 1.0;
     pause_ = 0;
@@ -168,6 +169,7 @@ class KineticFront {
   /// Where most runs are ended by their budget, and what met does not meet for long, the likeliest pairs from the
   /// roots tell more. Means over some 16 runs.
   [[nodiscard]] bool is_no_use(const Outcome& outcome) noexcept {
+    if (outcome.irreplaceable) return false;
     constexpr double weight = 1.0 / 16.0;
     starved_ += weight * ((outcome.starved ? 1.0 : 0.0) - starved_);
     if (outcome.looked_at > 0) {
@@ -175,7 +177,7 @@ class KineticFront {
       still_met_ += weight * (still - still_met_);
     }
     if (starved_ < 0.1) next_pause_ = first_pause;
-    return starved_ > 0.5 && still_met_ < 0.95 && !outcome.irreplaceable;
+    return starved_ > 0.5 && still_met_ < 0.95;
   }
   /// Longer each time, until it is of use again.
   void give_up() noexcept {
