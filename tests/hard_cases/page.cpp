@@ -11,13 +11,13 @@
 namespace odds::hard_cases {
 namespace {
 
-constexpr const char* colours[] = {"#222", "#0072b2", "#d55e00"};
+constexpr const char* colours[] = {"#222", "#0072b2", "#009e73", "#d55e00"};
 constexpr double width = 900.0;
 constexpr double height = 130.0;
 
 double size_of(const Sample& s) { return std::hypot(s.force_n[0], s.force_n[1], s.force_n[2]); }
 
-// The size of the force over time: the exact run dark, 50 us blue, 1 us orange.
+// The size of the force over time: the exact run dark, 50 us blue, 5 us green, 1 us orange.
 std::string picture(const Outcome& outcome) {
   double most_n = 1e-9;
   double end_s = 1e-9;
@@ -60,7 +60,7 @@ std::optional<double> at_poses(const Figures& f, double report::ForceDifference:
 const char* class_of(bool good, bool judged) { return good ? "good" : judged ? "bad" : "weak"; }
 
 std::string safety_cell(const Figures& f) {
-  return fmt::format("<td class=\"{}\">{}</td>", class_of(f.safe(), true),
+  return fmt::format("<td class=\"{}\">{}</td>", class_of(f.safe(), f.safety_is_judged() || !f.harmful.empty()),
                      f.safe()            ? "safe"
                      : f.harmful.empty() ? "misses"
                                          : "harm");
@@ -93,7 +93,7 @@ std::string findings(const Figures& f) {
     }
   };
   add(f.harmful, true);
-  add(f.missed, true);
+  add(f.missed, f.safety_is_judged());
   add(f.off, f.feel_is_judged());
   return html;
 }
@@ -130,13 +130,14 @@ std::string counts(const std::vector<Tally>& tallies, double seconds_taken) {
              "beyond the case's bound. <b>Safe</b>: besides, no deep contact missed in two ticks in a row, and "
              "nothing falls through. <b>Feel</b>: contact forces within 7 % and 18° at the 95th percentile of "
              "those without a budget, at the same poses, and of the hand where two runs can be compared; contact "
-             "begins within a tick; at most 1 % of noise added. A microsecond is 20 pairs of nodes: how such "
-             "runs feel is told in brown, not judged.</p>\n<p>Force on the hand over time: <b>without a "
-             "budget</b>, <b style=\"color:{}\">50 µs</b> (1000 work units), <b style=\"color:{}\">1 µs</b> "
-             "(20). <i>Contacts</i>: the force of contacts on the tool, in each tick at the pose of the run "
+             "begins within a tick; at most 1 % of noise added. A microsecond is 20 pairs of nodes. Brown is "
+             "told, not judged: how 5 µs feel, what 1 µs misses.</p>\n<p>Force on the hand over time: <b>without a "
+             "budget</b>, <b style=\"color:{}\">50 µs</b> (1000 work units), <b style=\"color:{}\">5 µs</b> "
+             "(100), <b style=\"color:{}\">1 µs</b> (20). <i>Contacts</i>: the force of contacts on the tool, in each "
+             "tick at the pose of the run "
              "without a budget; <i>hand</i>: the force on the hand, each run on its own. Simulated time, the "
              "same on every run; it took {:.0f} s.</p>\n",
-             colours[1], colours[2], seconds_taken);
+             colours[1], colours[2], colours[3], seconds_taken);
 }
 
 }  // namespace

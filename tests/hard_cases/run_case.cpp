@@ -26,7 +26,7 @@ struct Budget {
   const char* name;
   std::uint64_t work_units;  // 0: no limit
 };
-constexpr Budget budgets[] = {{"none", 0}, {"50 us", 1000}, {"1 us", 20}};
+constexpr Budget budgets[] = {{"none", 0}, {"50 us", 1000}, {"5 us", 100}, {"1 us", 20}};
 
 /// The same meshes without a budget: whether the tool overlaps something, and how deeply.
 class Oracle {
