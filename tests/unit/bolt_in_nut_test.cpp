@@ -41,7 +41,7 @@ class BoltInItsNut : public ::testing::TestWithParam<const char*> {
 
 TEST_P(BoltInItsNut, IsHeldByAsMuchAsItIsDeep) {
   // A search that was never done before the bodies touched does not know them apart: from then on it knows the motion.
-  for (const std::uint64_t units : {1000, 5000, 20000, 0}) {
+  for (const std::uint64_t units : {1000U, 5000U, 20000U, 0U}) {
     auto sampled = std::move(Pair::make(nut, bolt)).value();
     auto all = std::move(Pair::make(nut, bolt, {.hit_capacity = 65536})).value();
     Request request;
