@@ -56,24 +56,21 @@ bool Renderer::begin() noexcept {
     world_->look();
     return true;
   }
+  fresh_ns_ = 0;
+  safety_.emplace(hand_->limits);
+  if (!begin_at_device()) return false;
+  world_->look();
+  return begin_at_device();  // it may have moved while that took its time
+}
+
+bool Renderer::begin_at_device() noexcept {
   DeviceState state;
   if (!hand_->device->read(0, state) || !finite(state)) return false;
   state_ = state;
   before_ = state;
-  fresh_ns_ = 0;
   energy_.reset(state);
-  safety_.emplace(hand_->limits);
-  const auto place_tool = [&] {
-    world_->set_state(hand_->tool,
-                      {{state.orientation.toRotationMatrix(), state.position_m}, Vec3::Zero(), Vec3::Zero()});
-  };
-  place_tool();
-  world_->look();
-  if (!hand_->device->read(0, state) || !finite(state)) return false;  // it may have moved while that took its time
-  state_ = state;
-  before_ = state;
-  energy_.reset(state);
-  place_tool();
+  world_->set_state(hand_->tool,
+                    {{state.orientation.toRotationMatrix(), state.position_m}, Vec3::Zero(), Vec3::Zero()});
   return true;
 }
 

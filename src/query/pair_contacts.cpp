@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "odds/math/tolerances.hpp"
 #include "odds/query/ray.hpp"
@@ -25,8 +24,6 @@ constexpr std::int64_t patch_finish_ns = 6500;
 constexpr std::int64_t hasty_finish_ns = 6500;   ///< of one that is hasty from the start
 constexpr std::int64_t single_finish_ns = 3000;  ///< of a single contact
 constexpr std::int64_t rough_finish_ns = 1500;   ///< of one more rough contact, their direction, and writing the answer
-
-constexpr double unbounded = std::numeric_limits<double>::infinity();
 
 /// Pairs of triangles that a patch has time for.
 std::uint32_t hits_in(double microseconds, double per_microsecond) noexcept {
@@ -77,15 +74,13 @@ void limit_to_believed(const PosedMeshes& meshes, double slack, Pair::Implementa
   }
 }
 
-/// What a sample of the rim says of the depth is taken for known as far as motion allows it; all of what one says that
-/// is complete, whose depth was bounded before, so that runs at one pose come to what they find there.
-void note_sample(const PosedMeshes& meshes, Pair::Implementation& pair) noexcept {
+/// What a finished patch of a part of the rim says of the depth is taken for known as far as motion allows it.
+void note_part(const PosedMeshes& meshes, Pair::Implementation& pair) noexcept {
   double deepest = 0.0;
   for (const Contact& contact : pair.answer.contacts) {
     const Vec3 place = contact.position - meshes.origin_a();
-    const double believed =
-        pair.answer.contacts_complete ? contact.depth : pair.known_depth.believed(place, contact.normal, meshes.pose());
-    deepest = std::max(deepest, std::min(contact.depth, believed));
+    deepest =
+        std::max(deepest, std::min(contact.depth, pair.known_depth.believed(place, contact.normal, meshes.pose())));
   }
   pair.known_depth.note(meshes.pose(), deepest);
 }
@@ -93,8 +88,7 @@ void note_sample(const PosedMeshes& meshes, Pair::Implementation& pair) noexcept
 /// Bodies that were never seen apart, and never measured, or elsewhere only, may be as deep as they are; but what they
 /// come from here on is known. Without it they would go through each other against a push that never grows.
 void note_first_contact(const PosedMeshes& meshes, Pair::Implementation& pair) noexcept {
-  const double most = pair.answer.contacts_complete ? unbounded : unmeasured_depth(pair);
-  pair.known_depth.note(meshes.pose(), std::min(deepest_of(pair.answer.contacts), most));
+  pair.known_depth.note(meshes.pose(), std::min(deepest_of(pair.answer.contacts), unmeasured_depth(pair)));
 }
 
 /// Whether what is known of the depth says nothing of contacts that were limited to it: it is of another side.
@@ -189,13 +183,12 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   if (pair.answer.contacts.empty()) return;
   pair.answer.contact_pairs = pair.patches.pairs_used();
   pair.answer.contacts_complete = pair.patches.finished() && all;
-  const bool known = pair.known_depth.known() && moved_little;
-  const bool sample = request.max_contacts > 1 && ended != Progressed::finished;
+  const bool whole = pair.answer.contacts_complete && ended == Progressed::finished;
   if (!pair.answer.contacts_complete) {
     limit_to_believed(meshes, 1.0, pair);
-  } else if (sample && known) {
+  } else if (!whole && request.max_contacts > 1 && pair.known_depth.known() && moved_little) {
     limit_to_believed(meshes, tolerances::sampled_depth, pair);
-  } else if (ended != Progressed::finished) {  // a single contact
+  } else if (!whole) {  // a single contact, or one far from where the depth was known
     for (Contact& contact : own_contacts(pair)) contact.depth = std::min(contact.depth, most_depth);
   }
   if (pair.patches.finished() && request.max_contacts > 1) {
@@ -215,13 +208,13 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
     pair.carried.keep(pair.answer.contacts, request.max_contacts, pair.hits.pairs(), pose_b_in_a,
                       pair.answer.contacts_complete ? 0 : pair.answer.contact_pairs);
   }
-  if (pair.answer.contacts_complete && ended == Progressed::finished) {
+  if (whole || (pair.answer.contacts_complete && request.max_contacts > 1)) {
     pair.known_depth.note(meshes.pose(), deepest_of(pair.answer.contacts));
   } else if (request.max_contacts > 1) {
-    if (pair.answer.contacts_complete ? !known : knows_nothing_here(moved_little, pair)) {
+    if (knows_nothing_here(moved_little, pair)) {
       note_first_contact(meshes, pair);
     } else if (pair.patches.finished()) {
-      note_sample(meshes, pair);
+      note_part(meshes, pair);
     }
   }
   if (!pair.answer.contacts_complete) return;

@@ -76,6 +76,8 @@ class Renderer {
   [[nodiscard]] double frame_overshoot_us() const noexcept { return frame_overshoot_us_; }
 
  private:
+  /// Reads the device as at time 0 and puts the tool there, at rest. False if it gives no position.
+  bool begin_at_device() noexcept;
   void read_device(std::int64_t now_ns) noexcept;
   void write_device(std::int64_t now_ns, const ode::Wrench& on_hand, TickRecord& record) noexcept;
   [[nodiscard]] TickView view(std::int64_t now_ns) noexcept;

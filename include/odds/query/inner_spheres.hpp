@@ -34,7 +34,8 @@ class InnerSpheres {
 
   /// Finds balls that touch the surface at two places (shrinking balls, Ma, Bae and Choi 2012) under points spread
   /// evenly over it, and keeps those that fill most, `count` (fewest .. most) at most. Refuses a shape without
-  /// polygons, and one that is not solid. 0.03 to 0.3 s, whatever the mesh's size; the same input gives the same spheres.
+  /// polygons, and one that is not solid. 0.03 to 0.3 s, whatever the mesh's size; the same input gives the same
+  /// spheres.
   static Result<InnerSpheres> pack(const std::shared_ptr<const Shape>& shape, std::uint32_t count = 128);
 
   [[nodiscard]] std::span<const Vec3> centers() const noexcept { return centers_; }  ///< mesh frame, metres

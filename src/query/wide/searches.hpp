@@ -16,7 +16,7 @@
 namespace odds::query::wide {
 
 /// Whether a search from the roots can find more than what earlier runs have left, where that does not last. With less
-/// it hardly gets to any leaves: `odds_hard_cases` is safe from 1 us on with what is left, and was not without.
+/// it hardly gets to any leaves.
 [[nodiscard]] inline bool is_enough_from_roots(const Budget& budget) noexcept {
   return budget.work_units >= 500 && budget.microseconds >= 25.0;
 }
