@@ -143,6 +143,7 @@ struct Rocking {
   const char* a;
   const char* b;
   double percent_of_20;   ///< at least, by 20 pairs of nodes a run, moved by 0.01 % of the size
+  double of_20_faster;    ///< the same, moved by 0.05 %
   double percent_of_100;  ///< at least, by 100 pairs of nodes a run, moved by 0.05 %
 };
 
@@ -194,15 +195,16 @@ class IncrementalSmallBudget : public ::testing::TestWithParam<Rocking> {};
 // contact all the same, where it is not gone by the next run.
 TEST_P(IncrementalSmallBudget, ProvesContactsThatLast) {
   EXPECT_GE(proved_percent(GetParam(), 1e-4, 20), GetParam().percent_of_20);
+  EXPECT_GE(proved_percent(GetParam(), 1e-3, 20), GetParam().of_20_faster);
   EXPECT_GE(proved_percent(GetParam(), 1e-3, 100), GetParam().percent_of_100);
 }
 
-INSTANTIATE_TEST_SUITE_P(Meshes, IncrementalSmallBudget,
-                         ::testing::Values(Rocking{"box:x=0.2,y=0.2,z=0.04,cells=8", "icosphere:radius=0.01", 97, 98},
-                                           Rocking{"torus_knot", "torus_knot", 80, 94},
-                                           Rocking{"bumpy_sphere", "bumpy_sphere", 80, 94},
-                                           Rocking{"gear", "gear", 80, 94},
-                                           Rocking{"torus", "box:x=0.1,y=0.1,z=0.1,cells=8", 97, 98}));
+INSTANTIATE_TEST_SUITE_P(
+    Meshes, IncrementalSmallBudget,
+    ::testing::Values(Rocking{"box:x=0.2,y=0.2,z=0.04,cells=8", "icosphere:radius=0.01", 97, 90, 98},
+                      Rocking{"torus_knot", "torus_knot", 95, 60, 94},
+                      Rocking{"bumpy_sphere", "bumpy_sphere", 95, 60, 94}, Rocking{"gear", "gear", 95, 60, 94},
+                      Rocking{"torus", "box:x=0.1,y=0.1,z=0.1,cells=8", 97, 90, 98}));
 
 INSTANTIATE_TEST_SUITE_P(AllVolumes, Incremental,
                          ::testing::Combine(::testing::ValuesIn(testing::all_kinds()), ::testing::Values(64U, 16384U)),

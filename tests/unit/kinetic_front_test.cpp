@@ -154,7 +154,7 @@ TEST(KineticFront, IsKeptWhereNothingReplacesIt) {
   KineticFront front = filled(100);
   for (int run = 0; run < 200; ++run) {
     front.move_to({}, reach);
-    front.note_end({.starved = true, .irreplaceable = true, .looked_at = 10, .still_met = 1});
+    front.note_end({.starved = true, .irreplaceable = true, .work = 25, .looked_at = 10, .still_met = 1});
     ASSERT_FALSE(front.pauses()) << run;
   }
   EXPECT_EQ(front.size(), 100U);
@@ -176,12 +176,12 @@ int starts_over(const KineticFront::Outcome& outcome, double step) {
 }
 
 TEST(KineticFront, StartsOverWhereAllOfItIsStale) {
-  const KineticFront::Outcome lost{.starved = true, .irreplaceable = true};
+  const KineticFront::Outcome lost{.starved = true, .irreplaceable = true, .work = 25};
   EXPECT_GE(starts_over(lost, 0.02), 3) << "it has moved by 80 % of its reach and found nothing";
   EXPECT_LE(starts_over(lost, 0.02), 5) << "what was begun needs its time";
   EXPECT_EQ(starts_over(lost, 1e-3), 0) << "it has hardly moved";
   EXPECT_EQ(starts_over({.irreplaceable = true}, 0.02), 0) << "it had time to look at all";
-  EXPECT_EQ(starts_over({.starved = true, .irreplaceable = true, .looked_at = 1, .still_met = 1}, 0.02), 0);
+  EXPECT_EQ(starts_over({.starved = true, .irreplaceable = true, .work = 25, .looked_at = 1, .still_met = 1}, 0.02), 0);
   EXPECT_EQ(starts_over({.starved = true}, 0.02), 0) << "a larger budget pauses instead";
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include "query/spread_step.hpp"
@@ -17,6 +18,7 @@ class Incremental {
   static void run(Task& task, KineticFront& front) noexcept {
     Incremental search(task, front);
     search.outcome_.resume_at = search.run();
+    search.outcome_.work = search.spent();
     search.outcome_.starved = task.result.ended == Progressed::spent;
     search.outcome_.irreplaceable = !is_enough_from_roots(task.request.budget);
     front.note_end(search.outcome_);
@@ -28,26 +30,41 @@ class Incremental {
 
   Incremental(Task& task, KineticFront& front) noexcept : task_(task), met_(task.encounter), front_(front) {}
 
-  /// The entries that met, then the others from where the last search stopped. Returns where this one stopped.
+  /// The entries that met, then those that the last search was going down into when it ended, so that even a few pairs
+  /// a run get to the leaves; then the others from where the last search stopped. Returns where this one stopped.
   std::uint32_t run() noexcept {
     const std::uint32_t kept = front_.size();
     const std::uint32_t crossing = front_.crossing();
-    const std::uint32_t middle = std::clamp(front_.resume_at(), crossing, kept);
+    const std::uint32_t left = std::clamp(front_.left_at(), crossing, kept);
+    const std::uint32_t middle = std::clamp(front_.resume_at(), crossing, left);
+    outcome_.left_at = left;
     const bool all = look_at_crossing(crossing);
+    if (goes_on() && task_.hits.empty() && !is_enough_from_roots(task_.request.budget)) look_around();
     if (!goes_on()) {
       leave_rest_open(0, crossing);
-      leave_rest_open(middle, kept);
+      leave_rest_open(left, kept);
+      leave_rest_open(middle, left);
       return middle;
     }
-    std::uint32_t stopped = look_at(middle, kept);
+    const std::uint32_t stopped = look_at_others(crossing, middle, left, kept);
+    if (!goes_on() && first_left_ != no_feature) outcome_.left_at = first_left_;
+    if (!all && goes_on()) task_.result.ended = task_.hits.empty() ? Progressed::spent : Progressed::enough;
+    return stopped;
+  }
+
+  std::uint32_t look_at_others(std::uint32_t crossing, std::uint32_t middle, std::uint32_t left,
+                               std::uint32_t kept) noexcept {
+    outcome_.left_at = look_at(left, kept);
+    if (!goes_on()) leave_rest_open(middle, left);
+    if (!goes_on() || outcome_.left_at != kept) return middle;
+    std::uint32_t stopped = look_at(middle, left);
     if (!goes_on()) {
       leave_rest_open(crossing, middle);
-      if (stopped == kept) stopped = crossing;
-    } else if (stopped == kept) {
-      stopped = look_at(crossing, middle);
-      outcome_.explored = stopped == middle && goes_on();
+      return stopped == left ? crossing : stopped;
     }
-    if (!all && goes_on()) task_.result.ended = task_.hits.empty() ? Progressed::spent : Progressed::enough;
+    if (stopped != left) return stopped;
+    stopped = look_at(crossing, middle);
+    outcome_.explored = stopped == middle && goes_on();
     return stopped;
   }
 
@@ -80,6 +97,46 @@ class Incremental {
     return true;
   }
 
+  /// What slides on goes from one leaf to the next: the neighbours of the two that met last, where none of those that
+  /// met is left. Far sooner there than in the order of the front.
+  void look_around() noexcept {
+    KineticFront::LastMet& last = front_.last_met();
+    if (!last.known) return;
+    last.known = false;
+    const SlotPair from{{last.a, last.b}};
+    if (!last.is_entry && !look_at_leaves(from)) return;
+    for (std::uint32_t side = 0; side < 2 && task_.hits.empty(); ++side) {
+      if (!may_go_on()) return;
+      task_.spending.spend_node_pairs(wide_lanes);
+      SlotPair pair = from;
+      const Slot first = from.of[side] - from.of[side] % wide_lanes;
+      for (unsigned lanes = overlapping_neighbours<L>(met_, side, from); lanes != 0; lanes &= lanes - 1U) {
+        pair.of[side] = first + static_cast<Slot>(std::countr_zero(lanes));
+        if (pair.of[side] == from.of[side] || !met_.are_leaves(pair.of[0], pair.of[1])) continue;
+        if (!look_at_leaves(pair)) return;
+      }
+    }
+  }
+  /// Two leaves that need not be an entry. False ends the search.
+  bool look_at_leaves(const SlotPair& pair) noexcept {
+    if (!may_go_on()) return false;
+    const std::size_t hits = task_.hits.size();
+    const bool goes_on = visit_leaves<L>(task_, pair.of[0], pair.of[1]);
+    if (task_.hits.size() > hits) {
+      note_met(pair.of[0], pair.of[1], false);
+      if (around_count_ < around_.size()) around_[around_count_++] = pair;
+    }
+    return goes_on;
+  }
+  void note_met(Slot a, Slot b, bool is_entry) noexcept { front_.last_met() = {a, b, is_entry, true}; }
+  /// Whether its hits are known already in this run.
+  [[nodiscard]] bool was_met_around(Slot a, Slot b) const noexcept {
+    for (std::size_t i = 0; i < around_count_; ++i) {
+      if (around_[i].of[0] == a && around_[i].of[1] == b) return true;
+    }
+    return false;
+  }
+
   [[nodiscard]] std::uint64_t spent() const noexcept {
     const Cost& cost = task_.spending.so_far();
     return cost.node_pairs + cost.triangle_pairs;
@@ -105,7 +162,7 @@ class Incremental {
       }
       if (!look_at(i)) {
         leave_rest_open(i + 1, end);
-        return i;
+        return i == begin ? i + 1 : i;  // else one that takes more than a whole run would be all that is looked at
       }
       ++i;
     }
@@ -122,7 +179,7 @@ class Incremental {
     double expiry = KineticFront::at_once;
     const std::size_t hits = task_.hits.size();
     const bool goes_on = test_leaves(entry.a, entry.b, expiry);
-    front_.set_met(i, task_.hits.size() > hits || (!goes_on && entry.met));
+    front_.set_met(i, task_.hits.size() > hits || was_met_around(entry.a, entry.b) || (!goes_on && entry.met));
     front_.set_expiry(i, goes_on ? expiry : KineticFront::at_once);
     return goes_on;
   }
@@ -179,7 +236,7 @@ class Incremental {
       } else {
         expiry = open(entry);
       }
-      entry.met = task_.hits.size() > hits;
+      entry.met = task_.hits.size() > hits || was_met_around(entry.a, entry.b);
       front_.add(entry, expiry);
       if (!goes_on) return leave();
       if (entry.met && task_.wanted > 1) go_elsewhere();
@@ -203,6 +260,7 @@ class Incremental {
       }
       task_.result.open = open;
     }
+    if (stack_.size != 0) first_left_ = front_.size();
     while (stack_.size != 0) {
       const SlotPair pair = stack_.take();
       front_.add({pair.of[0], pair.of[1], 0}, KineticFront::at_once);
@@ -211,8 +269,12 @@ class Incremental {
   }
 
   bool test_leaves(Slot a, Slot b, double& expiry) noexcept {
+    if (was_met_around(a, b)) return true;
+    const std::size_t hits = task_.hits.size();
     const LeafPairs pairs = compare_leaves<L>(task_, a, b);
-    if (!visit_triangles(task_, a, b, pairs)) {
+    const bool goes_on = visit_triangles(task_, a, b, pairs);
+    if (task_.hits.size() > hits) note_met(a, b, true);
+    if (!goes_on) {
       if (task_.result.ended == Progressed::spent) leave_open<L>(task_, {a, b, unranked});
       return false;
     }
@@ -234,6 +296,9 @@ class Incremental {
   KineticFront& front_;
   KineticFront::Outcome outcome_;
   std::uint64_t last_unit_ = std::numeric_limits<std::uint64_t>::max();  ///< for what is not yet known to meet
+  std::uint32_t first_left_ = no_feature;
+  std::array<SlotPair, 8> around_;
+  std::size_t around_count_ = 0;
   Slot slots_[2][2 * wide_stack_capacity];
   SlotPairs stack_{{slots_[0], slots_[1]}};
 };

@@ -36,7 +36,8 @@ class KineticFront {
   /// As if it were new.
   void reset() noexcept {
     clear();
-    lost_runs_ = 0;
+    last_met_ = {};
+    lost_work_ = 0;
     irreplaceable_ = false;
     starved_ = 0.0;
     still_met_ = 1.0;
@@ -58,9 +59,9 @@ class KineticFront {
   /// Notes where B stands now; `reach` bounds the distance of B's surface from its tree's origin. Starts from the roots
   /// if there is nothing yet, if the last search found no room, or if much of what is kept is of no use any more.
   void move_to(const math::Pose& pose, double reach) noexcept {
-    const bool lost = irreplaceable_ && lost_runs_ >= patience && travelled_ > lost_after * reach;
+    const bool lost = irreplaceable_ && lost_work_ >= patience && travelled_ > lost_after * reach;
     if (size_ == 0 || overflowed_ || lost || (!fresh_ && size_ > 2 * fresh_size_ + least_size)) {
-      lost_runs_ = 0;
+      lost_work_ = 0;
       clear();
       fresh_ = true;
       travelled_ = 0.0;
@@ -73,11 +74,13 @@ class KineticFront {
   }
   /// How a search from a front went.
   struct Outcome {
-    std::uint32_t resume_at = 0;      ///< where the next one begins, after the entries that met
+    std::uint32_t left_at = 0;        ///< where that begins which the search was going down into when it ended
+    std::uint32_t resume_at = 0;      ///< where the next one begins, after these and the entries that met
     std::uint32_t next_crossing = 0;  ///< which of the entries that met is next
     bool explored = false;            ///< nothing is left that had expired, but for what met
     bool starved = false;             ///< its budget ended it
     bool irreplaceable = false;       ///< such a budget finds nothing without a front
+    std::uint64_t work = 0;           ///< units that it took
     std::uint32_t looked_at = 0;      ///< of the entries that met before
     std::uint32_t still_met = 0;
   };
@@ -87,12 +90,13 @@ class KineticFront {
     if (fresh_) fresh_size_ = size_;
     fresh_ = fresh_ && !outcome.explored;
     irreplaceable_ = outcome.irreplaceable;
-    lost_runs_ = outcome.starved && outcome.looked_at == 0 ? lost_runs_ + 1 : 0;
+    lost_work_ = outcome.starved && outcome.looked_at == 0 ? lost_work_ + outcome.work : 0;
     if (is_no_use(outcome)) return give_up();
     move_changed();
     const bool may_miss = !outcome.explored || fresh_ || overflowed_ || crossing_ > 0;
     next_expiry_ = may_miss ? at_once : earliest_;
     resume_at_ = outcome.resume_at;
+    left_at_ = outcome.left_at;
     next_crossing_ = outcome.next_crossing;
   }
 
@@ -101,6 +105,7 @@ class KineticFront {
   [[nodiscard]] std::uint32_t size() const noexcept { return size_; }
   /// How many entries, from the first on, met in the last search.
   [[nodiscard]] std::uint32_t crossing() const noexcept { return crossing_; }
+  [[nodiscard]] std::uint32_t left_at() const noexcept { return left_at_; }
   [[nodiscard]] std::uint32_t resume_at() const noexcept { return resume_at_; }
   [[nodiscard]] std::uint32_t next_crossing() const noexcept { return next_crossing_; }
   /// Whether the two leaves of an entry have triangles that meet.
@@ -108,6 +113,14 @@ class KineticFront {
     if (met != entries_[index].met) changed_[changed_count_++] = index;
     entries_[index].met = met;
   }
+  /// Two leaves with triangles that met in the last run.
+  struct LastMet {
+    tree::Slot a = 0;
+    tree::Slot b = 0;
+    bool is_entry = false;
+    bool known = false;
+  };
+  [[nodiscard]] LastMet& last_met() noexcept { return last_met_; }
   [[nodiscard]] double travelled() const noexcept { return travelled_; }
   [[nodiscard]] bool expired(std::uint32_t index) const noexcept { return !(travelled_ < expiries_[index]); }
   /// The first that has expired of those from `from` on, before `end`; `end`: none. Every search passes over each entry
@@ -145,9 +158,9 @@ class KineticFront {
 
  private:
   static constexpr std::uint32_t least_size = 64;
-  /// Runs in a row that found nothing to meet and were ended by their budget, and the share of B's reach that it has
-  /// moved since the front was new, after which all of it is stale: what opening it took is not worth keeping.
-  static constexpr std::uint32_t patience = 8;
+  /// Units of runs in a row that found nothing to meet and were ended by their budget, and the share of B's reach that
+  /// it has moved since the front was new, after which all of it is stale: what opening it took is not worth keeping.
+  static constexpr std::uint64_t patience = 200;
   static constexpr double lost_after = 0.1;
   static constexpr std::uint32_t first_pause = 64;
   static constexpr std::uint32_t longest_pause = 8192;
@@ -156,6 +169,7 @@ class KineticFront {
     size_ = 0;
     crossing_ = 0;
     resume_at_ = 0;
+    left_at_ = 0;
     next_crossing_ = 0;
     changed_count_ = 0;
     overflowed_ = false;
@@ -210,8 +224,9 @@ class KineticFront {
   std::uint32_t fresh_size_ = 0;
   std::uint32_t crossing_ = 0;
   std::uint32_t resume_at_ = 0;
+  std::uint32_t left_at_ = 0;
   std::uint32_t next_crossing_ = 0;
-  std::uint32_t lost_runs_ = 0;
+  std::uint64_t lost_work_ = 0;
   bool irreplaceable_ = false;
   double next_expiry_ = at_once;
   double earliest_ = at_once;  ///< expiry of what the search that is under way has passed over
@@ -223,6 +238,7 @@ class KineticFront {
   bool fresh_ = false;
   bool overflowed_ = false;
   double travelled_ = 0.0;
+  LastMet last_met_;
   math::Pose pose_;
 };
 

@@ -104,6 +104,17 @@ ODDS_LANES_INLINE Expanded<L> expand(const Encounter& met, const SlotPair& pair)
   return expanded;
 }
 
+/// The lanes of the node in which one side's slot stands whose volumes overlap the other side's slot, its own among
+/// them.
+template <class L>
+[[nodiscard]] unsigned overlapping_neighbours(const Encounter& met, std::uint32_t side, const SlotPair& pair) noexcept {
+  const Slot other = pair.of[1 - side];
+  const Turn& into = met.turn_into(side);
+  const TurnedBox box = turn(met.nodes(1 - side)[other / wide_lanes], other % wide_lanes, into);
+  const typename L::Float gap = gaps<L, false>(met.nodes(side)[pair.of[side] / wide_lanes], box, into);
+  return L::less_equal(gap, L::all(met.margin()));
+}
+
 /// Stands for a rank that nobody has computed: above all others.
 inline constexpr float unranked = 1e30F;
 
