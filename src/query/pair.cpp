@@ -288,6 +288,18 @@ const Answer& Pair::run(const math::Pose& pose_b_in_a, const Request& request) n
   return pair.answer;
 }
 
+void Pair::note_apart(const math::Pose& pose_b_in_a) noexcept {
+  Implementation& pair = *implementation_;
+  if (!pose_b_in_a.is_rigid(tolerances::pose_orthonormality)) return;
+  std::visit(
+      [&](const auto& a) {
+        using Tree = std::remove_cvref_t<decltype(a)>;
+        const Tree& b = *std::get_if<Tree>(&pair.b->data().tree);
+        const PosedMeshes meshes(pair.a->mesh(), pair.b->mesh(), a.origin(), b.origin(), pose_b_in_a);
+        note_clear(meshes, pose_b_in_a, {.solids = true}, pair);
+      },
+      pair.a->data().tree);
+}
 std::uint32_t Pair::slice_size() const noexcept {
   if (implementation_->a->volume() != volume::Kind::wide) return implementation_->slice.size();
   return std::max(implementation_->front.size(), 1U);
@@ -300,6 +312,7 @@ void Pair::reset() noexcept {
   implementation_->slice.reset();
   implementation_->front.reset();
   implementation_->previous_normal.setZero();
+  implementation_->came.setZero();
   implementation_->known_depth.forget();
   implementation_->known_direction.forget();
   implementation_->carried.forget();

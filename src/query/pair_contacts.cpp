@@ -19,6 +19,7 @@ constexpr double patch_base_us = 25.0;
 // Fewer may leave a gap in the rim of even two boxes, and the direction of a patch needs all of its rim.
 constexpr double least_hits = 64.0;
 constexpr double most_hits = 65536.0;
+constexpr std::uint32_t pairs_of_a_depth = 12;  ///< a patch of fewer may show anything less than how deep bodies are
 // What a patch takes from hearing of the deadline to its end: a ray or two, and one made hastily of what there is.
 constexpr std::int64_t patch_finish_ns = 6500;
 constexpr std::int64_t hasty_finish_ns = 6500;   ///< of one that is hasty from the start
@@ -91,6 +92,14 @@ void note_first_contact(const PosedMeshes& meshes, Pair::Implementation& pair) n
   pair.known_depth.note(meshes.pose(), std::min(deepest_of(pair.answer.contacts), unmeasured_depth(pair)));
 }
 
+/// Bodies that met since they were apart: whence, by the motion of the first place that was found.
+void note_side(const PosedMeshes& meshes, Pair::Implementation& pair) noexcept {
+  if (!pair.came.isZero() || !pair.known_depth.known() || pair.known_depth.depth() > 0.0) return;
+  const tree::TriangleCorners met = meshes.corners_b(pair.hits.pairs().front().b);
+  const Vec3 came = pair.known_depth.motion_of((met[0] + met[1] + met[2]) / 3.0, meshes.pose());
+  if (came.norm() > unmeasured_depth(pair)) pair.came = came.normalized();
+}
+
 /// Whether what is known of the depth says nothing of contacts that were limited to it: it is of another side.
 bool knows_nothing_here(bool moved_little, const Pair::Implementation& pair) noexcept {
   return !pair.known_depth.known() ||
@@ -101,7 +110,9 @@ bool knows_nothing_here(bool moved_little, const Pair::Implementation& pair) noe
 void make_rough_contacts(const PosedMeshes& meshes, const Vec3* known_normal, bool moved_little, const Request& request,
                          Pair::Implementation& pair, Spending& spending) noexcept {
   const Vec3 centre_b = meshes.pose().translation + meshes.origin_a();
-  const Vec3 towards_a = pair.previous_normal.isZero() ? Vec3(meshes.origin_a() - centre_b) : pair.previous_normal;
+  const Vec3 by_place = (meshes.origin_a() - centre_b).stableNormalized();
+  const Vec3 towards_a =
+      pair.previous_normal.isZero() ? Vec3(by_place + tolerances::came_side * pair.came) : pair.previous_normal;
   spending.reserve_for_contacts(rough_finish_ns);
   const auto room =
       std::span(pair.rough).first(std::min(static_cast<std::size_t>(request.max_contacts), pair.rough.size()));
@@ -140,6 +151,7 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   const double smaller = std::min(pair.a->mesh().size(), pair.b->mesh().size());
   const Vec3* known_normal = pair.known_direction.at(pose_b_in_a, smaller);
   const bool moved_little = most_depth - pair.known_depth.depth() <= tolerances::coherent_motion * smaller;
+  note_side(meshes, pair);
   if (!spending.may_make_contacts()) {
     make_rough_contacts(meshes, known_normal, moved_little, request, pair, spending);
     return;
@@ -160,6 +172,7 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
     input.previous_normal = &pair.previous_normal;
     input.previous_position = &pair.previous_position;
   }
+  if (!pair.came.isZero()) input.came = &pair.came;
   input.known_normal = known_normal;
   // Other searches stop at as many as there is time for.
   const bool found_all = searched.method == Method::incremental && pair.a->volume() == volume::Kind::wide;
@@ -213,7 +226,7 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   } else if (request.max_contacts > 1) {
     if (knows_nothing_here(moved_little, pair)) {
       note_first_contact(meshes, pair);
-    } else if (pair.patches.finished()) {
+    } else if (pair.patches.finished() && pair.patches.pairs_used() >= pairs_of_a_depth) {
       note_part(meshes, pair);
     }
   }

@@ -45,6 +45,7 @@ struct Pair::Implementation {
   Recalibration recalibration;            ///< of stated probabilities
   Vec3 previous_normal = Vec3::Zero();    ///< of the last run's first contact, in A's frame; zero: none
   Vec3 previous_position = Vec3::Zero();  ///< of that contact
+  Vec3 came = Vec3::Zero();  ///< how B came to where it met A since they were apart, unit, A's frame; zero: unknown
   KnownDepth known_depth;
   KnownDirection known_direction;
   CarriedContacts carried;

@@ -34,6 +34,7 @@ Vec3 side_of_bodies(const PatchView& view) noexcept {
   if (input.solid_b) side = centre - input.reference_b;
   side = unit_or_zero(side);
   if (input.previous_normal != nullptr) side += tolerances::previous_side * *input.previous_normal;
+  if (input.came != nullptr) side += tolerances::came_side * *input.came;
   return side;
 }
 

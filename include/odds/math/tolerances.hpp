@@ -51,6 +51,9 @@ inline constexpr double snap_to = 0.95;  ///< see snap_from
 /// Weight of the last normal against the bodies' places when the side of a sheet is chosen.
 /// Test: ContactPatch.SheetPushesTowardsTheBody.
 inline constexpr double previous_side = 0.3;
+/// Weight of the side from which bodies came when they met against their places: a body stays on its side of a sheet
+/// until the two are apart. Test: SheetInAHurry.
+inline constexpr double came_side = 1.5;
 /// Below this cosine against the side of the bodies a direction is on the wrong side of a sheet.
 inline constexpr double weak_side = 0.1;
 /// Bodies are pressed together by this part of a triangle's side before directions are compared: it decides only where

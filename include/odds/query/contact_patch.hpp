@@ -57,6 +57,8 @@ struct PatchInput {
   Vec3 reference_b = Vec3::Zero();          ///< centre of B's body, in A's frame
   const Vec3* previous_normal = nullptr;    ///< unit; the first contact's normal of the last run, in A's frame, or null
   const Vec3* previous_position = nullptr;  ///< where that contact was, in A's frame, or null
+  /// How B came to where it met A, unit, in A's frame, or null: it stays on its side of a sheet.
+  const Vec3* came = nullptr;
   /// Direction of the last patch of bodies that have hardly moved since, or null: that of a patch made in a hurry.
   const Vec3* known_normal = nullptr;
   /// Where the hits are a part of all pairs: how deep the bodies are believed to be in each other, metres. What is left
