@@ -9,6 +9,7 @@
 #include "ode/last_error.hpp"
 #include "ode/pair_table.hpp"
 #include "ode/statistics.hpp"
+#include "ode/step_motion.hpp"
 
 namespace odds::ode {
 namespace {
@@ -28,11 +29,22 @@ query::Request request_for(const Settings& settings, int limit) noexcept {
 }
 
 // Whether the most probable pair of cells stands in for contacts. A hit that is proved or passed the caller's own
-// threshold needs a contact to be felt; an undecided query follows the policy.
-bool use_cell_pair(const query::Answer& answer, const Settings& settings) noexcept {
+// threshold needs a contact to be felt; an undecided query follows the policy, which also holds on to what was a hit a
+// moment ago.
+bool use_cell_pair(const query::Answer& answer, const Settings& settings, std::uint32_t runs_undecided) noexcept {
   if (!answer.contacts.empty() || !answer.has_cell_pair) return false;
   if (answer.basis != query::Basis::budget) return answer.verdict == query::Verdict::hit;
-  return settings.undecided_policy == ODDS_UNDECIDED_HIT && answer.probability > settings.undecided_probability;
+  constexpr std::uint32_t still_touching = 16;  // runs: what met a moment ago and is not proved apart
+  return settings.undecided_policy == ODDS_UNDECIDED_HIT &&
+         (answer.probability > settings.undecided_probability || runs_undecided <= still_touching);
+}
+
+void count_undecided(const query::Answer& answer, PairEntry& entry) noexcept {
+  if (answer.basis == query::Basis::budget) {
+    entry.runs_undecided = std::min(entry.runs_undecided + 1, PairEntry::long_ago);
+  } else {
+    entry.runs_undecided = answer.verdict == query::Verdict::hit ? 0 : PairEntry::long_ago;
+  }
 }
 
 std::span<const query::Contact> contacts_to_give(PairEntry& entry, const query::Answer& answer,
@@ -133,6 +145,18 @@ int give_held(PairEntry& entry, const Settings& settings, const math::Pose& pose
   return writer.count();
 }
 
+// Bodies that were not near a step ago were apart then. Those that rest without being asked for have contacts; and in
+// the first step nobody knows.
+void note_if_apart(PairEntry& entry, dGeomID a, dGeomID b, const math::Pose& pose_a,
+                   const math::Pose& pose_b) noexcept {
+  if (current_step == nullptr) return;
+  const StepMotion& step = *current_step;
+  if (entry.asked_in + 1 < step.number && entry.last.contacts == 0 && entry.last.verdict == ODDS_CLEAR) {
+    entry.pair->note_apart(before_step(a, pose_a, step.step_s).inverse() * before_step(b, pose_b, step.step_s));
+  }
+  entry.asked_in = step.number;
+}
+
 // Precondition: this thread holds `entry.busy`, and `entry.pair` is set.
 int answer_pair(PairEntry& entry, dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int skip) noexcept {
   const bool o1_is_a = entry.a == &own_data(o1);
@@ -150,12 +174,14 @@ int answer_pair(PairEntry& entry, dGeomID o1, dGeomID o2, int flags, dContactGeo
   const math::Pose b_in_a = pose_a->inverse() * *pose_b;
   ContactWriter writer(o1, o2, limit, contacts, skip);
   if (gives_only_held()) return give_held(entry, settings, *pose_a, b_in_a, o1_is_a, writer);
+  note_if_apart(entry, o1_is_a ? o1 : o2, o1_is_a ? o2 : o1, *pose_a, *pose_b);
   const query::Answer& answer = entry.pair->run(b_in_a, request_for(settings, limit));
   count_basis(answer.basis);
+  count_undecided(answer, entry);
   entry.last = record_of(answer, *pose_a);
   const std::span<const query::Contact> given = contacts_to_give(entry, answer, settings, b_in_a);
   for (const query::Contact& contact : given) write_contact(writer, contact, *pose_a, o1_is_a);
-  if (given.empty() && use_cell_pair(answer, settings)) {
+  if (given.empty() && use_cell_pair(answer, settings, entry.runs_undecided)) {
     // A place and a direction, but no push: a depth that nobody has measured could throw a body away.
     query::Contact contact = answer.cell_pair;
     if (answer.basis == query::Basis::budget) contact.depth = 0.0;

@@ -28,6 +28,9 @@ class HeldContacts {
   /// Runs that add contacts and do not find one again, after which it is let go: a rim of which each run finds a tenth
   /// is found in fewer.
   static constexpr int most_added = 40;
+  /// Of the smaller body's size: while bodies have moved less, all contacts that a finished run found are trusted more
+  /// than the few that a starved one finds.
+  static constexpr double most_trusted = 0.01;
   /// Cosine above which two contacts push to the same side.
   static constexpr double same_side = 0.5;
   /// A stalled processor is away for some milliseconds.
@@ -46,8 +49,9 @@ class HeldContacts {
   [[nodiscard]] std::span<const query::Contact> best_of(const query::Answer& answer, const math::Pose& b_in_a,
                                                         double size) noexcept;
 
-  /// Takes the place of all that was held. `careful`: not what a run gave that had no time to measure.
-  void keep(std::span<const query::Contact> found, const math::Pose& b_in_a, bool careful) noexcept;
+  /// Takes the place of all that was held. `careful`: not what a run gave that had no time to measure; `complete`: all
+  /// that there is.
+  void keep(std::span<const query::Contact> found, const math::Pose& b_in_a, bool careful, bool complete) noexcept;
 
   /// Whether what `at` gave last is better than what a run gives now that had no time to measure: made with care, and
   /// either not long ago, for bodies that turn come to touch in other places, or of bodies that have hardly moved
@@ -61,6 +65,10 @@ class HeldContacts {
 
  private:
   void add(std::span<const query::Contact> found, const math::Pose& b_in_a, double size) noexcept;
+  void add_one(const query::Contact& contact, bool trusted, const math::Pose& b_in_a, double size) noexcept;
+  [[nodiscard]] bool is_trusted(const math::Pose& b_in_a, double size) const noexcept;
+  [[nodiscard]] bool agrees(const Vec3& normal, const math::Pose& b_in_a) const noexcept;
+  void move(std::size_t from, std::size_t to) noexcept;
   void let_go_of_overlaps(const math::Pose& b_in_a, double size) noexcept;
 
   std::array<query::HeldContact, most> held_;
@@ -68,6 +76,8 @@ class HeldContacts {
   std::array<query::Contact, most> touching_;
   std::size_t count_ = 0;
   math::Pose made_at_;
+  std::array<bool, most> complete_{};  ///< of each, whether a run gave it that gave all
+  math::Pose complete_at_;             ///< where that was
   bool careful_ = false;
   bool rests_ = false;
   int runs_ = 0;  // since what is held was made

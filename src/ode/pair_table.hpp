@@ -21,8 +21,11 @@ struct PairEntry {
   oddsAnswer last = {};             ///< with g1 = a
   HeldContacts held;
   bool answered = false;
-  std::atomic<bool> busy{false};          ///< in use by a thread
-  std::atomic<PairEntry*> next{nullptr};  ///< in its bucket
+  static constexpr std::uint32_t long_ago = 1U << 16U;
+  std::uint32_t runs_undecided = long_ago;  ///< since the last that proved a hit; `long_ago` after one that proved none
+  std::uint64_t asked_in = 0;               ///< StepMotion::number of the last call
+  std::atomic<bool> busy{false};            ///< in use by a thread
+  std::atomic<PairEntry*> next{nullptr};    ///< in its bucket
 };
 
 /// A fixed number of buckets with chains. `find` runs in the loop, wait-free, also while another thread inserts.

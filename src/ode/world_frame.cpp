@@ -27,9 +27,12 @@ Result<FrameBudget> make_frame_budget(const WorldOptions& options, std::size_t b
 }
 
 void collide_frame(dSpaceID space, void* data, dNearCallback* callback, oddsFrameBudget* budget, dGeomID attention,
-                   bool is_last_part, StepSummary& summary) noexcept {
+                   bool is_last_part, StepMotion& motion, StepSummary& summary) noexcept {
   if (budget == nullptr) {
+    ++motion.number;
+    current_step = &motion;
     dSpaceCollide(space, data, callback);
+    current_step = nullptr;
     return;
   }
   if (attention != nullptr) {

@@ -6,6 +6,7 @@
 #include "odds/math/error.hpp"
 #include "odds/ode/odds_frame.h"
 #include "odds/ode/world.hpp"
+#include "ode/step_motion.hpp"
 
 namespace odds::ode {
 
@@ -23,8 +24,9 @@ using FrameBudget = std::unique_ptr<oddsFrameBudget, FrameBudgetDeleter>;
 [[nodiscard]] Result<FrameBudget> make_frame_budget(const WorldOptions& options, std::size_t bodies);
 
 /// dSpaceCollide within the budget, if there is one, or the next part of it; notes what all parts have left out with the
-/// last. What is near to the geom `attention`, which may be null, matters most.
+/// last. What is near to the geom `attention`, which may be null, matters most; `motion` counts the
+/// calls.
 void collide_frame(dSpaceID space, void* data, dNearCallback* callback, oddsFrameBudget* budget, dGeomID attention,
-                   bool is_last_part, StepSummary& summary) noexcept;
+                   bool is_last_part, StepMotion& motion, StepSummary& summary) noexcept;
 
 }  // namespace odds::ode

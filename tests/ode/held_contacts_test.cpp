@@ -19,7 +19,7 @@ math::Pose moved(const Vec3& by) { return {Mat3::Identity(), by}; }
 TEST(HeldContacts, DepthFollowsTheBodies) {
   HeldContacts held;
   const query::Contact found[] = {contact_at({0.1, 0.2, 0.5}, -Vec3::UnitZ(), 0.01)};
-  held.keep(found, {}, true);
+  held.keep(found, {}, true, true);
   const auto same = held.at({}, 1.0);
   ASSERT_EQ(same.size(), 1U);
   EXPECT_NEAR(same[0].depth, 0.01, 1e-15);
@@ -30,7 +30,7 @@ TEST(HeldContacts, DepthFollowsTheBodies) {
   EXPECT_EQ(held.at(moved({0, 0, 0.0115}), 1.0)[0].depth, 0.0) << "parted by a little";
   EXPECT_TRUE(held.at(moved({0, 0, 0.02}), 1.0).empty()) << "parted";
   EXPECT_TRUE(held.at({}, 1.0).empty()) << "let go for good";
-  held.keep(found, {}, true);
+  held.keep(found, {}, true, true);
   EXPECT_TRUE(held.at(moved({0.03, 0, 0}), 1.0).empty()) << "slid off";
 }
 
@@ -38,24 +38,24 @@ TEST(HeldContacts, WhatIsKeptTakesThePlaceOfAll) {
   HeldContacts held;
   const query::Contact careful[] = {contact_at({0, 0, 0}, Vec3::UnitZ(), 0.001),
                                     contact_at({0.5, 0, 0}, Vec3::UnitZ(), 0.003)};
-  held.keep(careful, {}, true);
+  held.keep(careful, {}, true, true);
   EXPECT_TRUE(held.better_than_rough());
   const auto two = held.at({}, 1.0);
   ASSERT_EQ(two.size(), 2U);
   EXPECT_EQ(two[0].depth, 0.003) << "deepest first";
   EXPECT_EQ(two[0].triangle_a, 3U);
   std::vector<query::Contact> many(20, careful[0]);
-  held.keep(many, {}, false);
+  held.keep(many, {}, false, false);
   EXPECT_FALSE(held.better_than_rough());
   EXPECT_EQ(held.at({}, 1.0).size(), HeldContacts::most);
-  held.keep({}, {}, true);
+  held.keep({}, {}, true, true);
   EXPECT_TRUE(held.at({}, 1.0).empty());
 }
 
 TEST(HeldContacts, CareGrowsStaleWhereBodiesMove) {
   HeldContacts held;
   const query::Contact careful[] = {contact_at({0, 0, 0}, Vec3::UnitZ(), 0.001)};
-  held.keep(careful, {}, true);
+  held.keep(careful, {}, true, true);
   const math::Pose slid = moved({2.0 * HeldContacts::rest, 0, 0});
   for (int run = 0; run < HeldContacts::most_runs; ++run) {
     EXPECT_EQ(held.at(slid, 1.0).size(), 1U);
@@ -68,7 +68,7 @@ TEST(HeldContacts, CareGrowsStaleWhereBodiesMove) {
 TEST(HeldContacts, CareDoesNotGrowStaleAtRest) {
   HeldContacts held;
   const query::Contact careful[] = {contact_at({0, 0, 0}, Vec3::UnitZ(), 0.001)};
-  held.keep(careful, {}, true);
+  held.keep(careful, {}, true, true);
   const math::Pose trembling = moved({0.5 * HeldContacts::rest, 0, 0});
   for (int run = 0; run < 1000; ++run) {
     EXPECT_EQ(held.at(trembling, 1.0).size(), 1U);
@@ -142,7 +142,7 @@ TEST(HeldContacts, WhatNoRunFindsAgainIsLetGo) {
   rough.contacts_complete = false;
   rough.contact_pairs = 2;
   rough.contacts = found;
-  held.keep(careful, {}, true);
+  held.keep(careful, {}, true, true);
   int given = 0;
   const math::Pose rocked = moved({0, 0.5 * HeldContacts::most_slip, 0});
   for (int run = 0; run < 60; ++run) {
@@ -152,7 +152,7 @@ TEST(HeldContacts, WhatNoRunFindsAgainIsLetGo) {
   }
   EXPECT_GE(given, 60 - HeldContacts::most_runs - 1) << "care is preferred for a while, and only once";
   // A guess in a wrong direction does not grow into a wall.
-  held.keep(guessed, {}, false);
+  held.keep(guessed, {}, false, false);
   for (int run = 1; run <= 20; ++run) {
     const auto contacts = held.best_of(rough, moved({0.001 * run, 0, 0}), 1.0);
     for (const query::Contact& contact : contacts) EXPECT_GT(contact.normal.z(), 0.9);
@@ -162,7 +162,7 @@ TEST(HeldContacts, WhatNoRunFindsAgainIsLetGo) {
 TEST(HeldContacts, WhereNothingIsDecidedThePlaneOfTheLastTouchHolds) {
   HeldContacts held;
   const query::Contact found[] = {contact_at({0, 0, 0}, Vec3::UnitZ(), 0.001)};
-  held.keep(found, {}, true);
+  held.keep(found, {}, true, true);
   const query::Answer undecided = [] {
     query::Answer answer;
     answer.basis = query::Basis::budget;
@@ -173,6 +173,38 @@ TEST(HeldContacts, WhereNothingIsDecidedThePlaneOfTheLastTouchHolds) {
   ASSERT_EQ(given.size(), 1U) << "farther than a contact slides that can be made anew";
   EXPECT_NEAR(given[0].depth, 0.0014, 1e-12) << "it goes on to follow the bodies";
   EXPECT_TRUE(held.best_of(undecided, moved({1.2 * HeldContacts::most_slip_undecided, 0, 0}), 1.0).empty());
+}
+
+/// What is given where two contacts of a finished run are held, and a starved one, 20 runs later and after `motion`,
+/// finds one that pushes along x.
+std::vector<query::Contact> given_beside_two(const Vec3& motion) {
+  HeldContacts held;
+  const query::Contact complete[] = {contact_at({0, 0, 0}, -Vec3::UnitZ(), 0.004),
+                                     contact_at({0.5, 0, 0}, -Vec3::UnitZ(), 0.004)};
+  held.keep(complete, {}, true, true);
+  for (int run = 0; run < 20; ++run) static_cast<void>(held.at(moved(0.5 * motion), 1.0));
+  const query::Contact sideways[] = {contact_at({0.2, 0.1, 0}, Vec3::UnitX(), 0.02)};
+  query::Answer few;
+  few.verdict = query::Verdict::hit;
+  few.basis = query::Basis::proved;
+  few.contacts = sideways;
+  few.contacts_complete = false;
+  few.contact_pairs = 3;
+  const auto given = held.best_of(few, moved(motion), 1.0);
+  return {given.begin(), given.end()};
+}
+
+TEST(HeldContacts, AllOfAFinishedRunOutweighAFewOfAStarvedOne) {
+  const auto towards = given_beside_two({0.002, 0, -0.001});
+  ASSERT_EQ(towards.size(), 3U) << "there may be another wall, which nobody has measured";
+  EXPECT_NEAR(towards[0].depth, 0.005, 1e-12);
+  EXPECT_NEAR(towards[1].depth, 0.005, 1e-12);
+  EXPECT_EQ(towards[2].depth, 0.0);
+  EXPECT_EQ(towards[2].normal, Vec3(Vec3::UnitX()));
+  EXPECT_EQ(given_beside_two({-0.002, 0, -0.001}).size(), 2U) << "nothing has come deeper there";
+  const auto far = given_beside_two({1.5 * HeldContacts::most_trusted, 0, -0.001});
+  ASSERT_EQ(far.size(), 1U) << "of elsewhere";
+  EXPECT_EQ(far[0].normal, Vec3(Vec3::UnitX()));
 }
 
 math::Pose pose_of(dBodyID body) {

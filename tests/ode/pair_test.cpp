@@ -179,6 +179,31 @@ TEST_F(UndecidedPair, GivesNothingIfTheProbabilityIsTooLow) {
   EXPECT_EQ(answer_of(a, b).basis, ODDS_BUDGET);
 }
 
+TEST_F(UndecidedPair, HoldsOnToWhatMetAMomentAgo) {
+  ASSERT_EQ(dGeomOddsMeshSetUndecidedPolicy(b, ODDS_UNDECIDED_HIT, 0.999), 1);
+  const auto decided_at = [&](double x) {
+    dGeomOddsMeshSetWorkBudget(a, 0);
+    dGeomSetPosition(b, x, 0.1, 0);
+    collide(a, b);
+    EXPECT_EQ(answer_of(a, b).basis, ODDS_PROVED);
+    dGeomOddsMeshSetWorkBudget(a, 1);
+    dGeomSetPosition(b, 0.2, -1.5, 0);  // nothing of what was held is there
+  };
+  decided_at(1.9);
+  for (int run = 0; run < 16; ++run) {
+    const auto contacts = collide(a, b);
+    ASSERT_EQ(contacts.size(), 1u) << run;
+    EXPECT_EQ(contacts[0].depth, 0.0) << "nobody has measured it";
+    EXPECT_EQ(answer_of(a, b).from_cell_pair, 1);
+    EXPECT_EQ(answer_of(a, b).basis, ODDS_BUDGET);
+  }
+  EXPECT_TRUE(collide(a, b).empty()) << "that was not a moment ago";
+  decided_at(1.9);
+  EXPECT_FALSE(collide(a, b).empty());
+  decided_at(2.5);
+  EXPECT_TRUE(collide(a, b).empty()) << "proved apart since";
+}
+
 TEST_F(UndecidedPair, GivesNothingIfEitherGeomSaysSo) {
   dGeomOddsMeshSetUndecidedPolicy(a, ODDS_UNDECIDED_HIT, 0.0);
   dGeomOddsMeshSetUndecidedPolicy(b, ODDS_UNDECIDED_NO_CONTACT, 0.0);
