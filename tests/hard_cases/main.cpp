@@ -1,5 +1,5 @@
-// Runs all hard cases, prints one line for each run, writes one page. Exit status 1 if a run is harmful, or one down to
-// 5 us unsafe, or one with 50 us feels different.
+// Runs all hard cases, prints one line for each run, writes one page. Exit status 1 if a run is unsafe, or one with 50
+// us feels different.
 #include <fmt/core.h>
 
 #include <algorithm>

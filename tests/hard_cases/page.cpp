@@ -60,7 +60,7 @@ std::optional<double> at_poses(const Figures& f, double report::ForceDifference:
 const char* class_of(bool good, bool judged) { return good ? "good" : judged ? "bad" : "weak"; }
 
 std::string safety_cell(const Figures& f) {
-  return fmt::format("<td class=\"{}\">{}</td>", class_of(f.safe(), f.safety_is_judged() || !f.harmful.empty()),
+  return fmt::format("<td class=\"{}\">{}</td>", class_of(f.safe(), true),
                      f.safe()            ? "safe"
                      : f.harmful.empty() ? "misses"
                                          : "harm");
@@ -93,7 +93,7 @@ std::string findings(const Figures& f) {
     }
   };
   add(f.harmful, true);
-  add(f.missed, f.safety_is_judged());
+  add(f.missed, true);
   add(f.off, f.feel_is_judged());
   return html;
 }
@@ -131,7 +131,7 @@ std::string counts(const std::vector<Tally>& tallies, double seconds_taken) {
              "nothing falls through. <b>Feel</b>: contact forces within 7 % and 18° at the 95th percentile of "
              "those without a budget, at the same poses, and of the hand where two runs can be compared; contact "
              "begins within a tick; at most 1 % of noise added. A microsecond is 20 pairs of nodes. Brown is "
-             "told, not judged: how 5 µs feel, what 1 µs misses.</p>\n<p>Force on the hand over time: <b>without a "
+             "told, not judged: how 5 and 1 µs feel.</p>\n<p>Force on the hand over time: <b>without a "
              "budget</b>, <b style=\"color:{}\">50 µs</b> (1000 work units), <b style=\"color:{}\">5 µs</b> "
              "(100), <b style=\"color:{}\">1 µs</b> (20). <i>Contacts</i>: the force of contacts on the tool, in each "
              "tick at the pose of the run "

@@ -52,13 +52,9 @@ struct Figures {
   std::vector<std::string> off;      ///< forces that differ from the exact run's by more than people notice
 
   [[nodiscard]] bool safe() const { return harmful.empty() && missed.empty(); }
-  /// Whether the budget is long enough to miss nothing deep; 1 us, 20 pairs of nodes, is not.
-  [[nodiscard]] bool safety_is_judged() const { return budget != "1 us"; }
   /// Whether it is long enough for forces as without one.
-  [[nodiscard]] bool feel_is_judged() const { return safety_is_judged() && budget != "5 us"; }
-  [[nodiscard]] bool holds() const {
-    return harmful.empty() && (missed.empty() || !safety_is_judged()) && (off.empty() || !feel_is_judged());
-  }
+  [[nodiscard]] bool feel_is_judged() const { return budget == "none" || budget == "50 us"; }
+  [[nodiscard]] bool holds() const { return harmful.empty() && missed.empty() && (off.empty() || !feel_is_judged()); }
 };
 
 struct Outcome {
