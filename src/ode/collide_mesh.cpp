@@ -151,6 +151,7 @@ void note_if_apart(PairEntry& entry, dGeomID a, dGeomID b, const math::Pose& pos
                    const math::Pose& pose_b) noexcept {
   if (current_step == nullptr) return;
   const StepMotion& step = *current_step;
+  if (entry.asked_in + 1 < step.number) entry.runs_undecided = PairEntry::long_ago;
   if (entry.asked_in + 1 < step.number && entry.last.contacts == 0 && entry.last.verdict == ODDS_CLEAR) {
     entry.pair->note_apart(before_step(a, pose_a, step.step_s).inverse() * before_step(b, pose_b, step.step_s));
   }

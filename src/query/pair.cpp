@@ -297,6 +297,7 @@ void Pair::note_apart(const math::Pose& pose_b_in_a) noexcept {
         const Tree& b = *std::get_if<Tree>(&pair.b->data().tree);
         const PosedMeshes meshes(pair.a->mesh(), pair.b->mesh(), a.origin(), b.origin(), pose_b_in_a);
         note_clear(meshes, pose_b_in_a, {.solids = true}, pair);
+        pair.within_is_of_front = false;
       },
       pair.a->data().tree);
 }

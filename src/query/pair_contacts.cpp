@@ -94,7 +94,9 @@ void note_first_contact(const PosedMeshes& meshes, Pair::Implementation& pair) n
 
 /// Bodies that met since they were apart: whence, by the motion of the first place that was found.
 void note_side(const PosedMeshes& meshes, Pair::Implementation& pair) noexcept {
-  if (!pair.came.isZero() || !pair.known_depth.known() || pair.known_depth.depth() > 0.0) return;
+  if (!pair.came.isZero() || !pair.previous_normal.isZero() || !pair.known_depth.known() ||
+      pair.known_depth.depth() > 0.0)
+    return;
   const tree::TriangleCorners met = meshes.corners_b(pair.hits.pairs().front().b);
   const Vec3 came = pair.known_depth.motion_of((met[0] + met[1] + met[2]) / 3.0, meshes.pose());
   if (came.norm() > unmeasured_depth(pair)) pair.came = came.normalized();
@@ -231,6 +233,7 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
     }
   }
   if (!pair.answer.contacts_complete) return;
+  pair.came.setZero();  // from here on the contact itself says it, which may travel round a body
   pair.previous_normal = pair.answer.contacts.front().normal;
   pair.previous_position = pair.answer.contacts.front().position;
 }
