@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <random>
+#include <set>
 
 #include "odds/mesh/made/by_name.hpp"
 #include "odds/query/pair.hpp"
@@ -118,6 +119,36 @@ TEST_P(Incremental, InTimeNeverProvesWhatIsNotSo) {
   }
 }
 
+std::shared_ptr<const Shape> made(const char* name) {
+  return Shape::build(std::make_shared<const mesh::TriangleMesh>(mesh::made::make_shape(name).value())).value();
+}
+
+std::set<std::uint32_t> triangles_of_a(const Pair& pair) {
+  std::set<std::uint32_t> triangles;
+  for (const TrianglePair& crossing : pair.crossings()) triangles.insert(crossing.a);
+  return triangles;
+}
+
+TEST(IncrementalRuns, OnePairOfLeavesThatTakesAWholeRunDoesNotHideTheOthers) {
+  const auto plate = made("box:x=0.1,y=0.1,z=0.02,cells=16");
+  const auto block = made("box:x=0.05,y=0.05,z=0.05,cells=12");
+  for (const std::uint64_t units : {9U, 12U, 20U}) {
+    auto pair = std::move(Pair::make(plate, block)).value();
+    math::Pose pose{Mat3::Identity(), {0.001, 0.002, 0.0345}};
+    static_cast<void>(pair.run(pose, {.method = Method::incremental, .max_contacts = 8}));
+    const std::set<std::uint32_t> all = triangles_of_a(pair);
+    std::set<std::uint32_t> found;
+    for (int run = 0; run < 400; ++run) {
+      pose.translation.x() += 1e-9;
+      static_cast<void>(pair.run(
+          pose,
+          {.method = Method::incremental, .budget = Budget::work(units), .max_contacts = 8, .carry_motion = 0.0}));
+      found.merge(triangles_of_a(pair));
+    }
+    EXPECT_GT(2 * found.size(), all.size()) << units << ": " << found.size() << " of " << all.size();
+  }
+}
+
 TEST(IncrementalRuns, TakeUpWhereTheLastOneWasEnded) {
   const auto shape = Shape::build(testing::wavy_sphere(40), {.volume = volume::Kind::wide}).value();
   auto pair = std::move(Pair::make(shape, shape)).value();
@@ -149,11 +180,8 @@ struct Rocking {
 
 /// Per cent of the runs of `units` in which bodies that meet are proved to; `phase` a run, some half of it in sizes.
 double proved_percent(const Rocking& rocking, double phase, std::uint64_t units) {
-  const auto shape_of = [](const char* name) {
-    return Shape::build(std::make_shared<const mesh::TriangleMesh>(mesh::made::make_shape(name).value())).value();
-  };
-  const auto a = shape_of(rocking.a);
-  const auto b = shape_of(rocking.b);
+  const auto a = made(rocking.a);
+  const auto b = made(rocking.b);
   auto small = std::move(Pair::make(a, b)).value();
   auto exact = std::move(Pair::make(a, b)).value();
   const auto meets = [&](const math::Pose& pose) {

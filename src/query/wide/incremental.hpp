@@ -91,7 +91,9 @@ class Incremental {
         ++outcome_.looked_at;
         if (front_.entry(i).met) ++outcome_.still_met;
       }
-      if (!more) return false;
+      if (more) continue;
+      if (k == 0) outcome_.next_crossing = (i + step) % count;  // else one that takes more than a run would be all
+      return false;
     }
     outcome_.next_crossing = 0;
     return true;
@@ -237,6 +239,7 @@ class Incremental {
         expiry = open(entry);
       }
       entry.met = task_.hits.size() > hits || was_met_around(entry.a, entry.b);
+      if (!goes_on) first_left_ = front_.size();
       front_.add(entry, expiry);
       if (!goes_on) return leave();
       if (entry.met && task_.wanted > 1) go_elsewhere();
@@ -260,7 +263,7 @@ class Incremental {
       }
       task_.result.open = open;
     }
-    if (stack_.size != 0) first_left_ = front_.size();
+    if (first_left_ == no_feature) first_left_ = front_.size();
     while (stack_.size != 0) {
       const SlotPair pair = stack_.take();
       front_.add({pair.of[0], pair.of[1], 0}, KineticFront::at_once);
@@ -269,7 +272,11 @@ class Incremental {
   }
 
   bool test_leaves(Slot a, Slot b, double& expiry) noexcept {
-    if (was_met_around(a, b)) return true;
+    if (was_met_around(a, b)) {
+      KineticFront::LastMet& last = front_.last_met();
+      last.is_entry = last.is_entry || (last.a == a && last.b == b);
+      return true;
+    }
     const std::size_t hits = task_.hits.size();
     const LeafPairs pairs = compare_leaves<L>(task_, a, b);
     const bool goes_on = visit_triangles(task_, a, b, pairs);

@@ -90,6 +90,7 @@ class KineticFront {
     if (fresh_) fresh_size_ = size_;
     fresh_ = fresh_ && !outcome.explored;
     irreplaceable_ = outcome.irreplaceable;
+    // Also where neighbours of what met last were found: they do not need this front.
     lost_work_ = outcome.starved && outcome.looked_at == 0 ? lost_work_ + outcome.work : 0;
     if (is_no_use(outcome)) return give_up();
     move_changed();
@@ -172,6 +173,7 @@ class KineticFront {
     left_at_ = 0;
     next_crossing_ = 0;
     changed_count_ = 0;
+    last_met_.is_entry = false;
     overflowed_ = false;
     next_expiry_ = at_once;
   }
