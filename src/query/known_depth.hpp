@@ -29,7 +29,7 @@ class KnownDepth {
   }
   /// How B's point that is now at `place`, in A's frame, has moved since; zero if nothing is known.
   [[nodiscard]] Vec3 motion_of(const Vec3& place, const math::Pose& pose) const noexcept {
-    return known_ ? Vec3(place - pose_ * (pose.inverse() * place)) : Vec3(Vec3::Zero());
+    return known_ ? math::motion_of(place, pose_, pose) : Vec3(Vec3::Zero());
   }
   /// What is believed of one contact, metres: what was known, and how far B has since come along its normal there; a
   /// small share of how far it has slid, for surfaces have slopes. `place` in A's frame, `normal` unit and into A; 0 if

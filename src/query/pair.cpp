@@ -172,6 +172,25 @@ bool is_still_apart(const tree::WideTree& b, const PosedMeshes& meshes, const Re
          pair.front.is_apart(meshes.pose(), b.reach());
 }
 
+/// Bodies that have gone by more than half of the smaller one between two runs may have been anywhere: nothing is known
+/// of the sides that they touched before.
+void forget_if_elsewhere(const PosedMeshes& meshes, Pair::Implementation& pair) noexcept {
+  constexpr double elsewhere = 0.5;
+  const math::Pose& now = meshes.pose();
+  const double size_a = pair.a->mesh().size();
+  const double size_b = pair.b->mesh().size();
+  if (pair.ran_at) {
+    const math::Pose& before = *pair.ran_at;
+    const Vec3 motion = size_b <= size_a ? Vec3(now.translation - before.translation)
+                                         : Vec3(now.inverse().translation - before.inverse().translation);
+    if (motion.norm() > elsewhere * std::min(size_a, size_b)) {
+      pair.came.setZero();
+      pair.previous_normal.setZero();
+    }
+  }
+  pair.ran_at = now;
+}
+
 template <class Tree>
 void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const Request& request,
             Pair::Implementation& pair) noexcept {
@@ -180,6 +199,7 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
   answer = {};
   pair.hits.clear();
   const PosedMeshes meshes(pair.a->mesh(), pair.b->mesh(), a.origin(), b.origin(), pose_b_in_a);
+  forget_if_elsewhere(meshes, pair);
   if (carry_contacts(meshes, pose_b_in_a, request, pair, spending)) {
     answer.cost = spending.close();
     return;
@@ -314,6 +334,8 @@ void Pair::reset() noexcept {
   implementation_->front.reset();
   implementation_->previous_normal.setZero();
   implementation_->came.setZero();
+  implementation_->apart_at.reset();
+  implementation_->ran_at.reset();
   implementation_->known_depth.forget();
   implementation_->known_direction.forget();
   implementation_->carried.forget();

@@ -92,14 +92,15 @@ void note_first_contact(const PosedMeshes& meshes, Pair::Implementation& pair) n
   pair.known_depth.note(meshes.pose(), std::min(deepest_of(pair.answer.contacts), unmeasured_depth(pair)));
 }
 
-/// Bodies that met since they were apart: whence, by the motion of the first place that was found.
+/// Bodies that met since they were apart: whence, by the motion of the first place that was found, once it is more than
+/// a tremor.
 void note_side(const PosedMeshes& meshes, Pair::Implementation& pair) noexcept {
-  if (!pair.came.isZero() || !pair.previous_normal.isZero() || !pair.known_depth.known() ||
-      pair.known_depth.depth() > 0.0)
-    return;
+  if (!pair.apart_at) return;
   const tree::TriangleCorners met = meshes.corners_b(pair.hits.pairs().front().b);
-  const Vec3 came = pair.known_depth.motion_of((met[0] + met[1] + met[2]) / 3.0, meshes.pose());
-  if (came.norm() > unmeasured_depth(pair)) pair.came = came.normalized();
+  const Vec3 came = math::motion_of((met[0] + met[1] + met[2]) / 3.0, *pair.apart_at, meshes.pose());
+  if (!(came.norm() > unmeasured_depth(pair))) return;
+  pair.came = came.normalized();
+  pair.apart_at.reset();
 }
 
 /// Whether what is known of the depth says nothing of contacts that were limited to it: it is of another side.
@@ -233,7 +234,9 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
     }
   }
   if (!pair.answer.contacts_complete) return;
-  pair.came.setZero();  // from here on the contact itself says it, which may travel round a body
+  // From here on the contact itself says it, which may travel round a body.
+  pair.came.setZero();
+  pair.apart_at.reset();
   pair.previous_normal = pair.answer.contacts.front().normal;
   pair.previous_position = pair.answer.contacts.front().position;
 }

@@ -44,6 +44,7 @@ void note_clear(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const 
   pair.within = Within::neither;
   pair.previous_normal.setZero();
   pair.came.setZero();
+  pair.apart_at = meshes.pose();
   pair.known_depth.note(meshes.pose(), 0.0);
   if (!request.solids && may_be_within(*pair.a, *pair.b, pose_b_in_a)) pair.known_depth.forget();
 }

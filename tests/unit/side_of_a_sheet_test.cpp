@@ -64,6 +64,30 @@ TEST(SheetInAHurry, ABroadPhaseMaySayThatTheyWereApart) {
   EXPECT_LT(deepest, 0.0026) << "it has come by 2.5 mm";
 }
 
+TEST(SheetInAHurry, ABallThatCameSlowlyIsPushedBackToo) {
+  for (const double side : {1.0, -1.0}) {
+    auto pair = std::move(Pair::make(sheet(), ball())).value();
+    Vec3 last = Vec3::Zero();
+    for (double z = 0.0051; z > -0.001; z -= 4e-7) {  // each run's motion alone is a tremor
+      const Vec3 normal = normal_at(pair, side * z, Budget::work(40));
+      if (!normal.isZero()) last = normal;
+    }
+    EXPECT_LT(side * last.z(), -0.9) << side;
+  }
+}
+
+TEST(SheetInAHurry, ABallThatWentRoundIsPushedTowardsItsPlace) {
+  auto pair = std::move(Pair::make(sheet(), ball())).value();
+  static_cast<void>(normal_at(pair, 0.0055, Budget::work(40)));
+  Vec3 above = Vec3::Zero();
+  for (int run = 0; run < 4; ++run) above = normal_at(pair, 0.0045, Budget::work(40));
+  EXPECT_LT(above.z(), -0.8);
+  // Farther than half of it in one run, and nobody has said how.
+  Vec3 below = Vec3::Zero();
+  for (int run = 0; run < 4; ++run) below = normal_at(pair, -0.0049, Budget::work(40));
+  EXPECT_GT(below.z(), 0.8);
+}
+
 TEST(SheetInAHurry, APoseThatIsNoneSaysNothing) {
   auto pair = std::move(Pair::make(sheet(), ball())).value();
   math::Pose none = at(0.0055);

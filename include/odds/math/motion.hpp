@@ -20,4 +20,9 @@ namespace odds::math {
   return motion_bound({from.rotation, from * place}, {to.rotation, to * place}, reach);
 }
 
+/// How the moved frame's point that is at `place` in pose `to` has come there from pose `from`.
+[[nodiscard]] inline Vec3 motion_of(const Vec3& place, const Pose& from, const Pose& to) noexcept {
+  return place - from * (to.inverse() * place);
+}
+
 }  // namespace odds::math
