@@ -3,13 +3,14 @@
 #include <atomic>
 #include <limits>
 
+#include "odds/math/motion.hpp"
+#include "ode/broad_phase.hpp"
 #include "ode/colliders.hpp"
 #include "ode/contact_writer.hpp"
 #include "ode/frame_share.hpp"
 #include "ode/last_error.hpp"
 #include "ode/pair_table.hpp"
 #include "ode/statistics.hpp"
-#include "ode/step_motion.hpp"
 
 namespace odds::ode {
 namespace {
@@ -28,22 +29,40 @@ query::Request request_for(const Settings& settings, int limit) noexcept {
   return request;
 }
 
+double smaller_size(const PairEntry& entry) noexcept {
+  return std::min(entry.pair->a().mesh().size(), entry.pair->b().mesh().size());
+}
+
+// What met a moment ago, and has not moved far from there, touches unless it is decided that it does not. `place` in
+// A's mesh frame.
+bool still_touch(const PairEntry& entry, const Vec3& place, const math::Pose& b_in_a) noexcept {
+  constexpr std::uint32_t a_moment = 16;  // runs
+  constexpr double far = 0.5;             // of the smaller one's size
+  if (entry.runs_undecided > a_moment) return false;
+  const double size = smaller_size(entry);
+  const double moved = math::motion_bound_about(b_in_a.inverse() * place, entry.met_at, b_in_a, size);
+  return moved <= far * size;
+}
+
 // Whether the most probable pair of cells stands in for contacts. A hit that is proved or passed the caller's own
 // threshold needs a contact to be felt; an undecided query follows the policy, which also holds on to what was a hit a
 // moment ago.
-bool use_cell_pair(const query::Answer& answer, const Settings& settings, std::uint32_t runs_undecided) noexcept {
+bool use_cell_pair(const PairEntry& entry, const query::Answer& answer, const Settings& settings,
+                   const math::Pose& b_in_a) noexcept {
   if (!answer.contacts.empty() || !answer.has_cell_pair) return false;
   if (answer.basis != query::Basis::budget) return answer.verdict == query::Verdict::hit;
-  constexpr std::uint32_t still_touching = 16;  // runs: what met a moment ago and is not proved apart
   return settings.undecided_policy == ODDS_UNDECIDED_HIT &&
-         (answer.probability > settings.undecided_probability || runs_undecided <= still_touching);
+         (answer.probability > settings.undecided_probability || still_touch(entry, answer.cell_pair.position, b_in_a));
 }
 
-void count_undecided(const query::Answer& answer, PairEntry& entry) noexcept {
+void note_decision(const query::Answer& answer, const math::Pose& b_in_a, PairEntry& entry) noexcept {
   if (answer.basis == query::Basis::budget) {
     entry.runs_undecided = std::min(entry.runs_undecided + 1, PairEntry::long_ago);
+  } else if (answer.verdict == query::Verdict::hit) {
+    entry.runs_undecided = 0;
+    entry.met_at = b_in_a;
   } else {
-    entry.runs_undecided = answer.verdict == query::Verdict::hit ? 0 : PairEntry::long_ago;
+    entry.runs_undecided = PairEntry::long_ago;
   }
 }
 
@@ -52,8 +71,7 @@ std::span<const query::Contact> contacts_to_give(PairEntry& entry, const query::
   const bool decided = answer.basis == query::Basis::proved && answer.contacts_complete;
   const bool holds = answer.basis != query::Basis::estimated && settings.undecided_policy == ODDS_UNDECIDED_HIT;
   if (!decided && !holds) return answer.contacts;
-  const double size = std::min(entry.pair->a().mesh().size(), entry.pair->b().mesh().size());
-  return entry.held.best_of(answer, b_in_a, size);
+  return entry.held.best_of(answer, b_in_a, smaller_size(entry));
 }
 
 // Contacts of an answer are in A's mesh frame with normals into A.
@@ -129,9 +147,9 @@ void count_basis(query::Basis basis) noexcept {
 // A frame in which it is not this pair's turn: what is held, where the bodies are now. Nothing is asked.
 int give_held(PairEntry& entry, const Settings& settings, const math::Pose& pose_a, const math::Pose& b_in_a,
               bool o1_is_a, ContactWriter& writer) noexcept {
-  const double size = std::min(entry.pair->a().mesh().size(), entry.pair->b().mesh().size());
   if (settings.undecided_policy == ODDS_UNDECIDED_HIT) {
-    for (const query::Contact& contact : entry.held.at(b_in_a, size)) write_contact(writer, contact, pose_a, o1_is_a);
+    for (const query::Contact& contact : entry.held.at(b_in_a, smaller_size(entry)))
+      write_contact(writer, contact, pose_a, o1_is_a);
   }
   const oddsAnswer before = entry.last;
   entry.last = {};
@@ -145,21 +163,28 @@ int give_held(PairEntry& entry, const Settings& settings, const math::Pose& pose
   return writer.count();
 }
 
-// Bodies that were not near a step ago were apart then. Those that rest without being asked for have contacts; and in
-// the first step nobody knows.
-void note_if_apart(PairEntry& entry, dGeomID a, dGeomID b, const math::Pose& pose_a,
-                   const math::Pose& pose_b) noexcept {
-  if (current_step == nullptr) return;
-  const StepMotion& step = *current_step;
-  if (entry.asked_in + 1 < step.number) entry.runs_undecided = PairEntry::long_ago;
-  if (entry.asked_in + 1 < step.number && entry.last.contacts == 0 && entry.last.verdict == ODDS_CLEAR) {
-    entry.pair->note_apart(before_step(a, pose_a, step.step_s).inverse() * before_step(b, pose_b, step.step_s));
-  }
-  entry.asked_in = step.number;
+// Bodies for which the broad phase before this one did not ask were apart where it saw them.
+void note_if_apart(std::uint64_t asked_in, PairEntry& entry) noexcept {
+  if (current_broad_phase == 0 || asked_in + 1 >= current_broad_phase) return;
+  const std::optional<math::Pose> before = before_this_broad_phase(*entry.a, *entry.b);
+  if (!before) return;
+  entry.runs_undecided = PairEntry::long_ago;
+  entry.pair->note_apart(*before);
+  entry.held.note_apart(*before);
 }
 
-// Precondition: this thread holds `entry.busy`, and `entry.pair` is set.
-int answer_pair(PairEntry& entry, dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int skip) noexcept {
+// The last broad phase that has asked for the pair; from here on it is this one. Also of a pair that another thread is
+// at: the next broad phase must not take it for apart.
+std::uint64_t note_asked(PairEntry& entry) noexcept {
+  const std::uint64_t before = entry.asked_in.load(std::memory_order_relaxed);
+  if (current_broad_phase != 0) entry.asked_in.store(current_broad_phase, std::memory_order_relaxed);
+  return before;
+}
+
+// Precondition: this thread holds `entry.busy`, and `entry.pair` is set. `asked_in`: the last broad phase that asked
+// before.
+int answer_pair(PairEntry& entry, std::uint64_t asked_in, dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts,
+                int skip) noexcept {
   const bool o1_is_a = entry.a == &own_data(o1);
   const std::optional<math::Pose> pose_a = world_pose(o1_is_a ? o1 : o2);
   const std::optional<math::Pose> pose_b = world_pose(o1_is_a ? o2 : o1);
@@ -175,14 +200,14 @@ int answer_pair(PairEntry& entry, dGeomID o1, dGeomID o2, int flags, dContactGeo
   const math::Pose b_in_a = pose_a->inverse() * *pose_b;
   ContactWriter writer(o1, o2, limit, contacts, skip);
   if (gives_only_held()) return give_held(entry, settings, *pose_a, b_in_a, o1_is_a, writer);
-  note_if_apart(entry, o1_is_a ? o1 : o2, o1_is_a ? o2 : o1, *pose_a, *pose_b);
+  note_if_apart(asked_in, entry);
   const query::Answer& answer = entry.pair->run(b_in_a, request_for(settings, limit));
   count_basis(answer.basis);
-  count_undecided(answer, entry);
+  note_decision(answer, b_in_a, entry);
   entry.last = record_of(answer, *pose_a);
   const std::span<const query::Contact> given = contacts_to_give(entry, answer, settings, b_in_a);
   for (const query::Contact& contact : given) write_contact(writer, contact, *pose_a, o1_is_a);
-  if (given.empty() && use_cell_pair(answer, settings, entry.runs_undecided)) {
+  if (given.empty() && use_cell_pair(entry, answer, settings, b_in_a)) {
     // A place and a direction, but no push: a depth that nobody has measured could throw a body away.
     query::Contact contact = answer.cell_pair;
     if (answer.basis == query::Basis::budget) contact.depth = 0.0;
@@ -221,11 +246,12 @@ int collide_mesh(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int 
     count(statistics().failed_pairs);
     return 0;
   }
+  const std::uint64_t asked_in = note_asked(*entry);
   if (entry->busy.exchange(true, std::memory_order_acquire)) {
     count(statistics().busy_pairs);
     return 0;
   }
-  const int written = answer_pair(*entry, o1, o2, flags, contacts, skip);
+  const int written = answer_pair(*entry, asked_in, o1, o2, flags, contacts, skip);
   entry->busy.store(false, std::memory_order_release);
   return written;
 }

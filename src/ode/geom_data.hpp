@@ -41,6 +41,8 @@ struct GeomData {
   std::uint64_t number = 0;       ///< unique for the process, in order of creation: never reused, unlike addresses
   std::vector<PairEntry*> pairs;  ///< workspaces that this geom takes part in
   RestingContacts resting;        ///< with bodies that are no meshes
+  math::Pose seen_at;             ///< where it stood in the last broad phase that noted it
+  std::uint64_t seen_in = 0;      ///< the number of that; 0: none
 };
 
 /// A number for GeomData::number. Thread-safe.

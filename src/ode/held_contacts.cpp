@@ -13,7 +13,8 @@ std::span<const query::Contact> HeldContacts::best_of(const query::Answer& answe
   if (answer.basis == query::Basis::proved && answer.contacts_complete) {
     // Bodies at rest hop: what is apart now by less than a hop touches in the same places again.
     if (answer.contacts.empty()) {
-      let_go_of_overlaps(b_in_a, size);
+      static_cast<void>(at(b_in_a, size));
+      note_apart(b_in_a);
     } else {
       keep(answer.contacts, b_in_a, true, true);
     }
@@ -102,9 +103,7 @@ void HeldContacts::move(std::size_t from, std::size_t to) noexcept {
   complete_[to] = complete_[from];
 }
 
-/// Bodies that are proved apart: what would overlap by what is held has not gone where its points say.
-void HeldContacts::let_go_of_overlaps(const math::Pose& b_in_a, double size) noexcept {
-  static_cast<void>(at(b_in_a, size));
+void HeldContacts::note_apart(const math::Pose& b_in_a) noexcept {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < count_; ++i) {
     if (!(held_[i].parted(b_in_a).depth > 0.0)) move(i, kept++);

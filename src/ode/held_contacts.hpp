@@ -58,6 +58,10 @@ class HeldContacts {
   /// since.
   [[nodiscard]] bool better_than_rough() const noexcept { return careful_ && (runs_ <= most_runs || rests_); }
 
+  /// Bodies that are known to be apart: what would overlap by what is held has not gone where its points say, and is
+  /// let go.
+  void note_apart(const math::Pose& b_in_a) noexcept;
+
   /// Lets go what has slid or parted by the new pose; the others as contacts, deepest first, those that have parted by
   /// less with depth 0. Valid until the next call. `size`: diameter of the smaller body; `most_slid`: part of it.
   [[nodiscard]] std::span<const query::Contact> at(const math::Pose& b_in_a, double size,
@@ -69,7 +73,6 @@ class HeldContacts {
   [[nodiscard]] bool is_trusted(const math::Pose& b_in_a, double size) const noexcept;
   [[nodiscard]] bool agrees(const Vec3& normal, const math::Pose& b_in_a) const noexcept;
   void move(std::size_t from, std::size_t to) noexcept;
-  void let_go_of_overlaps(const math::Pose& b_in_a, double size) noexcept;
 
   std::array<query::HeldContact, most> held_;
   std::array<int, most> added_{};  ///< of each, in how many runs contacts were added since it was found

@@ -22,8 +22,9 @@ struct PairEntry {
   HeldContacts held;
   bool answered = false;
   static constexpr std::uint32_t long_ago = 1U << 16U;
-  std::uint32_t runs_undecided = long_ago;  ///< since the last that proved a hit; `long_ago` after one that proved none
-  std::uint64_t asked_in = 0;               ///< StepMotion::number of the last call
+  std::uint32_t runs_undecided = long_ago;  ///< since the last decided hit; `long_ago` after a decision that it is none
+  math::Pose met_at;                        ///< B in A in the last decided hit
+  std::atomic<std::uint64_t> asked_in{0};   ///< the last broad phase that asked; 0: none
   std::atomic<bool> busy{false};            ///< in use by a thread
   std::atomic<PairEntry*> next{nullptr};    ///< in its bucket
 };

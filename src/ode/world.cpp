@@ -71,7 +71,7 @@ struct World::Implementation {
   dJointGroupID contacts = nullptr;
   std::vector<std::unique_ptr<Body>> bodies;
   std::uint32_t dynamic_bodies = 0;
-  StepMotion motion;                // of the bodies, in the last step
+  std::uint64_t broad_phases = 0;   // so far
   StepSummary summary;              // of the call of step() under way
   std::uint32_t part = 0;           // of a step: the next one
   std::uint32_t contacts_made = 0;  // of the step under way
@@ -405,7 +405,7 @@ StepSummary World::step() noexcept {
   const std::int64_t start_ns = self.options.clock();
   if (collides && self.options.contact.enabled) {
     collide_frame(self.space, &self, &Implementation::near, self.frame.get(), self.attention, self.part + 2 >= parts,
-                  self.motion, self.summary);
+                  ++self.broad_phases, self.summary);
   }
   self.part = solves ? 0 : self.part + 1;
   const std::int64_t collided_ns = self.options.clock();
@@ -413,7 +413,7 @@ StepSummary World::step() noexcept {
   if (!solves) return self.summary;
   self.contacts_made = 0;
   if (self.dynamic_bodies == 0) return self.summary;
-  const double h = self.motion.step_s = self.options.step_s;
+  const double h = self.options.step_s;
   const bool measures = self.options.contact_work && self.momenta.size() == self.bodies.size();
   if (measures) self.note_momenta();
   ++self.summary.solver_calls;

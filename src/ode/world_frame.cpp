@@ -7,6 +7,7 @@
 #include <string>
 
 #include "odds/ode/odds_ode.h"
+#include "ode/broad_phase.hpp"
 
 namespace odds::ode {
 
@@ -27,12 +28,11 @@ Result<FrameBudget> make_frame_budget(const WorldOptions& options, std::size_t b
 }
 
 void collide_frame(dSpaceID space, void* data, dNearCallback* callback, oddsFrameBudget* budget, dGeomID attention,
-                   bool is_last_part, StepMotion& motion, StepSummary& summary) noexcept {
+                   bool is_last_part, std::uint64_t number, StepSummary& summary) noexcept {
   if (budget == nullptr) {
-    ++motion.number;
-    current_step = &motion;
+    const BroadPhaseScope scope(number);
     dSpaceCollide(space, data, callback);
-    current_step = nullptr;
+    note_places(space, number);
     return;
   }
   if (attention != nullptr) {

@@ -1,12 +1,12 @@
 // The collisions of a world's step, within the budget of a frame if there is one.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 
 #include "odds/math/error.hpp"
 #include "odds/ode/odds_frame.h"
 #include "odds/ode/world.hpp"
-#include "ode/step_motion.hpp"
 
 namespace odds::ode {
 
@@ -23,10 +23,10 @@ using FrameBudget = std::unique_ptr<oddsFrameBudget, FrameBudgetDeleter>;
 /// Null where the options ask for none.
 [[nodiscard]] Result<FrameBudget> make_frame_budget(const WorldOptions& options, std::size_t bodies);
 
-/// dSpaceCollide within the budget, if there is one, or the next part of it; notes what all parts have left out with the
-/// last. What is near to the geom `attention`, which may be null, matters most; `motion` counts the
-/// calls.
+/// dSpaceCollide within the budget, if there is one, or the next part of it; notes what all parts have left out with
+/// the last. What is near to the geom `attention`, which may be null, matters most; `number` counts the calls from 1
+/// on.
 void collide_frame(dSpaceID space, void* data, dNearCallback* callback, oddsFrameBudget* budget, dGeomID attention,
-                   bool is_last_part, StepMotion& motion, StepSummary& summary) noexcept;
+                   bool is_last_part, std::uint64_t number, StepSummary& summary) noexcept;
 
 }  // namespace odds::ode

@@ -181,15 +181,22 @@ TEST_F(UndecidedPair, GivesNothingIfTheProbabilityIsTooLow) {
 
 TEST_F(UndecidedPair, HoldsOnToWhatMetAMomentAgo) {
   ASSERT_EQ(dGeomOddsMeshSetUndecidedPolicy(b, ODDS_UNDECIDED_HIT, 0.999), 1);
-  const auto decided_at = [&](double x) {
-    dGeomOddsMeshSetWorkBudget(a, 0);
-    dGeomSetPosition(b, x, 0.1, 0);
+  // By an estimate, of which no contacts are held.
+  const auto decided_at = [&](double x, double y, int basis, int verdict) {
+    for (const dGeomID geom : {a, b}) {
+      dGeomOddsMeshSetWorkBudget(geom, 0);
+      dGeomOddsMeshSetPMin(geom, 0.5);
+      dGeomOddsMeshSetKMin(geom, 1);
+    }
+    dGeomSetPosition(b, x, y, 0);
     collide(a, b);
-    EXPECT_EQ(answer_of(a, b).basis, ODDS_PROVED);
+    EXPECT_EQ(answer_of(a, b).basis, basis);
+    EXPECT_EQ(answer_of(a, b).verdict, verdict);
+    dGeomOddsMeshSetPMin(a, 1.0);
     dGeomOddsMeshSetWorkBudget(a, 1);
-    dGeomSetPosition(b, 0.2, -1.5, 0);  // nothing of what was held is there
+    dGeomSetPosition(b, 0.2, -1.5, 0);
   };
-  decided_at(1.9);
+  decided_at(0.2, -1.5, ODDS_ESTIMATED, ODDS_HIT);
   for (int run = 0; run < 16; ++run) {
     const auto contacts = collide(a, b);
     ASSERT_EQ(contacts.size(), 1u) << run;
@@ -198,9 +205,12 @@ TEST_F(UndecidedPair, HoldsOnToWhatMetAMomentAgo) {
     EXPECT_EQ(answer_of(a, b).basis, ODDS_BUDGET);
   }
   EXPECT_TRUE(collide(a, b).empty()) << "that was not a moment ago";
-  decided_at(1.9);
+  decided_at(0.2, -1.4, ODDS_ESTIMATED, ODDS_HIT);
   EXPECT_FALSE(collide(a, b).empty());
-  decided_at(2.5);
+  decided_at(0.2, 1.4, ODDS_ESTIMATED, ODDS_HIT);
+  EXPECT_TRUE(collide(a, b).empty()) << "that was elsewhere";
+  decided_at(0.2, -1.4, ODDS_ESTIMATED, ODDS_HIT);
+  decided_at(2.5, 0.0, ODDS_PROVED, ODDS_CLEAR);
   EXPECT_TRUE(collide(a, b).empty()) << "proved apart since";
 }
 

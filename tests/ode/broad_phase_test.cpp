@@ -1,0 +1,150 @@
+// What a world's broad phase says of bodies for which it did not ask.
+#include "ode/broad_phase.hpp"
+
+#include "odds/ode/world.hpp"
+#include "ode/ode_fixture.hpp"
+
+namespace odds::test {
+namespace {
+
+class BroadPhase : public OdeTest {
+ protected:
+  void SetUp() override {
+    OdeTest::SetUp();
+    a = mesh_geom(sphere_shape(1.0, 12), space);
+    b = mesh_geom(sphere_shape(1.0, 12), space);
+    place(3.0);
+  }
+  void place(double x) const { dGeomSetPosition(b, x, 0.5, 0.25); }
+  [[nodiscard]] std::optional<math::Pose> before(std::uint64_t number) const {
+    const ode::BroadPhaseScope scope(number);
+    return ode::before_this_broad_phase(ode::own_data(a), ode::own_data(b));
+  }
+  dGeomID a = nullptr;
+  dGeomID b = nullptr;
+};
+
+TEST_F(BroadPhase, TellsWhereBodiesWereInTheOneBefore) {
+  dGeomSetPosition(a, 1.0, 0.0, 0.0);
+  rotate(a, Vec3::UnitZ(), std::acos(0.0));
+  ode::note_places(space, 7);
+  place(1.5);
+  const auto pose = before(8);
+  ASSERT_TRUE(pose);
+  EXPECT_NEAR((pose->translation - Vec3(0.5, -2.0, 0.25)).norm(), 0.0, 1e-12) << "as b was, seen from a";
+}
+
+TEST_F(BroadPhase, TellsNothingOfWhatItHasNotSeen) {
+  EXPECT_FALSE(before(1)) << "the first";
+  ode::note_places(space, 3);
+  EXPECT_FALSE(before(5)) << "one was left out";
+  EXPECT_FALSE(before(0)) << "none is under way";
+  const dGeomID added = mesh_geom(sphere_shape(1.0, 12), space);
+  {
+    const ode::BroadPhaseScope scope(4);
+    EXPECT_FALSE(ode::before_this_broad_phase(ode::own_data(a), ode::own_data(added)));
+  }
+  EXPECT_TRUE(before(4));
+  dGeomSetPosition(b, dNaN, 0.0, 0.0);
+  ode::note_places(space, 4);
+  dGeomSetPosition(b, 3.0, 0.0, 0.0);
+  EXPECT_FALSE(before(5)) << "it was nowhere";
+}
+
+TEST_F(BroadPhase, OneWithinAnotherLeavesTheOuterOneAsItWas) {
+  const ode::BroadPhaseScope outer(2);
+  {
+    const ode::BroadPhaseScope inner(9);
+    EXPECT_EQ(ode::current_broad_phase, 9U);
+  }
+  EXPECT_EQ(ode::current_broad_phase, 2U);
+}
+
+/// What contacts there were: the deepest one's depth, and their mean normal, into the first body.
+struct Seen {
+  int contacts = 0;
+  double deepest_m = 0.0;
+  Vec3 normal = Vec3::Zero();
+  static void note(void* self, ode::Meeting& meeting) noexcept {
+    auto& seen = *static_cast<Seen*>(self);
+    for (const ode::ContactPoint& point : meeting.contacts) {
+      ++seen.contacts;
+      seen.deepest_m = std::max(seen.deepest_m, point.depth_m);
+      seen.normal += (meeting.a.index == 0 ? 1.0 : -1.0) * point.normal;
+    }
+  }
+};
+
+/// A body that a hand puts here and there over another one, by 40 pairs of nodes a step.
+class BroadPhaseOfAWorld : public ::testing::Test {
+ protected:
+  void make(const std::shared_ptr<const query::Shape>& fixed, const std::shared_ptr<const query::Shape>& moved) {
+    ode::WorldOptions options;
+    options.query.budget = query::Budget::work(40);
+    options.contact.responds = false;
+    auto made = ode::World::make(options);
+    ASSERT_TRUE(made.ok());
+    world.emplace(std::move(made).value());
+    ASSERT_TRUE(world->add_fixed(fixed, {}, "fixed").ok());
+    body = world->add_dynamic(moved, at(1.0), {.mass_kg = 1.0}, "moved").value();
+    ASSERT_FALSE(world->prepare().has_value());
+    world->set_meeting_hook({&Seen::note, &seen});
+  }
+  static math::Pose at(double z) { return {Mat3::Identity(), {0.001, 0.002, z}}; }
+  /// Of `steps` steps there.
+  const Seen& put(double z, int steps = 1) {
+    seen = {};
+    for (int i = 0; i < steps; ++i) {
+      world->set_state(body, {at(z), Vec3::Zero(), Vec3::Zero()});
+      world->step();
+    }
+    return seen;
+  }
+  std::optional<ode::World> world;
+  ode::BodyId body;
+  Seen seen;
+};
+
+TEST_F(BroadPhaseOfAWorld, WhatIsPutIntoAnotherBodyIsAsDeepAsItHasCome) {
+  make(box_shape(0.1, 0.1, 0.1, 6), box_shape(0.1, 0.1, 0.1, 6));
+  put(0.103);
+  EXPECT_EQ(seen.contacts, 0);
+  EXPECT_GT(put(0.095, 30).deepest_m, 0.0045) << "5 mm, and it was apart 8 mm from there";
+  EXPECT_LT(seen.deepest_m, 0.0085);
+}
+
+TEST_F(BroadPhaseOfAWorld, WhatHasFlownRoundASheetIsPushedBackWhenceItCameNow) {
+  std::vector<Vec3> corners{{-0.05, -0.05, 0}, {0.05, -0.05, 0}, {0.05, 0.05, 0}, {-0.05, 0.05, 0}};
+  std::vector<mesh::Triangle> triangles{{0, 1, 2}, {0, 2, 3}};
+  const auto sheet =
+      query::Shape::build(std::make_shared<const mesh::TriangleMesh>(
+                              mesh::TriangleMesh::make(std::move(corners), std::move(triangles), "sheet").value()))
+          .value();
+  make(sheet, sphere_shape(0.005));
+  for (const double side : {1.0, -1.0, 1.0}) {
+    put(side * 0.0055);
+    EXPECT_EQ(seen.contacts, 0) << "no box is near, and nobody asks";
+    put(side * 0.0045, 4);
+    put(-side * 0.001, 4);  // 5 m/s: the centre has passed
+    ASSERT_GT(seen.contacts, 0) << side;
+    EXPECT_LT(side * seen.normal.z(), 0.0) << side;
+    put(0.1, 3);
+    EXPECT_EQ(seen.contacts, 0) << "held contacts do not reach as far";
+  }
+}
+
+TEST_F(BroadPhaseOfAWorld, ContactsSwitchedOffSayNothingOfWhereBodiesAre) {
+  make(box_shape(0.1, 0.1, 0.1, 6), box_shape(0.1, 0.1, 0.1, 6));
+  put(0.103);
+  ode::ContactModel contact = world->options().contact;
+  contact.enabled = false;
+  world->set_contact(contact);
+  put(0.095, 5);
+  EXPECT_EQ(seen.contacts, 0);
+  contact.enabled = true;
+  world->set_contact(contact);
+  EXPECT_GT(put(0.095, 30).deepest_m, 0.0045) << "nobody has seen it apart where it stands";
+}
+
+}  // namespace
+}  // namespace odds::test
