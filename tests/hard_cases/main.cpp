@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -81,15 +82,29 @@ int soak_all(const std::filesystem::path& place, double seconds) {
   return all_hold ? 0 : 1;
 }
 
+/// 0 where the text is not a finite number greater than 0.
+double positive(const char* text) {
+  char* end = nullptr;
+  const double number = std::strtod(text, &end);
+  return end != text && *end == '\0' && std::isfinite(number) && number > 0.0 ? number : 0.0;
+}
+
 int run(const std::string& folder, const std::string& only, const std::string& knot, double share) {
   std::filesystem::create_directories(folder);
   register_troubled_device();
   const std::vector<HardCase> cases = all_cases(folder, knot);
+  const auto is_wanted = [&](const HardCase& hard_case) { return only.empty() || hard_case.name == only; };
+  if (std::none_of(cases.begin(), cases.end(), is_wanted)) {
+    fmt::print(stderr, "error: there is no case '{}'; choose one of:", only);
+    for (const HardCase& hard_case : cases) fmt::print(stderr, " {}", hard_case.name);
+    fmt::print(stderr, "\n");
+    return 2;
+  }
   const auto began = std::chrono::steady_clock::now();
   std::vector<Outcome> outcomes;
   bool all_hold = true;
   for (const HardCase& hard_case : cases) {
-    if (!only.empty() && hard_case.name != only) continue;
+    if (!is_wanted(hard_case)) continue;
     Result<Outcome> outcome = run_case(hard_case, folder, share);
     if (!outcome) {
       fmt::print(stderr, "error: {}: {}\n", hard_case.name, outcome.error().message());
@@ -98,10 +113,6 @@ int run(const std::string& folder, const std::string& only, const std::string& k
     print(outcome.value());
     for (const Figures& f : outcome.value().runs) all_hold = all_hold && f.holds();
     outcomes.push_back(std::move(outcome).value());
-  }
-  if (outcomes.empty()) {
-    fmt::print(stderr, "error: there is no case '{}'\n", only);
-    return 2;
   }
   print(tally(outcomes));
   const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
@@ -131,9 +142,9 @@ int main(int argc, char** argv) {
     } else if (argument == "--soak" && i + 1 < argc) {
       soaked = argv[++i];
     } else if (argument == "--seconds" && i + 1 < argc) {
-      seconds = std::atof(argv[++i]);
+      seconds = odds::hard_cases::positive(argv[++i]);
     } else if (argument == "--share" && i + 1 < argc) {
-      share = std::atof(argv[++i]);
+      share = odds::hard_cases::positive(argv[++i]);
     } else {
       fmt::print(stderr,
                  "usage: odds_hard_cases [--out FOLDER] [--only CASE] [--share OF_THE_SECONDS] [--knot MESH]\n"
@@ -141,6 +152,10 @@ int main(int argc, char** argv) {
                  "       odds_hard_cases --soak SCENE_OR_FOLDER [--seconds S]   (an hour of each, simulated)\n");
       return 2;
     }
+  }
+  if (!(seconds > 0.0) || !(share > 0.0)) {
+    fmt::print(stderr, "error: --seconds and --share take a finite number greater than 0\n");
+    return 2;
   }
   if (!soaked.empty()) return odds::hard_cases::soak_all(soaked, seconds);
   return odds::hard_cases::run(folder, only, knot, share);
