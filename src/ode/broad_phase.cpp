@@ -14,6 +14,8 @@ void note_places(dSpaceID space, std::uint64_t number) noexcept {
   }
 }
 
+void forget_place(dGeomID geom) noexcept { own_data(geom).seen_in = 0; }
+
 std::optional<math::Pose> before_this_broad_phase(const GeomData& a, const GeomData& b) noexcept {
   const std::uint64_t before = current_broad_phase - 1;
   if (current_broad_phase <= 1 || a.seen_in != before || b.seen_in != before) return std::nullopt;

@@ -33,6 +33,9 @@ class BroadPhaseScope {
 /// them. A geom whose pose is none is not noted.
 void note_places(dSpaceID space, std::uint64_t number) noexcept;
 
+/// As if no broad phase had seen a geom, which is a mesh of this library.
+void forget_place(dGeomID geom) noexcept;
+
 /// The pose of B in A in the broad phase before the current one; nothing if one is not known to have been seen by it.
 [[nodiscard]] std::optional<math::Pose> before_this_broad_phase(const GeomData& a, const GeomData& b) noexcept;
 

@@ -10,11 +10,13 @@
 #include <vector>
 
 #include "odds/ode/geom.hpp"
+#include "ode/broad_phase.hpp"
 #include "ode/contact_rows.hpp"
 #include "ode/contact_work.hpp"
 #include "ode/coupling_joint.hpp"
 #include "ode/first_look.hpp"
 #include "ode/mass_properties.hpp"
+#include "ode/meeting_answer.hpp"
 #include "ode/vectors.hpp"
 #include "ode/world_frame.hpp"
 #include "ode/world_options.hpp"
@@ -71,7 +73,7 @@ struct World::Implementation {
   dJointGroupID contacts = nullptr;
   std::vector<std::unique_ptr<Body>> bodies;
   std::uint32_t dynamic_bodies = 0;
-  std::uint64_t broad_phases = 0;   // so far
+  std::uint64_t broad_phases = 0;   // so far; also those left out, after which nobody knows what was near
   StepSummary summary;              // of the call of step() under way
   std::uint32_t part = 0;           // of a step: the next one
   std::uint32_t contacts_made = 0;  // of the step under way
@@ -83,7 +85,6 @@ struct World::Implementation {
   Result<Body*> add(std::shared_ptr<const query::Shape> shape, const math::Pose& pose, const std::string& name);
   std::optional<Error> prepare_pairs();
   void warm_up_solver();
-  void note_answer(dGeomID a, dGeomID b, Meeting& meeting);
   void add_contact(const ContactPoint& point, const dContactGeom& found, dBodyID a, dBodyID b);
   void note_momenta();
   void note_contacts();
@@ -227,7 +228,7 @@ void World::Implementation::near(void* self, dGeomID a, dGeomID b) noexcept {
   }
   const auto made = std::span(points).first(static_cast<std::size_t>(std::max(0, count)));
   Meeting meeting{.a = id_of(a), .b = id_of(b), .contacts = made, .room = points};
-  world.note_answer(a, b, meeting);
+  note_answer(a, b, meeting, world.summary);
   ++world.summary.meetings;
   if (world.hook.call != nullptr) world.hook.call(world.hook.self, meeting);
   if (!world.options.contact.responds) return;
@@ -235,27 +236,6 @@ void World::Implementation::near(void* self, dGeomID a, dGeomID b) noexcept {
   geoms.g1 = a;
   geoms.g2 = b;
   for (const ContactPoint& point : meeting.contacts) world.add_contact(point, geoms, body_a, body_b);
-}
-
-void World::Implementation::note_answer(dGeomID a, dGeomID b, Meeting& meeting) {
-  oddsAnswer answer;
-  if (oddsGetLastAnswer(a, b, &answer) == 0) return;
-  const auto basis = answer.basis == ODDS_PROVED      ? query::Basis::proved
-                     : answer.basis == ODDS_ESTIMATED ? query::Basis::estimated
-                                                      : query::Basis::budget;
-  if (answer.only_held == 0) ++summary.queries;
-  meeting.verdict = answer.verdict == ODDS_HIT ? query::Verdict::hit : query::Verdict::clear;
-  meeting.basis = basis;
-  meeting.probability = answer.probability;
-  if (answer.verdict == ODDS_HIT) summary.verdict = query::Verdict::hit;
-  summary.basis = std::max(summary.basis, basis);
-  summary.probability = std::max(summary.probability, answer.probability);
-  summary.node_pairs += answer.node_pairs;
-  summary.triangle_pairs += answer.triangle_pairs;
-  summary.query_gross_us += answer.gross_us;
-  summary.query_stall_us += answer.stall_us;
-  summary.query_overshoot_us = std::max(summary.query_overshoot_us, answer.overshoot_us);
-  summary.query_net_overshoot_us = std::max(summary.query_net_overshoot_us, answer.net_overshoot_us);
 }
 
 void World::Implementation::add_contact(const ContactPoint& point, const dContactGeom& found, dBodyID a, dBodyID b) {
@@ -393,6 +373,7 @@ std::optional<Error> World::prepare() {
 }
 
 void World::look() noexcept {
+  ++implementation_->broad_phases;  // what it finds is newer than where the last step saw anything apart
   if (options().contact.enabled) first_look(implementation_->space, options().query);
 }
 
@@ -403,9 +384,10 @@ StepSummary World::step() noexcept {
   const bool solves = self.part + 1 == parts;
   const bool collides = parts == 1 || !solves;
   const std::int64_t start_ns = self.options.clock();
+  if (collides) ++self.broad_phases;
   if (collides && self.options.contact.enabled) {
     collide_frame(self.space, &self, &Implementation::near, self.frame.get(), self.attention, self.part + 2 >= parts,
-                  ++self.broad_phases, self.summary);
+                  self.broad_phases, self.summary);
   }
   self.part = solves ? 0 : self.part + 1;
   const std::int64_t collided_ns = self.options.clock();
@@ -462,7 +444,11 @@ void World::set_state(BodyId id, const BodyState& state) noexcept {
   if (!state.pose.is_rigid(rigid_within) || !state.velocity_m_per_s.allFinite() ||
       !state.angular_velocity_rad_per_s.allFinite())
     return;
-  implementation_->place(*implementation_->bodies[id.index], state);
+  Body& body = *implementation_->bodies[id.index];
+  const WorldOptions& options = implementation_->options;
+  const double moved = (state.pose.translation - implementation_->state_of(body).pose.translation).norm();
+  if (moved > options.max_speed_m_per_s * options.step_s) forget_place(body.geom.id());  // it has not come that way
+  implementation_->place(body, state);
 }
 
 const MassProperties& World::mass(BodyId id) const noexcept { return implementation_->bodies[id.index]->mass; }

@@ -179,16 +179,18 @@ void forget_if_elsewhere(const PosedMeshes& meshes, Pair::Implementation& pair) 
   const math::Pose& now = meshes.pose();
   const double size_a = pair.a->mesh().size();
   const double size_b = pair.b->mesh().size();
-  if (pair.ran_at) {
-    const math::Pose& before = *pair.ran_at;
+  if (pair.known_at) {
+    const math::Pose& before = *pair.known_at;
     const Vec3 motion = size_b <= size_a ? Vec3(now.translation - before.translation)
                                          : Vec3(now.inverse().translation - before.inverse().translation);
     if (motion.norm() > elsewhere * std::min(size_a, size_b)) {
       pair.came.setZero();
       pair.previous_normal.setZero();
+      if (!pair.apart_last) pair.apart_at.reset();
     }
   }
-  pair.ran_at = now;
+  pair.known_at = now;
+  pair.apart_last = false;
 }
 
 template <class Tree>
@@ -335,7 +337,8 @@ void Pair::reset() noexcept {
   implementation_->previous_normal.setZero();
   implementation_->came.setZero();
   implementation_->apart_at.reset();
-  implementation_->ran_at.reset();
+  implementation_->known_at.reset();
+  implementation_->apart_last = false;
   implementation_->known_depth.forget();
   implementation_->known_direction.forget();
   implementation_->carried.forget();

@@ -47,9 +47,9 @@ struct Pair::Implementation {
   Vec3 previous_normal = Vec3::Zero();    ///< of the last run's first contact, in A's frame; zero: none
   Vec3 previous_position = Vec3::Zero();  ///< of that contact
   Vec3 came = Vec3::Zero();  ///< how B came to where it met A since they were apart, unit, A's frame; zero: unknown
-  std::optional<math::Pose>
-      apart_at;                      ///< PosedMeshes::pose() when they were apart last; none: contacts said more since
-  std::optional<math::Pose> ran_at;  ///< the same of the last run
+  std::optional<math::Pose> apart_at;  ///< PosedMeshes::pose() when they were apart last; none: they touched since
+  std::optional<math::Pose> known_at;  ///< the same of the last run, or of a later word that they were apart
+  bool apart_last = false;             ///< they were apart there
   KnownDepth known_depth;
   KnownDirection known_direction;
   CarriedContacts carried;

@@ -33,6 +33,8 @@ void make_way_out(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, doub
   contact.depth = std::min(contact.depth, most_depth);
   pair.answer.contacts = std::span(pair.rough).first(1);
   pair.known_depth.note(meshes.pose(), contact.depth);
+  pair.came.setZero();
+  pair.apart_at.reset();
   pair.previous_normal = contact.normal;
   pair.previous_position = contact.position;
 }
@@ -45,6 +47,8 @@ void note_clear(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const 
   pair.previous_normal.setZero();
   pair.came.setZero();
   pair.apart_at = meshes.pose();
+  pair.known_at = meshes.pose();
+  pair.apart_last = true;
   pair.known_depth.note(meshes.pose(), 0.0);
   if (!request.solids && may_be_within(*pair.a, *pair.b, pose_b_in_a)) pair.known_depth.forget();
 }

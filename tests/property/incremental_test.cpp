@@ -149,6 +149,26 @@ TEST(IncrementalRuns, OnePairOfLeavesThatTakesAWholeRunDoesNotHideTheOthers) {
   }
 }
 
+TEST(IncrementalRuns, FindNoPairOfTrianglesTwice) {
+  const auto plate = made("box:x=0.1,y=0.1,z=0.02,cells=40");
+  for (const char* name : {"box:x=0.05,y=0.05,z=0.05,cells=40", "icosphere:radius=0.03,frequency=40"}) {
+    const auto body = made(name);
+    const double bottom = body->mesh().lower().z();
+    for (const std::uint64_t units : {30U, 100U, 250U, 499U}) {
+      auto pair = std::move(Pair::make(plate, body)).value();
+      for (int run = 0; run < 400; ++run) {
+        const math::Pose pose{Mat3::Identity(), {0.02 * std::sin(0.05 * run), 0.002, 0.0097 - bottom}};
+        static_cast<void>(pair.run(
+            pose,
+            {.method = Method::incremental, .budget = Budget::work(units), .max_contacts = 8, .carry_motion = 0.0}));
+        std::set<std::pair<std::uint32_t, std::uint32_t>> different;
+        for (const TrianglePair& crossing : pair.crossings()) different.insert({crossing.a, crossing.b});
+        ASSERT_EQ(different.size(), pair.crossings().size()) << name << ", " << units << " units, run " << run;
+      }
+    }
+  }
+}
+
 TEST(IncrementalRuns, TakeUpWhereTheLastOneWasEnded) {
   const auto shape = Shape::build(testing::wavy_sphere(40), {.volume = volume::Kind::wide}).value();
   auto pair = std::move(Pair::make(shape, shape)).value();

@@ -88,6 +88,20 @@ TEST(SheetInAHurry, ABallThatWentRoundIsPushedTowardsItsPlace) {
   EXPECT_GT(below.z(), 0.8);
 }
 
+TEST(SheetInAHurry, ABallThatTouchedAndWentRoundIsPushedTowardsItsPlace) {
+  auto pair = std::move(Pair::make(sheet(), ball())).value();
+  static_cast<void>(normal_at(pair, 0.0050002, Budget::unlimited()));
+  static_cast<void>(normal_at(pair, 0.0049998, Budget::work(20)));  // by less than a tremor: no side is known yet
+  EXPECT_GT(normal_at(pair, -0.0049, Budget::work(100)).z(), 0.8);
+}
+
+TEST(SheetInAHurry, ANewStartForgetsWhereItWasApart) {
+  auto pair = std::move(Pair::make(sheet(), ball())).value();
+  pair.note_apart(at(0.0055));
+  pair.reset();
+  EXPECT_GT(normal_at(pair, -0.001, Budget::unlimited()).z(), 0.9);
+}
+
 TEST(SheetInAHurry, APoseThatIsNoneSaysNothing) {
   auto pair = std::move(Pair::make(sheet(), ball())).value();
   math::Pose none = at(0.0055);

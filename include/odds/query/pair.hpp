@@ -66,7 +66,9 @@ class Pair {
   /// Pairs of nodes in the bottom slice that the incremental method keeps; 1 (the roots) before its first run.
   [[nodiscard]] std::uint32_t slice_size() const noexcept;
   /// Tells that the bodies were apart at this pose, as a broad phase knows that did not ask: contacts that there is no
-  /// time to measure are then bounded by how far the bodies have come since. A pose that is not rigid says nothing.
+  /// time to measure are then bounded by how far the bodies have come since, and push them back to where they were;
+  /// what touched before is forgotten. The bodies must have gone from there to the next run's pose on a nearly straight
+  /// way, and no run may have been in between. A pose that is not rigid says nothing.
   void note_apart(const math::Pose& pose_b_in_a) noexcept;
   /// Forgets coherence (last hit, bottom slice, last normal, contacts and direction), as if the pair were new.
   void reset() noexcept;

@@ -100,7 +100,8 @@ class Incremental {
   }
 
   /// What slides on goes from one leaf to the next: the neighbours of the two that met last, where none of those that
-  /// met is left. Far sooner there than in the order of the front.
+  /// met is left. Far sooner there than in the order of the front. No more of them meet than can be told from entries
+  /// afterwards.
   void look_around() noexcept {
     KineticFront::LastMet& last = front_.last_met();
     if (!last.known) return;
@@ -112,7 +113,8 @@ class Incremental {
       task_.spending.spend_node_pairs(wide_lanes);
       SlotPair pair = from;
       const Slot first = from.of[side] - from.of[side] % wide_lanes;
-      for (unsigned lanes = overlapping_neighbours<L>(met_, side, from); lanes != 0; lanes &= lanes - 1U) {
+      for (unsigned lanes = overlapping_neighbours<L>(met_, side, from); lanes != 0 && around_count_ < around_.size();
+           lanes &= lanes - 1U) {
         pair.of[side] = first + static_cast<Slot>(std::countr_zero(lanes));
         if (pair.of[side] == from.of[side] || !met_.are_leaves(pair.of[0], pair.of[1])) continue;
         if (!look_at_leaves(pair)) return;
