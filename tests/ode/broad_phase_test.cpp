@@ -3,6 +3,7 @@
 
 #include "odds/ode/world.hpp"
 #include "ode/ode_fixture.hpp"
+#include "ode/pair_table.hpp"
 
 namespace odds::test {
 namespace {
@@ -58,6 +59,22 @@ TEST_F(BroadPhase, OneWithinAnotherLeavesTheOuterOneAsItWas) {
     EXPECT_EQ(ode::current_broad_phase, 9U);
   }
   EXPECT_EQ(ode::current_broad_phase, 2U);
+}
+
+TEST_F(BroadPhase, HasAskedForAPairThatAnotherThreadIsAt) {
+  place(1.5);
+  ASSERT_EQ(oddsPreparePair(a, b), 1);
+  ode::PairEntry* entry = ode::pair_table().find(ode::own_data(a), ode::own_data(b));
+  ASSERT_NE(entry, nullptr);
+  {
+    const ode::BroadPhaseScope scope(5);
+    entry->busy = true;
+    EXPECT_TRUE(collide(a, b).empty());
+    entry->busy = false;
+  }
+  EXPECT_EQ(entry->asked_in, 5U) << "the next one must not take it for apart";
+  EXPECT_FALSE(collide(a, b).empty());
+  EXPECT_EQ(entry->asked_in, 5U) << "no broad phase has asked";
 }
 
 /// What contacts there were: the deepest one's depth, and their mean normal, into the first body.
