@@ -241,7 +241,7 @@ class Incremental {
         expiry = open(entry);
       }
       entry.met = task_.hits.size() > hits || was_met_around(entry.a, entry.b);
-      if (!goes_on) first_left_ = front_.size();
+      if (!goes_on && !entry.met) first_left_ = front_.size();  // what met is looked at first as it is
       front_.add(entry, expiry);
       if (!goes_on) return leave();
       if (entry.met && task_.wanted > 1) go_elsewhere();
