@@ -48,7 +48,7 @@ void remember_witness(Pair::Implementation& pair) noexcept {
 }
 
 template <volume::BoundingVolume V>
-SearchResult search(const Encounter<V>& encounter, const PosedMeshes&, const Request& request,
+SearchResult search(const Encounter<V>& encounter, const PosedMeshes&, const Request& request, BucketQueue& queue,
                     Pair::Implementation& pair, Spending& spending) noexcept {
   SearchResult result;
   if (encounter.far_apart()) return result;
@@ -67,15 +67,15 @@ SearchResult search(const Encounter<V>& encounter, const PosedMeshes&, const Req
     remember_witness(pair);
     return result;
   }
-  return TimeCriticalSearch<V>(encounter, request, wanted, pair.queue, pair.hits, spending).run({0, 0, 0.0F});
+  return TimeCriticalSearch<V>(encounter, request, wanted, queue, pair.hits, spending).run({0, 0, 0.0F});
 }
 
 SearchResult search(const wide::Encounter& encounter, const PosedMeshes& meshes, const Request& request,
-                    Pair::Implementation& pair, Spending& spending) noexcept {
+                    BucketQueue& queue, Pair::Implementation& pair, Spending& spending) noexcept {
   SearchResult result;
   if (encounter.far_apart()) return result;
   const std::uint32_t wanted = wanted_hits(request);
-  wide::Task task{encounter, request, wanted, pair.queue, pair.hits, spending, result};
+  wide::Task task{encounter, request, wanted, queue, pair.hits, spending, result};
   if (request.method == Method::exact && !request.polygon_free) {
     result.method = Method::exact;
     pair.wide->depth_first(task, tree::WideTree::root, tree::WideTree::root);
@@ -215,20 +215,21 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
     return;
   }
   SearchResult result;
+  const ScratchPool::Loan scratch = pair.scratch.borrow();
   if (witness_suffices(meshes, request, pair, spending)) {
     result.ended = Progressed::enough;
     result.method = Method::incremental;
     judge(result, 0.5, request, true, answer);
   } else {
     const auto encounter = encounter_of(a, b, meshes, request);
-    result = search(encounter, meshes, request, pair, spending);
+    result = search(encounter, meshes, request, scratch->queue, pair, spending);
     forecast(encounter, result, request, spending, pair);
   }
   pair.within_is_of_front = false;
   if (!pair.hits.empty()) pair.within = Within::neither;
   if (!pair.hits.empty() && request.max_contacts > 0) {
     const double most_depth = pair.known_depth.most(meshes.pose(), b.reach());
-    make_contacts(meshes, pose_b_in_a, result, most_depth, request, pair, spending);
+    make_contacts(meshes, pose_b_in_a, result, most_depth, request, scratch->patches, pair, spending);
   } else if (answer.basis == Basis::proved && answer.verdict == Verdict::clear) {
     if (!answer_within(meshes, pose_b_in_a, request, b.reach(), false, pair, spending)) {
       note_clear(meshes, pose_b_in_a, request, pair);

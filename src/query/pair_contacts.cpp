@@ -49,13 +49,16 @@ double deepest_of(std::span<const Contact> contacts) noexcept {
   return deepest;
 }
 
-/// The answer's contacts in memory of our own, to be changed.
+/// The answer's contacts, to be changed: they stand in the pair's own memory.
 std::span<Contact> own_contacts(Pair::Implementation& pair) noexcept {
-  const std::size_t count = std::min(pair.answer.contacts.size(), pair.rough.size());
-  std::copy_n(pair.answer.contacts.begin(), count, pair.rough.begin());
-  const std::span<Contact> own = std::span(pair.rough).first(count);
-  pair.answer.contacts = own;
-  return own;
+  return std::span(pair.contacts).first(pair.answer.contacts.size());
+}
+
+/// The builder's memory is another pair's as soon as this run is over.
+void keep(std::span<const Contact> made, Pair::Implementation& pair) noexcept {
+  const std::size_t count = std::min(made.size(), pair.contacts.size());
+  std::copy_n(made.begin(), count, pair.contacts.begin());
+  pair.answer.contacts = std::span(pair.contacts).first(count);
 }
 
 /// Metres: what nobody need have measured.
@@ -118,7 +121,7 @@ void make_rough_contacts(const PosedMeshes& meshes, const Vec3* known_normal, bo
       pair.previous_normal.isZero() ? Vec3(by_place + tolerances::came_side * pair.came) : pair.previous_normal;
   spending.reserve_for_contacts(rough_finish_ns);
   const auto room =
-      std::span(pair.rough).first(std::min(static_cast<std::size_t>(request.max_contacts), pair.rough.size()));
+      std::span(pair.contacts).first(std::min(static_cast<std::size_t>(request.max_contacts), pair.contacts.size()));
   const std::size_t count = rough_contacts(meshes, pair.hits.pairs(), pair.a->is_solid() && pair.b->is_solid(),
                                            towards_a, known_normal, room, [&] { return spending.may_make_contacts(); });
   pair.answer.contacts = room.first(count);
@@ -147,7 +150,8 @@ std::uint32_t wanted_hits(const Request& request) noexcept {
 }
 
 void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const SearchResult& searched,
-                   double most_depth, const Request& request, Pair::Implementation& pair, Spending& spending) noexcept {
+                   double most_depth, const Request& request, PatchBuilder& patches, Pair::Implementation& pair,
+                   Spending& spending) noexcept {
   const Progressed ended = searched.ended;
   const Vec3 centre_b = meshes.pose().translation + meshes.origin_a();
   spending.reserve_for_contacts(request.max_contacts > 1 ? hasty_finish_ns : single_finish_ns);
@@ -195,10 +199,10 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   if (!all) input.believed_depth = believed_depth(meshes, pose_b_in_a, known_normal, pair);
   const Deadline deadline{[](void* state) noexcept { return !static_cast<Spending*>(state)->may_make_contacts(); },
                           &spending};
-  pair.answer.contacts = pair.patches.build(input, deadline);
+  keep(patches.build(input, deadline), pair);
   if (pair.answer.contacts.empty()) return;
-  pair.answer.contact_pairs = pair.patches.pairs_used();
-  pair.answer.contacts_complete = pair.patches.finished() && all;
+  pair.answer.contact_pairs = patches.pairs_used();
+  pair.answer.contacts_complete = patches.finished() && all;
   const bool whole = pair.answer.contacts_complete && ended == Progressed::finished;
   if (!pair.answer.contacts_complete) {
     limit_to_believed(meshes, 1.0, pair);
@@ -207,7 +211,7 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   } else if (!whole) {  // a single contact, or one far from where the depth was known
     for (Contact& contact : own_contacts(pair)) contact.depth = std::min(contact.depth, most_depth);
   }
-  if (pair.patches.finished() && request.max_contacts > 1) {
+  if (patches.finished() && request.max_contacts > 1) {
     const Contact& first = pair.answer.contacts.front();
     pair.known_direction.note(first.position, first.normal, pose_b_in_a, smaller, pair.answer.contacts_complete);
   }
@@ -218,7 +222,7 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   };
   const bool rests =
       pair.carried.rests(pair.answer.contacts.front().position, pose_b_in_a, request.carry_motion * smaller, smaller);
-  const bool as_known = rests && known_normal != nullptr && pair.patches.finished() &&
+  const bool as_known = rests && known_normal != nullptr && patches.finished() &&
                         std::all_of(pair.answer.contacts.begin(), pair.answer.contacts.end(), is_known);
   if (pair.answer.contacts_complete || (as_known && request.max_contacts > 1)) {
     pair.carried.keep(pair.answer.contacts, request.max_contacts, pair.hits.pairs(), pose_b_in_a,
@@ -229,7 +233,7 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   } else if (request.max_contacts > 1) {
     if (knows_nothing_here(moved_little, pair)) {
       note_first_contact(meshes, pair);
-    } else if (pair.patches.finished() && pair.patches.pairs_used() >= pairs_of_a_depth) {
+    } else if (patches.finished() && patches.pairs_used() >= pairs_of_a_depth) {
       note_part(meshes, pair);
     }
   }
@@ -254,7 +258,7 @@ bool carry_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, co
     pair.hits.add(pair.carried.proofs().front());
     pair.answer.verdict = Verdict::hit;
     pair.answer.probability = 1.0;
-    pair.answer.contacts = std::span(pair.rough).first(pair.carried.write(pose_b_in_a, pair.rough));
+    pair.answer.contacts = std::span(pair.contacts).first(pair.carried.write(pose_b_in_a, pair.contacts));
     pair.answer.contacts_carried = true;
     pair.answer.contacts_complete = pair.carried.part_of() == 0;
     pair.answer.contact_pairs = pair.carried.part_of();

@@ -15,7 +15,8 @@ namespace odds::query {
 /// Makes the answer's contacts from the pair's hits, within the budget: with care, in a hurry, or roughly. `searched`:
 /// how the hits were found; `most_depth`: what is known of the depth, metres.
 void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const SearchResult& searched,
-                   double most_depth, const Request& request, Pair::Implementation& pair, Spending& spending) noexcept;
+                   double most_depth, const Request& request, PatchBuilder& patches, Pair::Implementation& pair,
+                   Spending& spending) noexcept;
 
 /// The contacts of an earlier run, where the bodies have hardly moved since: false if they will not do.
 [[nodiscard]] bool carry_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request,

@@ -1,7 +1,10 @@
 // What a pair keeps between its construction and its end.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 
@@ -12,33 +15,44 @@
 #include "query/known_depth.hpp"
 #include "query/known_direction.hpp"
 #include "query/recalibration.hpp"
+#include "query/scratch_pool.hpp"
+#include "query/shape_data.hpp"
 #include "query/wide/searches.hpp"
 #include "query/within.hpp"
 
 namespace odds::query {
 
-/// All scratch memory, and the last answer.
+/// Entries of a front between two shapes: no more than there are pairs of nodes and leaves.
+[[nodiscard]] inline std::uint32_t front_capacity(const Shape& a, const Shape& b, std::uint32_t most) noexcept {
+  const auto* const tree_a = std::get_if<tree::WideTree>(&a.data().tree);
+  const auto* const tree_b = std::get_if<tree::WideTree>(&b.data().tree);
+  if (tree_a == nullptr || tree_b == nullptr) return 1;  // the generic framework has its bottom slice
+  const std::size_t places_a = tree_a->node_count() + tree_a->leaf_count();
+  const std::size_t places_b = tree_b->node_count() + tree_b->leaf_count();
+  const std::size_t possible = places_a <= most && places_b <= most ? places_a * places_b : most;
+  return static_cast<std::uint32_t>(std::clamp<std::size_t>(possible, 64, most));
+}
+
+/// What one run leaves for the next, its part in the memory that runs work in, and the last answer.
 struct Pair::Implementation {
   Implementation(std::shared_ptr<const Shape> shape_a, std::shared_ptr<const Shape> shape_b, const PairOptions& options)
       : a(std::move(shape_a)),
         b(std::move(shape_b)),
-        queue(options.queue_capacity),
+        scratch({options.queue_capacity, options.hit_capacity}),
         hits(options.hit_capacity),
         slice(a->volume() == volume::Kind::wide ? 1 : options.slice_capacity),
-        front(a->volume() == volume::Kind::wide ? options.slice_capacity : 1),
-        patches(options.hit_capacity),
+        front(front_capacity(*a, *b, options.slice_capacity)),
         wide(wide::searches_for(options.instruction_set)),
         polygon_free(!a->has_polygons() || !b->has_polygons()) {}
 
   std::shared_ptr<const Shape> a;
   std::shared_ptr<const Shape> b;
-  BucketQueue queue;
+  SharedScratch scratch;
   HitList hits;
   BottomSlice slice;         ///< of the incremental method with volumes of the generic framework
   wide::KineticFront front;  ///< of the same with the wide engine
   bool has_witness = false;
   TrianglePair witness;  ///< the pair of triangles that proved the last incremental hit
-  PatchBuilder patches;
   const wide::Searches* wide;
   Within within = Within::neither;        ///< as last looked at, where no surfaces met
   bool within_is_of_front = false;        ///< that was where the front is, and no run has been elsewhere since
@@ -54,7 +68,7 @@ struct Pair::Implementation {
   KnownDirection known_direction;
   CarriedContacts carried;
   EndingReserve ending;
-  std::array<Contact, most_contacts> rough;  ///< contacts that there was no time to make with care
+  std::array<Contact, most_contacts> contacts;  ///< the answer's
   Answer answer;
 };
 

@@ -27,11 +27,11 @@ void make_way_out(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, doub
       way_out(*pair.a, *pair.b, pose_b_in_a, pair.within, std::span(preferred).first(count), spending);
   pair.answer.contacts_complete = out.has_value();
   if (!out) return;
-  Contact& contact = pair.rough.front();
+  Contact& contact = pair.contacts.front();
   contact = *out;
   // It cannot be deeper than it has come: a body that was clear a moment ago is not thrown out of a mountain.
   contact.depth = std::min(contact.depth, most_depth);
-  pair.answer.contacts = std::span(pair.rough).first(1);
+  pair.answer.contacts = std::span(pair.contacts).first(1);
   pair.known_depth.note(meshes.pose(), contact.depth);
   pair.came.setZero();
   pair.apart_at.reset();

@@ -193,7 +193,8 @@ int oddsForgetGeom(dGeomID geom) ODDS_NOTHROW;
 
 /* ---- Pairs ----------------------------------------------------------------------------------------------------- */
 
-/* Takes the memory that collisions between two meshes need (some 100 KB), in either order, and warms it; a mesh is a
+/* Takes the memory that collisions between two meshes need (up to 0.4 MB, less of small meshes; and a megabyte that
+ * pairs share, or up to 32 for as many threads), in either order, and warms it; a mesh is a
  * geom of this class, a dTriMesh, or a heightfield with a stand-in. Call it before the loop for every pair that can
  * meet in a dSpaceCollide. Returns 1 (also if already prepared, and for a pair of a mesh with a primitive, which needs
  * no memory), or 0 (unlike volumes, out of memory, no mesh). A pair that was not prepared is prepared at its first
