@@ -27,7 +27,7 @@ namespace {
 constexpr unsigned long fixed_bit = 1;
 constexpr unsigned long dynamic_bit = 2;
 // Depths and lever arms beyond this overflow in ODE's solver, which then ends the program.
-constexpr double farthest_m = 1e6;
+constexpr double farthest_m = 1e7;
 constexpr double rigid_within = 1e-6;  // of a pose given from outside: R^T R - I
 
 std::atomic<std::uint64_t> solver_messages{0};
@@ -101,7 +101,7 @@ Result<Body*> World::Implementation::add(std::shared_ptr<const query::Shape> sha
     return Error{name, "", "its pose is not a finite rigid pose", "correct position and orientation"};
   const double reach_m = shape->mesh().lower().cwiseAbs().cwiseMax(shape->mesh().upper().cwiseAbs()).norm();
   if (!(pose.translation.norm() + reach_m <= farthest_m))
-    return Error{name, "", "it reaches farther than 1000 km from the origin",
+    return Error{name, "", "it reaches farther than 10,000 km from the origin",
                  "correct its position, and check the mesh's unit of length"};
   Result<Geom> geom = Geom::make(space, shape);
   if (!geom) return geom.error();

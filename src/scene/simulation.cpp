@@ -189,6 +189,12 @@ void Simulation::run_loop(const std::stop_token& stop, RunOutcome& outcome) {
   renderer_->warm_up(warm_up_ticks);
   if (device_) device_->enable_forces(true);
   const realtime::LoopPlan plan{scene_.loop.period_ns, ticks_};
+  auto next = options_.served.begin();
+  const auto pass_what_is_not_served = [&](std::uint64_t tick) noexcept {
+    while (next != options_.served.end() && *next <= tick) ++next;
+    const std::uint64_t until = next != options_.served.end() ? std::min(*next, ticks_) : ticks_;
+    if (until > tick + 1) simulated.spend(static_cast<std::int64_t>(until - tick) * plan.period_ns);
+  };
   outcome.loop = realtime::run_periodic(plan, time, stop, [&](const realtime::Tick& tick) noexcept {
     TickRecord record;
     const realtime::ThreadUsage before = realtime::thread_usage();
@@ -205,6 +211,7 @@ void Simulation::run_loop(const std::stop_token& stop, RunOutcome& outcome) {
       recorder->push(record);
     } else {
       outcome.ticks.push_back(record);  // within what was reserved
+      if (!options_.served.empty()) pass_what_is_not_served(tick.index);
     }
   });
   if (recorder) {

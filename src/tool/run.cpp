@@ -22,6 +22,7 @@
 #include "tool/replay_folder.hpp"
 #include "tool/replay_view.hpp"
 #include "tool/run_table.hpp"
+#include "tool/served_ticks.hpp"
 #include "tool/shared_options.hpp"
 
 namespace odds::tool {
@@ -32,6 +33,7 @@ struct RunArguments {
   std::optional<double> seconds;
   std::string out = "odds_run";
   bool fast = false;
+  std::string ticks_of;
 };
 
 // Ends the run early, but with its reports, on Ctrl-C; shows the time that has passed. SIGINT must be blocked before
@@ -90,6 +92,11 @@ int run(const RunArguments& arguments) {
   scene::SimulationOptions options;
   options.simulated_time = arguments.fast;
   options.seconds = arguments.seconds;
+  if (!arguments.ticks_of.empty()) {
+    auto served = read_served_ticks(arguments.ticks_of);
+    if (!served) return fail(served.error());
+    options.served = std::move(served).value();
+  }
   if (allocations_are_counted()) options.allocations = &allocations_of_this_thread;
   BuildProgress progress;
   options.progress = [&](std::string_view what, double share) { progress.show(what, share); };
@@ -140,9 +147,15 @@ void add_run(CLI::App& app, Action& action) {
   command->add_option("--seconds", arguments->seconds, "how long to run (default: as the scene says)")
       ->check(positive_and_finite());
   command->add_option("--out", arguments->out, "directory for the report and the replay")->capture_default_str();
-  command->add_flag(
+  CLI::Option* const fast = command->add_flag(
       "--fast,--simulated", arguments->fast,
       "simulated time: as fast as possible, budgets in work units, the same forces bit for bit every time");
+  command
+      ->add_option(
+          "--ticks-of", arguments->ticks_of,
+          "ticks.csv of an earlier run: serve only the ticks that it served, so that the replay of a timed run "
+          "whose queries had work units gives the same bits")
+      ->needs(fast);
   command->callback([&action, arguments] { action = [arguments] { return run(*arguments); }; });
 }
 

@@ -65,33 +65,45 @@ std::vector<HardCase> shapes() {
   };
 }
 
+// Contacts may give no more than this and what they have taken, and what the step gives in which it runs dry.
+const std::string tank = "[effects.energy_tank]\ninitial_j = 1e-4\n";
+
 std::vector<HardCase> overlaps(const std::string& knot) {
+  const std::string inside = slab + mesh("ball", "made:icosphere:radius=0.01") + fixed("plate", "slab") + tool("ball") +
+                             hand("[0, 0, 0.015]", "[0, 0, 0.02]", "[0.01, 0, 0]") + contact + pull;
+  const std::string teeth =
+      mesh("gear", "made:gear") + fixed("gear", "gear") + tool("gear", "0.1") +
+      "[device.hand]\ntype = \"scripted\"\nposition_m = [0.055, 0, 0.001]\n[[device.hand.motion]]\nkind = "
+      "\"slide\"\n"
+      "duration_s = 0.3\nby_m = [-0.006, 0, 0]\n[[device.hand.motion]]\nkind = \"hold\"\nduration_s = "
+      "0.7\nturn_rad = 1.5\n" +
+      contact + friction + pull;
   return {
-      {"starts_inside", "The tool starts 15 mm inside a block.",
-       slab + mesh("ball", "made:icosphere:radius=0.01") + fixed("plate", "slab") + tool("ball") +
-           hand("[0, 0, 0.015]", "[0, 0, 0.02]", "[0.01, 0, 0]") + contact + pull,
-       1.0, Trouble::none, 5.0, 0.05, 5e-4, 0.05, false},
+      {"starts_inside", "The tool starts 15 mm inside a block.", inside, 1.0, Trouble::none, 5.0, 0.05, 5e-4, 0.05,
+       false},
+      {"starts_inside_tank", "The same with an energy tank of 0.1 mJ: the overlap must not become motion.",
+       inside + tank, 1.0, Trouble::none, 5.0, 1e-3, 5e-4, 0.05, false},
       {"full_overlap",
        "Two equal knots lie exactly in each other; the hand draws one out. The scene asks for deep_contact.",
        mesh("knot", knot) + fixed("knot", "knot") + tool("knot") + hand("[0, 0, 0]", "[0, 0, 0.4]", "[0.3, 0, 0.4]") +
            contact + deep + pull,
        1.2, Trouble::none, 5.0, 0.2, 5e-4, 0.05, false},  // 0.8 J: 40 N at most, over 20 mm
-      {"alternating_sets", "A gear is pushed into another's teeth and turned: contacts come and go.",
-       mesh("gear", "made:gear") + fixed("gear", "gear") + tool("gear", "0.1") +
-           "[device.hand]\ntype = \"scripted\"\nposition_m = [0.055, 0, 0.001]\n[[device.hand.motion]]\nkind = "
-           "\"slide\"\n"
-           "duration_s = 0.3\nby_m = [-0.006, 0, 0]\n[[device.hand.motion]]\nkind = \"hold\"\nduration_s = "
-           "0.7\nturn_rad = 1.5\n" +
-           contact + friction + pull,
-       1.0, Trouble::none, 5.0, 5e-3, 1e-3, 0.05, false},
+      {"alternating_sets", "A gear is pushed into another's teeth and turned: contacts come and go.", teeth, 1.0,
+       Trouble::none, 5.0, 5e-3, 1e-3, 0.05, false},
+      {"alternating_tank", "The same with an energy tank of 0.1 mJ.", teeth + tank, 1.0, Trouble::none, 5.0, 2e-4, 1e-3,
+       0.05, false},
   };
 }
 
 std::vector<HardCase> scales() {
   return {
-      {"far_away", "Everything stands 900 km from the origin.",
-       slab + mesh("ball", "made:icosphere:radius=0.01") + fixed("plate", "slab", "[900000, 0, 0]") + tool("ball") +
-           hand("[900000, 0, 0.032]", "[0, 0, -0.006]", "[0.03, 0.01, 0]") + contact + friction + pull},
+      {"far_away", "Everything stands 1000 km from the origin.",
+       slab + mesh("ball", "made:icosphere:radius=0.01") + fixed("plate", "slab", "[1e6, 0, 0]") + tool("ball") +
+           hand("[1e6, 0, 0.032]", "[0, 0, -0.006]", "[0.03, 0.01, 0]") + contact + friction + pull},
+      {"far_vertices", "The vertices of the plate stand 1000 km from its mesh's origin.",
+       mesh("slab", "far_slab.obj") + mesh("ball", "made:icosphere:radius=0.01") +
+           fixed("plate", "slab", "[-1e6, 0, 0]") + tool("ball") +
+           hand("[0, 0, 0.032]", "[0, 0, -0.006]", "[0.03, 0.01, 0]") + contact + friction + pull},
       {"micrometres", "A cube of 50 micrometres and 1e-6 kg on a plate of the same make.",
        mesh("cube", "micro.obj") + fixed("plate", "cube") + tool("cube", "1e-6") +
            hand("[0, 0, 52e-6]", "[0, 0, -6e-6]", "[1e-5, 0, 0]") +

@@ -72,11 +72,11 @@ int soak_all(const std::filesystem::path& place, double seconds) {
     all_hold = all_hold && s.holds();
     fmt::print(
         "{:<24} {:9} ticks in {:6.1f} s  {} allocations  {} effects{}  not finite {}  beyond the limit {}  faulted {}  "
-        "rescued {}  largest {:.3g} N  lowest balance {:.2g} J  {}\n",
+        "rescued {}  largest {:.3g} N  lowest balance {:.2g} J  fastest {:.3g} m/s  fallen {} in {} rounds  {}\n",
         scene.filename().string(), s.ticks, s.wall_s,
         support::counts_allocations ? std::to_string(s.allocations) : "uncounted", s.effects,
         s.idle.empty() ? "" : ", never at work:" + s.idle, s.not_finite, s.beyond_limit, s.faulted, s.rescued,
-        s.largest_force_n, s.least_energy_j, s.holds() ? "holds" : "BROKEN");
+        s.largest_force_n, s.least_energy_j, s.fastest_m_per_s, s.fallen, s.rounds, s.holds() ? "holds" : "BROKEN");
     std::fflush(stdout);
   }
   return all_hold ? 0 : 1;

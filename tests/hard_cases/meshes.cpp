@@ -93,6 +93,13 @@ Obj micro() {
   return m;
 }
 
+// As the plate of most cases, but 1000 km along x.
+Obj far_slab() {
+  Obj m = micro();
+  for (auto& v : m.vertices) v = {1e6 + (v[0] > 0.0 ? 0.1 : -0.1), v[1] > 0.0 ? 0.1 : -0.1, v[2] > 0.0 ? 0.02 : -0.02};
+  return m;
+}
+
 }  // namespace
 
 void write_meshes(const std::string& folder) {
@@ -101,6 +108,7 @@ void write_meshes(const std::string& folder) {
   sheet().write(folder + "/sheet.obj");
   slivers().write(folder + "/slivers.obj");
   micro().write(folder + "/micro.obj");
+  far_slab().write(folder + "/far_slab.obj");
 }
 
 }  // namespace odds::hard_cases

@@ -1,8 +1,10 @@
 // The loop without a report.
 #include "hard_cases/soak.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "odds/scene/simulation.hpp"
@@ -11,13 +13,44 @@
 namespace odds::hard_cases {
 namespace {
 
-void note(Soak& soak, const haptics::TickRecord& record, double most_n) {
+/// Whether all that is known of every body is a number.
+bool all_finite(Soak& soak, const ode::World& world) {
+  double sum = 0.0;
+  for (std::uint32_t i = 0; i < world.body_count(); ++i) {
+    const ode::BodyState state = world.state({i});
+    const double speed = state.velocity_m_per_s.norm();
+    soak.fastest_m_per_s = std::fmax(soak.fastest_m_per_s, speed);
+    sum += state.pose.translation.sum() + state.pose.rotation.sum() + speed + state.angular_velocity_rad_per_s.sum();
+  }
+  return std::isfinite(sum);
+}
+
+/// Height of the lowest point of what never moves, metres.
+double lowest_fixed(const ode::World& world) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (std::uint32_t i = 0; i < world.body_count(); ++i) {
+    if (world.is_dynamic({i})) continue;
+    const math::Pose pose = world.state({i}).pose;
+    for (const Vec3& vertex : world.shape({i})->mesh().vertices()) lowest = std::min(lowest, (pose * vertex).z());
+  }
+  return lowest;
+}
+
+std::uint64_t below(const ode::World& world, double height) {
+  std::uint64_t count = 0;
+  for (std::uint32_t i = 0; i < world.body_count(); ++i) {
+    if (world.is_dynamic({i}) && world.state({i}).pose.translation.z() < height) ++count;
+  }
+  return count;
+}
+
+void note(Soak& soak, const haptics::TickRecord& record, bool bodies_finite, double most_n) {
   ++soak.ticks;
   const Vec3 force(record.force_n[0], record.force_n[1], record.force_n[2]);
   const double sum = force.sum() + record.torque_nm[0] + record.torque_nm[1] + record.torque_nm[2] +
                      record.tool_position_m[0] + record.tool_position_m[1] + record.tool_position_m[2] +
                      record.observed_energy_j + record.max_depth_m;
-  if (!std::isfinite(sum)) ++soak.not_finite;
+  if (!bodies_finite || !std::isfinite(sum)) ++soak.not_finite;
   if (force.norm() > most_n * (1.0 + 1e-9)) ++soak.beyond_limit;
   if ((record.safety & haptics::safety_faulted) != 0) ++soak.faulted;
   soak.largest_force_n = std::fmax(soak.largest_force_n, force.norm());
@@ -47,11 +80,14 @@ Result<Soak> soak(const std::string& scene_file, double seconds) {
   const std::int64_t period_ns = simulation.scene().loop.period_ns;
   const auto round = static_cast<std::int64_t>(simulation.scene().loop.seconds * 1e9) / period_ns;
   const auto all = static_cast<std::int64_t>(seconds * 1e9) / period_ns;
+  const double lowest = lowest_fixed(world);
   Soak result;
   std::vector<std::uint64_t> evaluations;
   const auto began = std::chrono::steady_clock::now();
   for (std::int64_t tick = 0; tick < all; ++tick) {
     if (tick % round == 0) {
+      result.fallen += below(world, lowest);
+      ++result.rounds;
       for (std::uint32_t i = 0; i < world.body_count(); ++i) world.set_state({i}, start[i]);
       if (simulation.device() != nullptr) simulation.device()->enable_forces(true);
       result.rescued += simulation.renderer().rescued_steps();
@@ -65,8 +101,9 @@ Result<Soak> soak(const std::string& scene_file, double seconds) {
       simulation.renderer().tick(tick % round * period_ns, record);
       result.allocations += counter.allocations();
     }
-    note(result, record, most_n);
+    note(result, record, all_finite(result, world), most_n);
   }
+  result.fallen += below(world, lowest);
   result.rescued += simulation.renderer().rescued_steps();
   note(evaluations, simulation.effects());
   result.effects = simulation.effects().size();

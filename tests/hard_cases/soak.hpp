@@ -11,11 +11,14 @@ namespace odds::hard_cases {
 /// What a soak left; no record is kept, so that its length costs no memory.
 struct Soak {
   std::uint64_t ticks = 0;
-  std::uint64_t not_finite = 0;
+  std::uint64_t not_finite = 0;    ///< ticks with a number that is not, at the hand or of any body
   std::uint64_t beyond_limit = 0;  ///< ticks with a force above the device's limit
   std::uint64_t faulted = 0;       ///< ticks with a latched fault
   std::uint64_t rescued = 0;       ///< steps that held a body's speed or put it back
   std::uint64_t allocations = 0;   ///< within ticks; 0 where they are not counted (a sanitizer's build)
+  double fastest_m_per_s = 0.0;    ///< of any body
+  std::uint64_t rounds = 0;        ///< times that the scene was run
+  std::uint64_t fallen = 0;        ///< bodies, summed over the rounds, that were below all that is fixed in the end
   std::size_t effects = 0;         ///< that the scene asks for
   std::string idle;                ///< those of them that were never evaluated
   double largest_force_n = 0.0;

@@ -111,6 +111,60 @@ TEST(Run, FastGivesTheSameForcesTwiceAndFromItsOwnReplay) {
   EXPECT_EQ(a, forces_of(contents_of(folder / "c/ticks.csv")));
 }
 
+std::string with(std::string text, const std::string& from, const std::string& to) {
+  return text.replace(text.find(from), from.size(), to);
+}
+
+// So many ticks a second that some are skipped on most machines; what was skipped must be skipped again.
+TEST(Run, InRealTimeWithWorkUnitsIsReplayedBitForBit) {
+  const TemporaryFolder folder;
+  const std::string busy =
+      with(with(scene, "seconds = 0.3", "seconds = 0.3\nrate_hz = 10000"), "budget_us = 80", "work_units = 1600");
+  folder.write("scene.toml", busy);
+  ASSERT_EQ(run_tool(folder, "run scene.toml --out timed").status, 0);
+  const std::size_t begin = busy.find("[device.hand]");
+  const std::string track = "[device.hand]\ntype = \"replay\"\nfile = \"timed/replay/device.csv\"\n";
+  folder.write("replay.toml", busy.substr(0, begin) + track + busy.substr(busy.find("[effects.contact]")));
+  const Ran replayed = run_tool(folder, "run replay.toml --fast --ticks-of timed/ticks.csv --out again");
+  ASSERT_EQ(replayed.status, 0) << replayed.errors;
+  const std::string timed = forces_of(contents_of(folder / "timed/ticks.csv"));
+  EXPECT_GT(timed.size(), 100U * 20U);
+  EXPECT_EQ(timed, forces_of(contents_of(folder / "again/ticks.csv")));
+  EXPECT_EQ(contents_of(folder / "timed/replay/poses.csv"), contents_of(folder / "again/replay/poses.csv"));
+}
+
+TEST(Run, SkipsTheTicksThatAnotherRunSkipped) {
+  const TemporaryFolder folder;
+  folder.write("scene.toml", scene);
+  folder.write("served.csv", "tick,more\n0,\n1,\n2,\n40,\n41,\n250,\n400,\n");
+  const Ran ran = run_tool(folder, "run scene.toml --fast --ticks-of served.csv --out out");
+  ASSERT_EQ(ran.status, 0) << ran.errors;
+  EXPECT_NE(ran.output.find("6 of 300 ran, 0 late, 294 skipped"), std::string::npos) << ran.output;
+  std::istringstream lines(contents_of(folder / "out/ticks.csv"));
+  std::string ticks;
+  for (std::string line; std::getline(lines, line);) ticks += line.substr(0, line.find(',')) + " ";
+  EXPECT_EQ(ticks, "tick 0 1 2 40 41 250 ");
+}
+
+TEST(Run, RefusesTicksThatAreNone) {
+  const TemporaryFolder folder;
+  folder.write("scene.toml", scene);
+  const auto errors_of = [&](const std::string& text) {
+    folder.write("served.csv", text);
+    const Ran ran = run_tool(folder, "run scene.toml --fast --ticks-of served.csv --out out");
+    EXPECT_NE(ran.status, 0) << text;
+    return ran.errors;
+  };
+  EXPECT_NE(errors_of("time,more\n0,\n").find("served.csv:1: the first column is not 'tick'"), std::string::npos);
+  EXPECT_NE(errors_of("tick,more\n0,\nx,\n").find("served.csv:3: \"x\" is not the number of a tick"), std::string::npos);
+  EXPECT_NE(errors_of("tick,more\n1,\n1,\n").find("served.csv:3: ticks must ascend"), std::string::npos);
+  EXPECT_NE(errors_of("tick,more\n").find("there is no tick in it"), std::string::npos);
+  EXPECT_NE(errors_of("tick," + std::string(5000, 'x')).find("served.csv:1: the line is too long"), std::string::npos);
+  const Ran slow = run_tool(folder, "run scene.toml --ticks-of served.csv --out out");
+  EXPECT_NE(slow.status, 0);
+  EXPECT_NE(slow.errors.find("--fast"), std::string::npos) << slow.errors;
+}
+
 TEST(Run, RunsInRealTimeForTheTimeAsked) {
   const TemporaryFolder folder;
   folder.write("scene.toml", scene);

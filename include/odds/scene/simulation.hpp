@@ -29,6 +29,9 @@ struct SimulationOptions {
   /// and the same forces bit for bit on every run.
   bool simulated_time = false;
   std::optional<double> seconds;  ///< how long to run; nothing: as the scene says
+  /// In simulated time: numbers of the planned ticks that are served, ascending; the others are skipped, as they were
+  /// in a run whose machine was too slow. Empty: all.
+  std::vector<std::uint64_t> served;
   haptics::AllocationCount allocations = nullptr;
   realtime::Clock clock = {};    ///< of phases and effects, not queries; null: realtime::fastest_clock()
   bool contact_impulse = false;  ///< whether World::contact_impulse is wanted
