@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "odds/primitive/triangle_triangle.hpp"
 #include "odds/query/answer.hpp"
@@ -11,6 +12,8 @@
 #include "odds/tree/hierarchy.hpp"
 #include "query/bucket_queue.hpp"
 #include "query/node_odds.hpp"
+#include "query/node_odds_table.hpp"
+#include "query/shape_data.hpp"
 #include "query/spending.hpp"
 
 namespace odds::query {
@@ -52,6 +55,7 @@ class Encounter {
       : a_(a), b_(b), b_in_a_(b_in_a), estimator_(request.estimator), leaf_test_(request.leaf_test) {
     reach_ = a.reach() + b.reach();
     relative_ = V::PreparedPose::make(b_in_a_, 2.0 * reach_);
+    place_ = b_in_a_.translation.template cast<float>();
   }
 
   /// True if the enclosing balls about both origins are apart; then nothing below may be asked (the margins assume
@@ -92,12 +96,19 @@ class Encounter {
 
   /// What orders the search; see met_rank.
   [[nodiscard]] float rank(std::uint32_t i, std::uint32_t j) const noexcept {
+    if (estimator_ == EstimatorKind::kinematic) return log_rate_of_log_odds(odds(i, j));
     return met_rank(met(i, j), estimator_, {a_.levels(), b_.levels()});
   }
 
   /// Estimated probability that surfaces below i and j meet, given that their volumes overlap.
   [[nodiscard]] float probability(std::uint32_t i, std::uint32_t j) const noexcept {
+    if (estimator_ == EstimatorKind::kinematic) return probability_of_log_odds(odds(i, j));
     return met_probability(met(i, j), estimator_, {a_.levels(), b_.levels()});
+  }
+
+  /// What the odds of a pair are made from.
+  [[nodiscard]] NodeNumbers numbers(std::uint32_t i, std::uint32_t j) const noexcept {
+    return numbers_of(met(i, j), {place_, a_.nodes()[i].radius, b_.nodes()[j].radius});
   }
 
   [[nodiscard]] bool tests_leaf_volumes() const noexcept { return leaf_test_; }
@@ -151,6 +162,10 @@ class Encounter {
   [[nodiscard]] const tree::Hierarchy<V>& b() const noexcept { return b_; }
 
  private:
+  [[nodiscard]] float odds(std::uint32_t i, std::uint32_t j) const noexcept {
+    return log_odds(numbers(i, j), node_weights[static_cast<std::size_t>(kind_of<V>)]);
+  }
+
   /// A pair takes 20 to 60 ns, but 1.5 us where both triangles lie exactly in one plane.
   static constexpr std::uint32_t pairs_between_polls = 2;
 
@@ -167,6 +182,7 @@ class Encounter {
   const tree::Hierarchy<V>& b_;
   math::Pose b_in_a_;
   typename V::PreparedPose relative_;
+  Vec3f place_;  ///< of B's origin in A's frame
   double reach_ = 0.0;
   EstimatorKind estimator_;
   bool leaf_test_;

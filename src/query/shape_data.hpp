@@ -1,7 +1,9 @@
 // What a Shape holds: the one place where the list of volumes becomes types.
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <type_traits>
 #include <variant>
 
 #include "odds/query/shape.hpp"
@@ -25,6 +27,15 @@ using GenericVolumes =
     Volumes<volume::Aabb, volume::Obb, volume::Sphere, volume::Kdop14, volume::Kdop18, volume::Kdop26, volume::Hull>;
 using AnyTree = GenericVolumes::AnyTree;
 static_assert(std::variant_size_v<AnyTree> == volume::kind_names.size());
+
+/// The kind of a volume of the generic framework.
+template <class V>
+inline constexpr volume::Kind kind_of = []<class... Tree>(std::type_identity<std::variant<Tree...>>) {
+  std::size_t place = 0;
+  std::size_t found = sizeof...(Tree);
+  ((found = std::is_same_v<Tree, tree::Hierarchy<V>> ? place : found, ++place), ...);
+  return static_cast<volume::Kind>(found);
+}(std::type_identity<AnyTree>{});
 
 struct Shape::Data {
   std::shared_ptr<const mesh::TriangleMesh> mesh;

@@ -4,16 +4,15 @@
 #include <type_traits>
 #include <variant>
 
-#include "odds/math/random.hpp"
 #include "query/posed_meshes.hpp"
 #include "query/search.hpp"
 #include "query/shape_data.hpp"
+#include "support/node_sample.hpp"
 
 namespace odds::ablation {
 namespace {
 
 constexpr std::size_t kept_of_a_pose = 48;
-constexpr std::size_t most_looked_at = 20000;
 
 /// Of the box about A's volume in its axes, and the box in the same axes about B's.
 template <class V>
@@ -41,45 +40,20 @@ class Judge {
   }
 
   void judge(std::uint64_t line, std::vector<JudgedNodes>& judged) {
-    if (met_.far_apart() || !met_.volumes_overlap(0, 0)) return;
-    for (const query::NodePair& pair : sample(line)) {
+    for (const query::NodePair& pair : testing::sample_nodes(met_, kept_of_a_pose, line)) {
       JudgedNodes one;
       for (std::size_t kind = 0; kind < estimate_kinds.size(); ++kind) {
         one.probability[kind] = static_cast<double>(probability(pair, estimate_kinds[kind]));
       }
-      one.meet = meet_below(pair);
+      one.meet = testing::meet_below(met_, pair, hits_);
       one.line = line;
       judged.push_back(one);
     }
   }
 
  private:
-  /// Reservoir sampling over the pairs in the order of a depth-first search.
-  std::vector<query::NodePair> sample(std::uint64_t seed) {
-    math::Random random(0xAB1A, seed);
-    std::vector<query::NodePair> kept;
-    std::vector<query::NodePair> open = {{0, 0, 0.0F}};
-    std::size_t seen = 0;
-    while (!open.empty() && seen < most_looked_at) {
-      const query::NodePair pair = open.back();
-      open.pop_back();
-      if (met_.is_leaf_pair(pair.a, pair.b)) continue;
-      const auto children = met_.children(pair.a, pair.b);
-      for (const query::NodePair& child : {children.first, children.second}) {
-        if (!met_.volumes_overlap(child.a, child.b)) continue;
-        open.push_back(child);
-        ++seen;
-        if (kept.size() < kept_of_a_pose) {
-          kept.push_back(child);
-        } else if (const auto at = static_cast<std::size_t>(random.below(seen)); at < kept_of_a_pose) {
-          kept[at] = child;
-        }
-      }
-    }
-    return kept;
-  }
-
   float probability(const query::NodePair& pair, const EstimateKind& kind) const {
+    if (kind.learnt) return met_.probability(pair.a, pair.b);
     const V& volume_a = a_.nodes()[pair.a].volume;
     const V& volume_b = b_.nodes()[pair.b].volume;
     const double common = kind.enclosing_box ? overlap_of_boxes(volume_a, volume_b, pose_)
@@ -88,14 +62,6 @@ class Judge {
                               volume_a.volume(),       volume_b.volume(),       common};
     return query::met_probability(met, kind.kinematic ? query::EstimatorKind::kinematic : query::EstimatorKind::cells,
                                   {a_.levels(), b_.levels()});
-  }
-
-  bool meet_below(const query::NodePair& pair) {
-    query::Spending spending{query::Budget::unlimited()};
-    query::SearchResult result;
-    hits_.clear();
-    query::search_depth_first(met_, pair, 1, hits_, spending, result);
-    return !hits_.empty();
   }
 
   const tree::Hierarchy<V>& a_;

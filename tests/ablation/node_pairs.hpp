@@ -15,9 +15,11 @@ namespace odds::ablation {
 struct EstimateKind {
   std::string_view name;
   bool kinematic;
-  bool enclosing_box;  ///< the overlap is taken with the box in A's axes about B, instead of with B's volume itself
+  bool enclosing_box;   ///< the overlap is taken with the box in A's axes about B, instead of with B's volume itself
+  bool learnt = false;  ///< the odds that the search uses, with weights fitted on other meshes
 };
-inline constexpr std::array<EstimateKind, 4> estimate_kinds = {{{"kinematic, overlap of the volumes", true, false},
+inline constexpr std::array<EstimateKind, 5> estimate_kinds = {{{"kinematic, as the search uses it", true, false, true},
+                                                                {"kinematic, overlap of the volumes", true, false},
                                                                 {"kinematic, overlap of enclosing boxes", true, true},
                                                                 {"cells, overlap of the volumes", false, false},
                                                                 {"cells, overlap of enclosing boxes", false, true}}};

@@ -1,9 +1,9 @@
-// odds_calibration: fits what an answer without a proof states as its probability, and says how true that is on meshes
-// and poses that it was not fitted on. Prints the tables of src/query/answer_odds_table.hpp.
+// odds_calibration: fits what an answer without a proof states as its probability, or with --nodes a pair of nodes, and
+// says how true that is on meshes and poses that it was not fitted on. Prints the tables of
+// src/query/answer_odds_table.hpp and src/query/node_odds_table.hpp.
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <map>
 #include <string>
 #include <string_view>
@@ -15,6 +15,8 @@
 
 #include "calibration/ascending.hpp"
 #include "calibration/logistic_fit.hpp"
+#include "calibration/meetings.hpp"
+#include "calibration/node_odds.hpp"
 #include "calibration/unproved.hpp"
 #include "odds/report/accuracy/forecast.hpp"
 #include "query/answer_odds.hpp"
@@ -29,66 +31,8 @@ struct Options {
   std::uint64_t seed = 1;
   std::string volume;  ///< empty: all
   std::vector<std::string> held_out;
+  bool nodes = false;
 };
-
-/// Meshes of Debian's package openfoam-examples, which are left out if it is not installed.
-std::string example(const std::string& file) {
-  return "/usr/share/doc/openfoam-examples/examples/resources/geometry/" + file;
-}
-
-std::vector<Meeting> present(std::vector<Meeting> meetings) {
-  const auto is_there = [](const std::string& mesh) {
-    return mesh.starts_with("made:") || std::filesystem::exists(mesh);
-  };
-  std::erase_if(meetings, [&](const Meeting& m) { return !is_there(m.a) || !is_there(m.b); });
-  return meetings;
-}
-
-std::vector<Meeting> training_meetings() {
-  const std::string car = "made:car_body:triangles=60000";
-  const std::string knot = "made:torus_knot:along=600,across=20";
-  const std::string bumpy = "made:bumpy_sphere:frequency=40";
-  const std::string dense = "made:bumpy_sphere:frequency=60,bumps=80,width=0.15,seed=9";
-  return present(
-      {{car, car},
-       {knot, knot},
-       {bumpy, bumpy},
-       {"made:gear:teeth=40,flank=8", "made:peg:radius=0.004,around=96"},
-       {"made:gear:teeth=17,flank=20", "made:gear:teeth=61,flank=5"},
-       {"made:terrain:cells=120,side=0.3,height=0.03", "made:icosphere:frequency=30"},
-       {"made:uv_sphere:around=300,down=150", "made:box:cells=20"},
-       {"made:plates:count=6,cells=60,wave=0.004", "made:peg:around=128,along=64"},
-       {example("motorBike.obj.gz"), example("motorBike-passenger-helmet.obj.gz")},
-       {example("propellerTip.obj.gz"), example("propellerTip.obj.gz")},
-       {example("flange.stl.gz"), example("flange.stl.gz")},
-       {example("cyclone.stl.gz"), example("blob.stl.gz")},
-       {example("DTC-scaled.stl.gz"), example("DTC-scaled.stl.gz")},
-       {bumpy, bumpy + ",scale=0.985", Procedure::nested},
-       {"made:icosphere:frequency=40", "made:icosphere:frequency=36,radius=0.0488", Procedure::nested},
-       {"made:torus:ring=0.08,tube=0.03,around=180,across=90", "made:torus:ring=0.08,tube=0.0285,around=170,across=80",
-        Procedure::nested},
-       {dense, dense + ",scale=0.99", Procedure::nested},
-       {"made:torus:around=160,across=80", "made:torus:tube=0.0294,around=150,across=70", Procedure::nested}});
-}
-
-std::vector<Meeting> held_out_meetings(const std::vector<std::string>& more) {
-  const std::string waved = "made:bumpy_sphere:frequency=50,bumps=12,width=0.6,height=0.2,seed=4";
-  std::vector<Meeting> meetings = {
-      {"made:car_body:triangles=250000,seed=7",
-       "made:torus_knot:p=3,q=5,along=900,across=24,ring=0.6,winding=0.25,tube=0.06"},
-      {"made:nested_shells:frequency=30,seed=5", "made:torus:around=120,across=60,ring=0.03,tube=0.01"},
-      {"made:car_body:triangles=20000,seed=3", "made:terrain:cells=150,side=6,height=0.5,seed=8"},
-      {"made:bumpy_sphere:frequency=80,bumps=200,width=0.1,seed=2", "made:gear:teeth=25,flank=6,module=0.004"},
-      {example("motorBike.obj.gz"), example("motorBike.obj.gz")},
-      {example("building_wtc2.obj.gz"), example("building_wtc2.obj.gz")},
-      {example("bullet.stl.gz"), example("wigley.stl.gz")},
-      {waved, waved + ",scale=0.99", Procedure::nested},
-      {"made:uv_sphere:around=200,down=100", "made:uv_sphere:around=180,down=90,radius=0.0494", Procedure::nested},
-      {"made:torus:ring=0.1,tube=0.05,around=200,across=100", "made:torus:ring=0.1,tube=0.0485,around=190,across=90",
-       Procedure::nested}};
-  for (const std::string& mesh : more) meetings.push_back({mesh, mesh});
-  return present(std::move(meetings));
-}
 
 struct Kept {
   Meeting meeting;
@@ -232,7 +176,12 @@ int main(int argc, char** argv) {
   app.add_option("--seed", options.seed, "of the training poses; the held-out ones have the next");
   app.add_option("--held-out", options.held_out, "more meshes to judge by, each with its copy");
   app.add_option("--bv", options.volume, "tables of this volume alone; default: of all");
+  app.add_flag("--nodes", options.nodes, "the odds of pairs of nodes, not of answers");
   CLI11_PARSE(app, argc, argv);
-  odds::calibration::run(options);
+  if (options.nodes) {
+    odds::calibration::calibrate_nodes(options.volume, options.poses, options.seed, options.held_out);
+  } else {
+    odds::calibration::run(options);
+  }
   return 0;
 }
