@@ -1,6 +1,8 @@
 // What a world's broad phase says of bodies for which it did not ask.
 #include "ode/broad_phase.hpp"
 
+#include <limits>
+
 #include "odds/ode/world.hpp"
 #include "ode/ode_fixture.hpp"
 #include "ode/pair_table.hpp"
@@ -95,10 +97,12 @@ struct Seen {
 /// A body that a hand puts here and there over another one, by 40 pairs of nodes a step.
 class BroadPhaseOfAWorld : public ::testing::Test {
  protected:
-  void make(const std::shared_ptr<const query::Shape>& fixed, const std::shared_ptr<const query::Shape>& moved) {
+  void make(const std::shared_ptr<const query::Shape>& fixed, const std::shared_ptr<const query::Shape>& moved,
+            std::uint64_t frame_units = std::numeric_limits<std::uint64_t>::max()) {
     ode::WorldOptions options;
     options.query.budget = query::Budget::work(40);
     options.contact.responds = false;
+    options.frame_work_units = frame_units;
     auto made = ode::World::make(options);
     ASSERT_TRUE(made.ok());
     world.emplace(std::move(made).value());
@@ -158,6 +162,19 @@ TEST_F(BallAboutASheet, ThatHasFlownRoundIsPushedBackWhenceItCameNow) {
     put(0.1, 3);
     EXPECT_EQ(seen.contacts, 0);
   }
+}
+
+// A frame leaves pairs out for which it has no time: that nobody asked does not mean that they were apart.
+TEST_F(BroadPhaseOfAWorld, WithAFrameClaimsNothing) {
+  std::vector<Vec3> corners{{-0.05, -0.05, 0}, {0.05, -0.05, 0}, {0.05, 0.05, 0}, {-0.05, 0.05, 0}};
+  std::vector<mesh::Triangle> triangles{{0, 1, 2}, {0, 2, 3}};
+  auto sheet = mesh::TriangleMesh::make(std::move(corners), std::move(triangles), "sheet").value();
+  auto shape = query::Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(sheet))).value();
+  make(shape, sphere_shape(0.005), 100000);
+  put(0.0055);
+  put(-0.001, 4);
+  ASSERT_GT(seen.contacts, 0);
+  EXPECT_GT(seen.normal.z(), 0.0) << "towards where its centre is";
 }
 
 TEST_F(BallAboutASheet, ThatWasTakenRoundWhileContactsWereOffIsPushedTowardsItsPlace) {
