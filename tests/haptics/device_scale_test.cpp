@@ -215,7 +215,7 @@ TEST(MissedTicks, InALoopThatOverslept) {
   realtime::SimulatedTime time;
   std::vector<std::uint32_t> flags;
   std::vector<std::uint64_t> skipped;
-  const auto summary = realtime::run_periodic({ms, 60}, time.source(), {}, [&](const realtime::Tick& tick) noexcept {
+  const auto summary = realtime::run_periodic({ms, 80}, time.source(), {}, [&](const realtime::Tick& tick) noexcept {
     flags.push_back(stage.tick(static_cast<std::int64_t>(tick.index) * ms).safety);
     skipped.push_back(tick.skipped_before);
     if (tick.index == 10) time.spend(15 * ms);
