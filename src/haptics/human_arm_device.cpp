@@ -30,9 +30,10 @@ Vec3 midpoint(const Vec3& velocity, const Vec3& force, double mass, double b, do
 }  // namespace
 
 HumanArmDevice::HumanArmDevice(std::unique_ptr<ScriptedDevice> script, const HumanArm& arm)
-    : script_(std::move(script)), arm_(arm), spec_(simulated_spec("human_arm")) {
+    : script_(std::move(script)), arm_(arm), spec_(simulated_spec("human_arm", script_->spec().workspace_center_m)) {
   spec_.physical_damping_ns_per_m = arm.device_damping_ns_per_m;
   spec_.max_stiffness_n_per_m = 0.0;  // not known: to be found out
+  spec_.max_angular_stiffness_nm_per_rad = 0.0;
 }
 
 Result<std::unique_ptr<Device>> HumanArmDevice::make(const DeviceRequest& request) {

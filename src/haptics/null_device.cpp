@@ -6,7 +6,9 @@
 namespace odds::haptics {
 
 NullDevice::NullDevice(const math::Pose& pose)
-    : position_m_(pose.translation), orientation_(Quat(pose.rotation).normalized()), spec_(simulated_spec("null")) {}
+    : position_m_(pose.translation),
+      orientation_(Quat(pose.rotation).normalized()),
+      spec_(simulated_spec("null", pose.translation)) {}
 
 Result<std::unique_ptr<Device>> NullDevice::make(const DeviceRequest& request) {
   SettingsReader reader(*request.settings);

@@ -8,6 +8,8 @@
 namespace odds::haptics {
 namespace {
 
+constexpr std::uint64_t longest_gap_ns = 3'600'000'000'000;
+
 bool finite(const DeviceState& s) {
   return s.position_m.allFinite() && s.orientation.coeffs().allFinite() && s.velocity_m_per_s.allFinite() &&
          s.angular_velocity_rad_per_s.allFinite();
@@ -38,9 +40,21 @@ void copy(const ode::StepSummary& step, TickRecord& record) {
 }  // namespace
 
 Renderer::Renderer(ode::World& world, const std::optional<Hand>& hand, EffectSet& effects, AllocationCount allocations)
-    : world_(&world), hand_(hand), effects_(&effects), allocations_(allocations), period_s_(world.options().step_s) {
-  if (hand_) world.add_coupling(hand_->tool);
-  if (hand_) safety_.emplace(hand_->limits);
+    : world_(&world),
+      hand_(hand),
+      effects_(&effects),
+      allocations_(allocations),
+      period_s_(world.options().step_s),
+      period_ns_(std::llround(1e9 * period_s_)),
+      passed_s_(period_s_) {
+  if (!hand_) return;
+  world.add_coupling(hand_->tool);
+  safety_.emplace(hand_->limits, hand_->scale.force);
+  const DeviceSpec& spec = hand_->device->spec();
+  senses_position_ = spec.senses_position;
+  senses_orientation_ = spec.senses_orientation;
+  actuates_force_ = spec.actuates_force;
+  actuates_torque_ = spec.actuates_torque;
 }
 
 bool Renderer::begin() noexcept {
@@ -56,8 +70,11 @@ bool Renderer::begin() noexcept {
     world_->look();
     return true;
   }
-  fresh_ns_ = 0;
-  safety_.emplace(hand_->limits);
+  served_ns_ = 0;
+  served_ = false;
+  age_ns_ = 0;
+  farthest_m_ = 0.0;
+  safety_.emplace(hand_->limits, hand_->scale.force);
   if (!begin_at_device()) return false;
   world_->look();
   return begin_at_device();  // it may have moved while that took its time
@@ -66,9 +83,11 @@ bool Renderer::begin() noexcept {
 bool Renderer::begin_at_device() noexcept {
   DeviceState state;
   if (!hand_->device->read(0, state) || !finite(state)) return false;
+  own_ = state;
+  state = hand_->scale.in_scene(state);
   state_ = state;
   before_ = state;
-  energy_.reset(state);
+  energy_.reset(own_);
   world_->set_state(hand_->tool,
                     {{state.orientation.toRotationMatrix(), state.position_m}, Vec3::Zero(), Vec3::Zero()});
   return true;
@@ -85,20 +104,52 @@ bool Renderer::warm_up(int ticks) {
   return begin();
 }
 
+void Renderer::count_time(std::int64_t now_ns) noexcept {
+  // Unsigned, for clocks that leap from one end to the other; more than an hour is as long as an hour.
+  const std::uint64_t ahead_ns = static_cast<std::uint64_t>(now_ns) - static_cast<std::uint64_t>(served_ns_);
+  const std::int64_t gone_ns =
+      now_ns > served_ns_ ? static_cast<std::int64_t>(std::min(ahead_ns, longest_gap_ns)) : std::int64_t{0};
+  const std::int64_t passed_ns = served_ ? std::max(gone_ns, period_ns_) : gone_ns;
+  age_ns_ = std::min(age_ns_ + passed_ns, static_cast<std::int64_t>(longest_gap_ns));
+  passed_s_ = passed_ns > period_ns_ ? 1e-9 * static_cast<double>(passed_ns) : period_s_;
+  served_ns_ = now_ns;
+  served_ = true;
+}
+
+DeviceState Renderer::sensed(const DeviceState& said) const noexcept {
+  DeviceState state = said;
+  if (!senses_position_) {
+    state.position_m = own_.position_m;
+    state.velocity_m_per_s.setZero();
+  }
+  if (!senses_orientation_) {
+    state.orientation = own_.orientation;
+    state.angular_velocity_rad_per_s.setZero();
+  }
+  return state;
+}
+
 void Renderer::read_device(std::int64_t now_ns) noexcept {
-  DeviceState state = state_;
-  if (!hand_->device->read(now_ns, state) || !finite(state)) {
+  DeviceState said = own_;
+  const bool told = hand_->device->read(now_ns, said);
+  said = sensed(said);
+  const DeviceState state = hand_->scale.in_scene(said);
+  if (!told || !finite(state)) {
     ++failed_reads_;  // the last good state stays, and grows stale
     return;
   }
+  own_ = said;
   state_ = state;
-  if (state.fresh) fresh_ns_ = now_ns;
-  energy_.moved(state);
+  if (state.fresh) age_ns_ = 0;
+  farthest_m_ = std::max(farthest_m_, (own_.position_m - hand_->scale.origin_m).norm());
+  energy_.moved(own_);
 }
 
 void Renderer::write_device(std::int64_t now_ns, const ode::Wrench& on_hand, TickRecord& record) noexcept {
   DeviceCommand command{now_ns, on_hand.force_n, on_hand.torque_nm, 0};
-  safety_->apply(command, period_s_, 1e-9 * static_cast<double>(now_ns - fresh_ns_));
+  if (!actuates_force_) command.force_n.setZero();
+  if (!actuates_torque_) command.torque_nm.setZero();
+  safety_->apply(command, period_s_, 1e-9 * static_cast<double>(age_ns_), passed_s_);
   if (!hand_->device->write(command)) safety_->trip();  // a device that takes no commands must not keep an old one
   energy_.sent(command.force_n, command.torque_nm);
   copy(command.force_n, record.force_n);
@@ -112,10 +163,12 @@ TickView Renderer::view(std::int64_t now_ns) noexcept {
   view.world = world_;
   view.now_ns = now_ns;
   view.step_s = world_->options().step_s;
+  view.passed_s = passed_s_;
   if (!hand_) return view;
   view.device = &state_;
   view.tool = hand_->tool;
   view.energy = &energy_;
+  view.force_scale = hand_->scale.force;
   return view;
 }
 
@@ -180,7 +233,10 @@ void Renderer::step_world(TickView& tick) noexcept {
 void Renderer::tick(std::int64_t now_ns, TickRecord& record) noexcept {
   const std::uint64_t allocated = allocations_ != nullptr ? allocations_() : 0;
   before_ = state_;
-  if (hand_) read_device(now_ns);
+  if (hand_) {
+    count_time(now_ns);
+    read_device(now_ns);
+  }
   TickView tick = view(now_ns);
   step_world(tick);
   const ode::StepSummary& step = last_step_;
@@ -207,8 +263,10 @@ void Renderer::tick(std::int64_t now_ns, TickRecord& record) noexcept {
 
 std::int64_t Renderer::trial(std::int64_t now_ns) noexcept {
   if (hand_) {
-    DeviceState state = state_;
-    if (hand_->device->read(now_ns, state) && finite(state)) state_ = state;
+    DeviceState said = own_;
+    const bool told = hand_->device->read(now_ns, said);
+    const DeviceState state = hand_->scale.in_scene(sensed(said));
+    if (told && finite(state)) state_ = state;
     world_->set_coupling(hand_->tool, {});  // no stiffness, no damping: no rows, unless an effect pulls
   }
   const realtime::Clock& clock = world_->options().clock;

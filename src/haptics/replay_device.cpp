@@ -7,7 +7,8 @@
 
 namespace odds::haptics {
 
-ReplayDevice::ReplayDevice(DeviceTrack track) : track_(std::move(track)), spec_(simulated_spec("replay")) {}
+ReplayDevice::ReplayDevice(DeviceTrack track)
+    : track_(std::move(track)), spec_(simulated_spec("replay", track_.states.front().position_m)) {}
 
 Result<std::unique_ptr<Device>> ReplayDevice::make(const DeviceRequest& request) {
   SettingsReader reader(*request.settings);

@@ -35,7 +35,8 @@ void read_safety_limits(SettingsReader& reader, SafetyLimits& limits) {
   reader.number("decay_s", Range::positive(), limits.decay_s);
 }
 
-void Safety::apply(DeviceCommand& command, double dt_s, double state_age_s) noexcept {
+void Safety::apply(DeviceCommand& command, double dt_s, double state_age_s, double passed_s) noexcept {
+  const double gone_s = passed_s > dt_s ? passed_s : dt_s;
   ++counts_.ticks;
   std::uint32_t flags = 0;
   const auto stage = [&](bool changed, SafetyFlag flag, std::uint64_t& count) {
@@ -44,7 +45,11 @@ void Safety::apply(DeviceCommand& command, double dt_s, double state_age_s) noex
     ++count;
   };
 
-  const bool finite = command.force_n.allFinite() && command.torque_nm.allFinite();
+  // A force that the scale takes beyond all numbers is as bad as one that came so.
+  const Vec3 scaled_force_n = force_scale_ * command.force_n;
+  const Vec3 scaled_torque_nm = force_scale_ * command.torque_nm;
+  const bool finite = scaled_force_n.allFinite() && scaled_torque_nm.allFinite() && command.force_n.allFinite() &&
+                      command.torque_nm.allFinite();
   if (!finite) {
     command.force_n.setZero();
     command.torque_nm.setZero();
@@ -53,6 +58,17 @@ void Safety::apply(DeviceCommand& command, double dt_s, double state_age_s) noex
   if (not_finite_in_a_row_ >= limits_.faulty_ticks) faulted_ = true;
   stage(!finite, safety_not_finite, counts_.not_finite);
 
+  const bool scaled = finite && (scaled_force_n != command.force_n || scaled_torque_nm != command.torque_nm);
+  if (scaled) {
+    command.force_n = scaled_force_n;
+    command.torque_nm = scaled_torque_nm;
+  }
+  stage(scaled, safety_scaled, counts_.scaled);
+
+  const bool restarted =
+      gone_s > limits_.stale_after_s && limits_.rise_s > 0.0 && since_start_s_ > 0.0 && gone_s > dt_s;
+  if (restarted) since_start_s_ = 0.0;
+  stage(restarted, safety_restarted, counts_.restarted);
   since_start_s_ += dt_s;
   const bool rising = since_start_s_ < limits_.rise_s;
   if (rising) {
@@ -76,7 +92,8 @@ void Safety::apply(DeviceCommand& command, double dt_s, double state_age_s) noex
   last_force_n_ = command.force_n;
   last_torque_nm_ = command.torque_nm;
 
-  stale_s_ = stale ? stale_s_ + dt_s : 0.0;
+  // Of a gap only what lies beyond the limit was stale.
+  stale_s_ = stale ? stale_s_ + std::min(gone_s, std::max(dt_s, state_age_s - limits_.stale_after_s)) : 0.0;
   if (stale) {
     const double left = std::clamp(1.0 - stale_s_ / limits_.decay_s, 0.0, 1.0);
     command.force_n *= left;

@@ -76,7 +76,7 @@ Result<Motion> read_motion(const Settings& settings) {
 }  // namespace
 
 ScriptedDevice::ScriptedDevice(const math::Pose& start, std::vector<Motion> motions, bool repeat)
-    : repeat_(repeat), spec_(simulated_spec("scripted")) {
+    : repeat_(repeat), spec_(simulated_spec("scripted", start.translation)) {
   if (motions.empty()) motions.push_back({});
   Vec3 position = start.translation;
   Quat orientation = Quat(start.rotation).normalized();

@@ -26,18 +26,20 @@ ode::Wrench reaction_on_hand(const ode::Wrench& on_body, const Vec3& center_of_m
   return {-on_body.force_n, -(on_body.torque_nm + arm.cross(on_body.force_n))};
 }
 
-double least_device_damping(const VirtualCoupling& coupling, double period_s) noexcept {
-  return 0.5 * coupling.k_t_n_per_m * period_s + std::abs(coupling.b_t_ns_per_m);
+double least_device_damping(const VirtualCoupling& coupling, double period_s, const DeviceScale& scale) noexcept {
+  return scale.stiffness() * (0.5 * coupling.k_t_n_per_m * period_s + std::abs(coupling.b_t_ns_per_m));
 }
 
-std::optional<std::string> passivity_warning(const VirtualCoupling& coupling, const DeviceSpec& device,
-                                             double period_s) {
-  if (device.max_stiffness_n_per_m > 0.0 && coupling.k_t_n_per_m > device.max_stiffness_n_per_m) {
+std::optional<std::string> passivity_warning(const VirtualCoupling& coupling, const DeviceSpec& device, double period_s,
+                                             const DeviceScale& scale) {
+  const double felt_n_per_m = scale.stiffness() * coupling.k_t_n_per_m;
+  if (device.max_stiffness_n_per_m > 0.0 && felt_n_per_m > device.max_stiffness_n_per_m) {
     return fmt::format(
-        "the virtual coupling's k_t of {:.4g} N/m exceeds the {:.4g} N/m that the device '{}' can render",
-        coupling.k_t_n_per_m, device.max_stiffness_n_per_m, device.name);
+        "the virtual coupling's k_t of {:.4g} N/m{} exceeds the {:.4g} N/m that the device '{}' can render",
+        felt_n_per_m, felt_n_per_m != coupling.k_t_n_per_m ? " at the device" : "", device.max_stiffness_n_per_m,
+        device.name);
   }
-  const double needed = least_device_damping(coupling, period_s);
+  const double needed = least_device_damping(coupling, period_s, scale);
   if (device.physical_damping_ns_per_m >= needed) return std::nullopt;
   const std::string has = device.physical_damping_ns_per_m > 0.0
                               ? fmt::format("has {:.4g} N s/m", device.physical_damping_ns_per_m)
@@ -47,6 +49,22 @@ std::optional<std::string> passivity_warning(const VirtualCoupling& coupling, co
       "|B|); the "
       "device '{}' {}",
       needed, device.name, has);
+}
+
+std::optional<std::string> torque_warning(const VirtualCoupling& coupling, const DeviceSpec& device,
+                                          const DeviceScale& scale) {
+  if (!device.actuates_torque) {
+    return fmt::format("the device '{}' exerts no torque: the hand feels only the virtual coupling's force",
+                       device.name);
+  }
+  const double felt_nm_per_rad = scale.force * coupling.k_r_nm_per_rad;
+  if (!(device.max_angular_stiffness_nm_per_rad > 0.0) || felt_nm_per_rad <= device.max_angular_stiffness_nm_per_rad) {
+    return std::nullopt;
+  }
+  return fmt::format(
+      "the virtual coupling's k_r of {:.4g} N m/rad{} exceeds the {:.4g} N m/rad that the device '{}' can render",
+      felt_nm_per_rad, felt_nm_per_rad != coupling.k_r_nm_per_rad ? " at the device" : "",
+      device.max_angular_stiffness_nm_per_rad, device.name);
 }
 
 }  // namespace odds::haptics

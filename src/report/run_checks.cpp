@@ -80,8 +80,9 @@ Check memory(const RunInfo& info, const RunSummary& s) {
 }
 
 Check force(const RunSummary& s) {
-  static constexpr const char* stages[] = {"not finite",   "gentle rise",   "force clamped", "torque clamped",
-                                           "force slewed", "torque slewed", "stale device",  "fault latched"};
+  static constexpr const char* stages[] = {"not finite",   "gentle rise",     "force clamped", "torque clamped",
+                                           "force slewed", "torque slewed",   "stale device",  "fault latched",
+                                           "force scaled", "rise begun again"};
   Check check{"force", "Were all forces finite, and no fault latched?", "", State::met};
   std::string interventions;
   for (std::size_t bit = 0; bit < s.safety.size(); ++bit) {

@@ -72,7 +72,8 @@ Json counts(const RunInfo& info, const RunSummary& s) {
 Json safety(const RunSummary& s) {
   return {{"not_finite", s.safety[0]},     {"force_rise", s.safety[1]},   {"force_clamped", s.safety[2]},
           {"torque_clamped", s.safety[3]}, {"force_slewed", s.safety[4]}, {"torque_slewed", s.safety[5]},
-          {"stale", s.safety[6]},          {"faulted", s.safety[7]}};
+          {"stale", s.safety[6]},          {"faulted", s.safety[7]},      {"scaled", s.safety[8]},
+          {"restarted", s.safety[9]}};
 }
 
 Json effects(const RunInfo& info) {

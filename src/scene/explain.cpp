@@ -80,6 +80,17 @@ std::string work_of(std::string_view name, const haptics::Effect& effect, std::u
                             totals.per_tick(totals.triangle_pairs));
 }
 
+std::string device_line(const Scene& scene) {
+  if (!scene.device) return {};
+  const haptics::DeviceScale& s = scene.device->scale;
+  return fmt::format(
+      "{} ({}), line {}: force_scale {:.4g}, workspace_scale {:.4g} about [{:.4g}, {:.4g}, {:.4g}] m; a stiffness of "
+      "the "
+      "scene is {:.4g} times as much at the device",
+      scene.device->name, scene.device->type, scene.device->place.line, s.force, s.workspace, s.origin_m.x(),
+      s.origin_m.y(), s.origin_m.z(), s.stiffness());
+}
+
 std::vector<EffectLine> lines_of(Simulation& simulation, const std::vector<std::vector<double>>& differences,
                                  const std::vector<std::uint64_t>& evaluations, const Totals& totals) {
   std::vector<EffectLine> lines;
@@ -159,6 +170,9 @@ Result<Explanation> explain(const Scene& asked, std::uint64_t samples,
   explanation.ticks = totals.ticks;
   explanation.step_us = percentile(whole, 0.5);
   explanation.warnings = simulation.warnings();
+  if (std::string warning = simulation.workspace_warning(); !warning.empty())
+    explanation.warnings.push_back(std::move(warning));
+  explanation.device = device_line(scene);
   explanation.effects = lines_of(simulation, differences, evaluations, totals);
   return explanation;
 }

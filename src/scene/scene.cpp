@@ -211,6 +211,7 @@ std::optional<Error> read_device(const haptics::Setting& setting, Scene& scene) 
   const bool has_type = reader.text("type", device.type);
   double damping = 0.0;
   haptics::read_safety_limits(reader, device.limits);
+  haptics::read_device_scale(reader, device.scale);
   if (reader.number("physical_damping_ns_per_m", Range::not_negative(), damping))
     device.physical_damping_ns_per_m = damping;
   std::vector<std::string_view> keys;
@@ -223,6 +224,7 @@ std::optional<Error> read_device(const haptics::Setting& setting, Scene& scene) 
   const haptics::DeviceSpec& spec = made.value()->spec();
   if (!reader.has("max_force_n")) device.limits.max_force_n = spec.max_force_n;
   if (!reader.has("max_torque_nm")) device.limits.max_torque_nm = spec.max_torque_nm;
+  if (!reader.has("workspace_origin_m")) device.scale.origin_m = spec.workspace_center_m;
   scene.device = std::move(device);
   return std::nullopt;
 }

@@ -147,16 +147,30 @@ std::optional<Error> Simulation::add_hand() {
     if (scene_.device->physical_damping_ns_per_m)
       spec.physical_damping_ns_per_m = *scene_.device->physical_damping_ns_per_m;
     for (std::size_t i = 0; i < effects_->size(); ++i) {
-      std::string warning = effects_->effect(i).warning(spec, scene_.loop.period_s());
-      if (!warning.empty()) warnings_.push_back(std::move(warning));
+      for (std::string& warning : effects_->effect(i).warnings(spec, scene_.device->scale, scene_.loop.period_s()))
+        warnings_.push_back(std::move(warning));
+    }
+    if (!spec.actuates_force) {
+      warnings_.push_back(fmt::format("the device '{}' exerts no force: the hand feels nothing", spec.name));
     }
     const auto follows =
         std::find_if(scene_.bodies.begin(), scene_.bodies.end(), [](const Body& b) { return b.follows_device; });
     tool_ = bodies_[static_cast<std::size_t>(follows - scene_.bodies.begin())];
-    hand = haptics::Hand{device_.get(), *tool_, scene_.device->limits};
+    hand = haptics::Hand{device_.get(), *tool_, scene_.device->limits, scene_.device->scale};
   }
   renderer_ = std::make_unique<haptics::Renderer>(*world_, hand, *effects_, options_.allocations);
   return std::nullopt;
+}
+
+std::string Simulation::workspace_warning() const {
+  if (!device_) return {};
+  const double radius_m = device_->spec().workspace_radius_m;
+  const double farthest_m = renderer_->farthest_m();
+  if (!(radius_m > 0.0) || farthest_m <= radius_m * (1.0 + 1e-9)) return {};
+  return fmt::format(
+      "the device '{}' went {:.4g} m from the centre of its workspace, which ends at {:.4g} m: a real one of its kind "
+      "could not follow; give a larger workspace_scale, or another workspace_origin_m",
+      device_->spec().name, farthest_m, radius_m);
 }
 
 PoseTrack Simulation::make_pose_track() const {

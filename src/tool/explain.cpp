@@ -27,6 +27,7 @@ void print(const scene::Scene& scene, const scene::Explanation& explanation) {
     fmt::print("  on   {:<18} line {:<4} {:8.2f} us a tick (p90 {:.2f})  {}; needs {}\n", effect.name,
                effect.place.line, effect.cost_us, effect.cost_p90_us, effect.work, effect.needs);
   }
+  if (!explanation.device.empty()) fmt::print("device {}\n", explanation.device);
   std::uint64_t samples = 0;
   for (const scene::EffectLine& effect : explanation.effects) samples = std::max(samples, effect.samples);
   fmt::print(

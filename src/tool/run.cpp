@@ -116,6 +116,8 @@ int run(const RunArguments& arguments) {
     const Watcher watcher(arguments.seconds.value_or(simulation.scene().loop.seconds), stop);
     outcome = simulation.run(stop.get_token());
   }
+  if (const std::string warning = simulation.workspace_warning(); !warning.empty())
+    fmt::print(stderr, "warning: {}\n", warning);
   info.loop = outcome.loop;
   info.thread = outcome.thread;
   info.pairs_left_out = outcome.pairs_left_out;

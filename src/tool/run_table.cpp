@@ -25,6 +25,7 @@ std::string safety(const haptics::SafetyCounts& c) {
     if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", what, count);
   };
   add("not finite", c.not_finite);
+  add("scaled", c.scaled);
   add("rising", c.force_rise);
   add("force clamped", c.force_clamped);
   add("torque clamped", c.torque_clamped);
@@ -32,6 +33,7 @@ std::string safety(const haptics::SafetyCounts& c) {
   add("torque slewed", c.torque_slewed);
   add("stale", c.stale);
   add("faulted", c.faulted);
+  add("rise begun again", c.restarted);
   return text.empty() ? "no tick changed" : text + " (ticks)";
 }
 

@@ -105,14 +105,104 @@ TEST(Safety, FadesAStaleForceAndComesBackWithoutAKick) {
   }
 }
 
+TEST(Safety, ScalesForceAndTorqueBeforeItsLimits) {
+  Safety safety({.max_force_n = 5.0, .max_torque_nm = 1.0}, 3.0);
+  DeviceCommand c = command({1, 0, 0}, {0, 0.1, 0});
+  safety.apply(c, dt, 0.0);
+  EXPECT_EQ(c.force_n, Vec3(3, 0, 0));
+  EXPECT_EQ(c.torque_nm, Vec3(0, 3.0 * 0.1, 0));
+  EXPECT_EQ(c.flags, unsigned{safety_scaled});
+  c = command({4, 0, 0});
+  safety.apply(c, dt, 0.0);
+  EXPECT_NEAR(c.force_n.x(), 5.0, 1e-12) << "the limit is the device's, not the scene's";
+  EXPECT_EQ(c.flags, unsigned{safety_scaled | safety_force_clamped});
+  c = command({0, 0, 0});
+  safety.apply(c, dt, 0.0);
+  EXPECT_EQ(safety.counts().scaled, 2U) << "nothing to scale is not counted";
+}
+
+TEST(Safety, TakesAForceThatItsScaleMakesEndlessForOneThatIsNotFinite) {
+  Safety safety({.max_force_n = 5.0}, 1e6);
+  DeviceCommand c = command({1e305, 0, 0});
+  safety.apply(c, dt, 0.0);
+  EXPECT_EQ(c.force_n.norm(), 0.0);
+  EXPECT_EQ(c.flags, unsigned{safety_not_finite});
+}
+
+TEST(Safety, DecaysByTheTimeThatPassedAndNotByTheTicksServed) {
+  // Five periods of 1 ms, served one by one or as a single one of 5 ms: the force is the same at the end.
+  const SafetyLimits limits{.stale_after_s = 0.005, .decay_s = 0.010};
+  Safety served(limits);
+  Safety missed(limits);
+  DeviceCommand a = command({2, 0, 0});
+  DeviceCommand b = a;
+  served.apply(a, dt, 0.0, dt);
+  missed.apply(b, dt, 0.0, dt);
+  for (int i = 1; i <= 10; ++i) {
+    a = command({2, 0, 0});
+    served.apply(a, dt, 0.001 * i, dt);
+  }
+  b = command({2, 0, 0});
+  missed.apply(b, dt, 0.010, 0.010);
+  EXPECT_NEAR(a.force_n.x(), 1.0, 1e-9);
+  EXPECT_NEAR(b.force_n.x(), a.force_n.x(), 1e-9);
+  b = command({2, 0, 0});
+  missed.apply(b, dt, 0.030, 0.020);
+  EXPECT_EQ(b.force_n.x(), 0.0);
+}
+
+TEST(Safety, GoesOnWithItsDecayWhileTheClockStandsStillOrRunsBackwards) {
+  Safety safety({.stale_after_s = 0.005, .decay_s = 0.010});
+  double last = 2.0;
+  for (int i = 0; i < 10; ++i) {
+    DeviceCommand c = command({2, 0, 0});
+    const double passed = i % 3 == 0 ? 0.0 : i % 3 == 1 ? -7.0 : std::nan("");
+    safety.apply(c, dt, 0.006, passed);
+    EXPECT_NEAR(c.force_n.x(), last - 0.2, 1e-9) << i;
+    last = c.force_n.x();
+  }
+  EXPECT_NEAR(last, 0.0, 1e-9);
+}
+
+TEST(Safety, StepsNoFartherAfterAGapThanAfterATick) {
+  Safety safety({.max_force_slew_n_per_s = 500.0});
+  for (int i = 1; i <= 4; ++i) {
+    DeviceCommand c = command({0, 0, 3});
+    safety.apply(c, dt, 0.0, 0.3);
+    EXPECT_NEAR(c.force_n.z(), 0.5 * i, 1e-12);
+  }
+}
+
+TEST(Safety, RisesAnewAfterAGapLongerThanAStateMayBeOld) {
+  Safety safety({.rise_s = 0.01, .stale_after_s = 0.02});
+  const auto served = [&](double passed_s) {
+    DeviceCommand c = command({4, 0, 0});
+    safety.apply(c, dt, 0.0, passed_s);
+    return c;
+  };
+  EXPECT_EQ(served(1.0).flags, unsigned{safety_force_rise}) << "the first rise is no second one";
+  for (int i = 1; i < 15; ++i) served(dt);
+  EXPECT_EQ(served(0.019).flags, 0U) << "a short gap";
+  const DeviceCommand first = served(0.021);
+  EXPECT_EQ(first.flags, unsigned{safety_force_rise | safety_restarted});
+  EXPECT_NEAR(first.force_n.x(), 0.4, 1e-9);
+  for (int i = 2; i <= 10; ++i) EXPECT_NEAR(served(dt).force_n.x(), 0.4 * i, 1e-9);
+  EXPECT_EQ(safety.counts().restarted, 1U);
+  Safety without({.stale_after_s = 0.02});
+  DeviceCommand c = command({4, 0, 0});
+  for (int i = 0; i < 3; ++i) without.apply(c, dt, 0.0, 1.0);
+  EXPECT_EQ(c.flags, 0U) << "a scene that asked for no rise gets none";
+}
+
 RC_GTEST_PROP(Safety, OutputIsAlwaysFiniteAndWithinItsLimits, ()) {
-  Safety safety({.max_force_n = 5.0, .max_torque_nm = 0.3, .max_force_slew_n_per_s = 800.0});
+  const double scale = *rc::gen::element(1.0, 1e-6, 0.3, 1e6);
+  Safety safety({.max_force_n = 5.0, .max_torque_nm = 0.3, .max_force_slew_n_per_s = 800.0}, scale);
   const auto inputs =
       *rc::gen::container<std::vector<std::array<double, 4>>>(rc::gen::arbitrary<std::array<double, 4>>());
   Vec3 last = Vec3::Zero();
   for (const auto& in : inputs) {
     DeviceCommand c = command({in[0], in[1], in[2]}, {in[3], in[0], 0});
-    safety.apply(c, dt, 0.0);
+    safety.apply(c, dt, 0.0, in[1]);
     RC_ASSERT(c.force_n.allFinite() && c.torque_nm.allFinite());
     RC_ASSERT(c.force_n.norm() <= 5.0 * (1 + 1e-12));
     RC_ASSERT(c.torque_nm.norm() <= 0.3 * (1 + 1e-12));

@@ -47,6 +47,36 @@ TEST(VirtualCoupling, WarnsOfAStiffnessThatTheDeviceCannotRender) {
   EXPECT_NE(warning->find("1500 N/m"), std::string::npos) << *warning;
 }
 
+TEST(VirtualCoupling, WarnsOfWhatTheDeviceFeelsOfAScaledScene) {
+  VirtualCoupling coupling;
+  coupling.k_t_n_per_m = 500.0;
+  coupling.b_t_ns_per_m = 1.0;
+  const DeviceScale scale{.force = 0.5, .workspace = 8.0};
+  EXPECT_DOUBLE_EQ(least_device_damping(coupling, 0.001, scale), 4.0 * 1.25);
+  EXPECT_FALSE(passivity_warning(coupling, device_with(5.0), 0.001, scale).has_value());
+  const auto warning = passivity_warning(coupling, device_with(4.9), 0.001, scale);
+  ASSERT_TRUE(warning.has_value());
+  EXPECT_NE(warning->find("at least 5 N s/m"), std::string::npos) << *warning;
+  const auto stiff = passivity_warning(coupling, device_with(5.0, 1999.0), 0.001, scale);
+  ASSERT_TRUE(stiff.has_value());
+  EXPECT_NE(stiff->find("2000 N/m at the device"), std::string::npos) << *stiff;
+  EXPECT_FALSE(passivity_warning(coupling, device_with(5.0, 2000.0), 0.001, scale).has_value());
+}
+
+TEST(VirtualCoupling, WarnsOfATorqueThatTheDeviceCannotRender) {
+  VirtualCoupling coupling;
+  coupling.k_r_nm_per_rad = 4.0;
+  DeviceSpec device = device_with(5.0);
+  ASSERT_TRUE(torque_warning(coupling, device).has_value()) << "a device without motors that turn";
+  device.actuates_torque = true;
+  EXPECT_FALSE(torque_warning(coupling, device).has_value()) << "its greatest stiffness is not known";
+  device.max_angular_stiffness_nm_per_rad = 4.0;
+  EXPECT_FALSE(torque_warning(coupling, device, {.workspace = 10.0}).has_value()) << "angles are not scaled";
+  const auto warning = torque_warning(coupling, device, {.force = 2.0});
+  ASSERT_TRUE(warning.has_value());
+  EXPECT_NE(warning->find("8 N m/rad at the device"), std::string::npos) << *warning;
+}
+
 TEST(VirtualCoupling, PullsTowardsTheDeviceWithItsVelocities) {
   VirtualCoupling coupling;
   coupling.max_force_n = 4.0;

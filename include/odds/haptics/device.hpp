@@ -6,25 +6,28 @@
 #include <string>
 #include <string_view>
 
+#include "odds/haptics/settings.hpp"
 #include "odds/math/error.hpp"
 #include "odds/math/types.hpp"
 
 namespace odds::haptics {
 
-/// What a device can do. SI units; a limit of 0 means "cannot", infinity "no limit known".
+/// What a device can do, in its own frame and SI units. A force or torque of 0 means "cannot", infinity "no limit
+/// known"; a stiffness, damping or radius of 0 means "not known".
 struct DeviceSpec {
   std::string name;   ///< name of the type, as in the registry
   std::string maker;  ///< who makes it; "odds" for the ones without hardware
   double max_force_n = 0.0;
   double max_torque_nm = 0.0;
-  double max_stiffness_n_per_m = 0.0;  ///< largest closed-loop stiffness at 1 kHz
-  double max_angular_stiffness_nm_per_rad = 0.0;
-  double physical_damping_ns_per_m = 0.0;  ///< of the mechanism itself: what the sampled-data rule asks about
-  double workspace_radius_m = 0.0;
-  bool senses_position = true;
-  bool senses_orientation = true;
-  bool actuates_force = false;
-  bool actuates_torque = false;
+  double max_stiffness_n_per_m = 0.0;             ///< largest closed-loop stiffness at 1 kHz
+  double max_angular_stiffness_nm_per_rad = 0.0;  ///< the same for turning
+  double physical_damping_ns_per_m = 0.0;         ///< of the mechanism itself: what the sampled-data rule asks about
+  double workspace_radius_m = 0.0;         ///< how far the handle goes from the centre; who leaves it is warned of
+  Vec3 workspace_center_m = Vec3::Zero();  ///< devices without hardware: where they begin
+  bool senses_position = true;             ///< false: the handle stays where it was at the start, whatever read() says
+  bool senses_orientation = true;          ///< false: it keeps the orientation that it had at the start
+  bool actuates_force = false;             ///< false: write() is given no force
+  bool actuates_torque = false;            ///< false: write() is given no torque
 };
 
 /// Pose and motion of the handle, world frame, SI.
@@ -37,6 +40,22 @@ struct DeviceState {
   std::uint32_t buttons = 0;  ///< bit i: button i is pressed
   bool fresh = false;         ///< false: nothing new since the last read; the rest repeats the last state
 };
+
+/// How a device stands to the scene, as in CHAI3D: a small device explores a large scene, or a strong one a weak scene.
+/// A stiffness k of the scene is k * force * workspace at the device (stiffness()), a damping likewise. Angles are not
+/// scaled, so an angular stiffness is multiplied by `force` alone.
+struct DeviceScale {
+  double force = 1.0;            ///< the device's force and torque are this multiple of the scene's; > 0
+  double workspace = 1.0;        ///< a way of the device, and its linear velocity, is this multiple in the scene; > 0
+  Vec3 origin_m = Vec3::Zero();  ///< the point that is the same in both: the centre of the device's workspace
+
+  [[nodiscard]] double stiffness() const noexcept { return force * workspace; }
+  /// A state of the device, in the scene. A scale of 1 keeps every bit.
+  [[nodiscard]] DeviceState in_scene(const DeviceState& state) const noexcept;
+};
+
+/// Reads force_scale, workspace_scale and workspace_origin_m from a device's table; keys left out keep what is there.
+void read_device_scale(SettingsReader& reader, DeviceScale& scale);
 
 /// What the device shall exert on the hand, world frame, SI.
 struct DeviceCommand {

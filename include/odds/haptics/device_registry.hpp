@@ -15,10 +15,20 @@
 
 namespace odds::haptics {
 
-/// Keys of a device's table that are not the device's: its type, and the limits of the safety stages (safety.hpp).
-inline constexpr std::array<std::string_view, 9> common_device_keys = {
-    "type",   "max_force_n",   "max_torque_nm", "max_force_slew_n_per_s",   "max_torque_slew_nm_per_s",
-    "rise_s", "stale_after_s", "decay_s",       "physical_damping_ns_per_m"};
+/// Keys of a device's table that are not the device's: its type, the limits of the safety stages (safety.hpp), and the
+/// scales (device.hpp).
+inline constexpr std::array<std::string_view, 12> common_device_keys = {"type",
+                                                                        "max_force_n",
+                                                                        "max_torque_nm",
+                                                                        "max_force_slew_n_per_s",
+                                                                        "max_torque_slew_nm_per_s",
+                                                                        "rise_s",
+                                                                        "stale_after_s",
+                                                                        "decay_s",
+                                                                        "physical_damping_ns_per_m",
+                                                                        "force_scale",
+                                                                        "workspace_scale",
+                                                                        "workspace_origin_m"};
 
 /// What a device is made from.
 struct DeviceRequest {

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "odds/haptics/device.hpp"
 #include "odds/haptics/passivity.hpp"
@@ -56,10 +57,12 @@ struct TickView {
   ode::World* world = nullptr;
   std::int64_t now_ns = 0;
   double step_s = 0.0;
-  const DeviceState* device = nullptr;        ///< null without one
+  double passed_s = 0.0;  ///< since the last tick that was served: the period, or more where ticks were missed
+  const DeviceState* device = nullptr;        ///< in the scene, its workspace scale applied; null without one
+  double force_scale = 1.0;                   ///< the device's force is this multiple of the scene's
   ode::BodyId tool;                           ///< the body that follows the device; means nothing without one
   const ode::StepSummary* step = nullptr;     ///< null before the step
-  const PassivityObserver* energy = nullptr;  ///< at the hand, up to the last tick; null without a device
+  const PassivityObserver* energy = nullptr;  ///< at the device, up to the last tick; null without a device
 };
 
 /// A contact that began or ended.
@@ -105,15 +108,18 @@ class Effect {
   virtual std::uint32_t before_step(const TickView& /*tick*/) noexcept { return 0; }
   virtual std::uint32_t meet(const TickView& /*tick*/, ode::Meeting& /*meeting*/) noexcept { return 0; }
   virtual std::uint32_t after_step(const TickView& /*tick*/) noexcept { return 0; }
-  /// Adds to force and torque on the hand, at the handle's origin, before the safety stages.
+  /// Adds to force and torque on the hand, in the scene, at the handle's origin, before the safety stages.
   virtual std::uint32_t on_hand(const TickView& /*tick*/, ode::Wrench& /*on_hand*/) noexcept { return 0; }
 
   /// What happened so far, for effects that write it down.
   [[nodiscard]] virtual std::span<const ContactEvent> events() const noexcept { return {}; }
   /// Events that found no room.
   [[nodiscard]] virtual std::uint64_t events_lost() const noexcept { return 0; }
-  /// A sentence on what may go wrong with it on this device; "" if nothing.
-  [[nodiscard]] virtual std::string warning(const DeviceSpec& /*device*/, double /*period_s*/) const { return {}; }
+  /// Sentences on what may go wrong with it on this device, which stands to the scene as `scale` says.
+  [[nodiscard]] virtual std::vector<std::string> warnings(const DeviceSpec& /*device*/, const DeviceScale& /*scale*/,
+                                                          double /*period_s*/) const {
+    return {};
+  }
 };
 
 /// "one contact, velocity": the bits in words.

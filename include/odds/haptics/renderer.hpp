@@ -19,6 +19,7 @@ struct Hand {
   Device* device = nullptr;  ///< open; outlives the renderer
   ode::BodyId tool;          ///< the body that stands for what the hand holds
   SafetyLimits limits;
+  DeviceScale scale;  ///< how the device stands to the scene
 };
 
 /// Steps of the world within one tick. A tick takes as many as the fastest body needs to move no farther than `way_m`
@@ -50,7 +51,10 @@ class Renderer {
   /// place. Call it in the loop's thread while the device's forces are off. False as begin().
   bool warm_up(int ticks);
 
-  /// `now_ns`: the tick's planned time since the start of the loop. Fills in all of `record` but the loop's own fields
+  /// `now_ns`: the tick's planned time since the start of the loop. Where it is more than a period after the last one,
+  /// ticks were missed: the device held its command meanwhile, the world goes on by one period all the same, and the
+  /// safety stages know how long it was (Safety::apply). A time that stands still or goes back counts as one period.
+  /// Fills in all of `record` but the loop's own fields
   /// (tick, planned, woke, done, skipped) and the operating system's (faults, switches). noexcept; no allocation, lock,
   /// system call or output, provided that the device does none.
   void tick(std::int64_t now_ns, TickRecord& record) noexcept;
@@ -61,12 +65,14 @@ class Renderer {
 
   /// What the world did in the last tick.
   [[nodiscard]] const ode::StepSummary& last_step() const noexcept { return last_step_; }
-  /// The balance of energy at the hand; means nothing without one.
+  /// The balance of energy at the hand, by the device's own way and force; means nothing without one.
   [[nodiscard]] const PassivityObserver& energy() const noexcept { return energy_; }
   /// Null without a hand.
   [[nodiscard]] const SafetyCounts* safety_counts() const noexcept { return safety_ ? &safety_->counts() : nullptr; }
   /// Reads of the device that failed or gave numbers that were not finite.
   [[nodiscard]] std::uint64_t failed_reads() const noexcept { return failed_reads_; }
+  /// Largest distance of the handle from the centre of the device's workspace, by the device's own measure.
+  [[nodiscard]] double farthest_m() const noexcept { return farthest_m_; }
   /// Steps in which the world had to put a body back or hold its speed.
   [[nodiscard]] std::uint64_t rescued_steps() const noexcept { return rescued_steps_; }
   [[nodiscard]] std::uint64_t contacts_left_out() const noexcept { return contacts_left_out_; }
@@ -78,7 +84,10 @@ class Renderer {
  private:
   /// Reads the device as at time 0 and puts the tool there, at rest. False if it gives no position.
   bool begin_at_device() noexcept;
+  void count_time(std::int64_t now_ns) noexcept;
   void read_device(std::int64_t now_ns) noexcept;
+  /// What the device senses of what it says; the rest stays as it was.
+  [[nodiscard]] DeviceState sensed(const DeviceState& said) const noexcept;
   void write_device(std::int64_t now_ns, const ode::Wrench& on_hand, TickRecord& record) noexcept;
   [[nodiscard]] TickView view(std::int64_t now_ns) noexcept;
   [[nodiscard]] std::uint32_t steps_needed() const noexcept;
@@ -98,7 +107,17 @@ class Renderer {
   AllocationCount allocations_;
   double period_s_;
   DeviceState state_;
-  std::int64_t fresh_ns_ = 0;  // when the state was last fresh
+  DeviceState own_;  // the same in the device's own frame
+  bool senses_position_ = true;
+  bool senses_orientation_ = true;
+  bool actuates_force_ = true;
+  bool actuates_torque_ = true;
+  double farthest_m_ = 0.0;
+  std::int64_t period_ns_;
+  std::int64_t served_ns_ = 0;  // when the last tick was
+  bool served_ = false;         // a tick, since begin()
+  double passed_s_;             // since the last tick that was served
+  std::int64_t age_ns_ = 0;     // of the state
   std::uint64_t failed_reads_ = 0;
   std::uint64_t rescued_steps_ = 0;
   std::uint64_t contacts_left_out_ = 0;

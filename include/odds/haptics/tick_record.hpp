@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <type_traits>
 
@@ -19,7 +20,10 @@ enum SafetyFlag : std::uint32_t {
   safety_torque_slewed = 1U << 5,   ///< the same for the torque
   safety_stale = 1U << 6,           ///< the device state was too old; the force decays to zero
   safety_faulted = 1U << 7,         ///< a fault is latched: zero force until reset
+  safety_scaled = 1U << 8,          ///< force and torque multiplied by the device's force scale
+  safety_restarted = 1U << 9,       ///< ticks were missed for so long that the gentle rise began again
 };
+inline constexpr std::size_t safety_flag_count = 10;
 
 /// Value of a counter that nobody counted, so that "zero" is always a measurement.
 inline constexpr std::uint32_t not_measured = 0xFFFFFFFFU;
@@ -52,7 +56,7 @@ struct TickRecord {
   std::uint32_t contacts = 0;  ///< contact points used
   double max_depth_m = 0.0;    ///< deepest contact, >= 0
 
-  std::array<double, 3> device_position_m{};
+  std::array<double, 3> device_position_m{};  ///< of the handle in the scene, its workspace scale applied
   std::array<double, 4> device_orientation_wxyz{1.0, 0.0, 0.0, 0.0};
   std::array<double, 3> tool_position_m{};
   std::array<double, 4> tool_orientation_wxyz{1.0, 0.0, 0.0, 0.0};

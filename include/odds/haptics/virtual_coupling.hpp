@@ -28,12 +28,20 @@ struct VirtualCoupling {
                                            const Vec3& handle_m) noexcept;
 
 /// The rule for sampled virtual walls: a device is passive against stiffness K and damping B at period T only if its
-/// own physical damping b >= K T / 2 + |B| (Colgate and Schenkel, J. Robotic Systems 14, 1997). Returns a sentence if
-/// the coupling breaks it on this device, or exceeds the device's greatest stiffness; a warning, not a proof of either.
+/// own physical damping b >= K T / 2 + |B| (Colgate and Schenkel, J. Robotic Systems 14, 1997). The coupling stands in
+/// the scene; K and B are what the device feels of it, DeviceScale::stiffness() times as much. Returns a sentence if
+/// the coupling breaks the rule on this device, or exceeds the device's greatest stiffness; a warning, not a proof of
+/// either.
 [[nodiscard]] std::optional<std::string> passivity_warning(const VirtualCoupling& coupling, const DeviceSpec& device,
-                                                           double period_s);
+                                                           double period_s, const DeviceScale& scale = {});
 
-/// The least physical damping that the rule asks for, N s/m.
-[[nodiscard]] double least_device_damping(const VirtualCoupling& coupling, double period_s) noexcept;
+/// A sentence if the coupling's angular stiffness, as the device feels it, exceeds the device's greatest, or if the
+/// device exerts no torque at all.
+[[nodiscard]] std::optional<std::string> torque_warning(const VirtualCoupling& coupling, const DeviceSpec& device,
+                                                        const DeviceScale& scale = {});
+
+/// The least physical damping of the device that the rule asks for, N s/m.
+[[nodiscard]] double least_device_damping(const VirtualCoupling& coupling, double period_s,
+                                          const DeviceScale& scale = {}) noexcept;
 
 }  // namespace odds::haptics

@@ -62,8 +62,8 @@ struct RunSummary {
   std::uint64_t major_faults = 0;
   std::uint64_t voluntary_switches = 0;
   std::uint64_t involuntary_switches = 0;
-  std::array<std::uint64_t, 8> safety{};  ///< ticks per bit of haptics::SafetyFlag
-  std::uint64_t not_finite = 0;           ///< records with a number that is not finite
+  std::array<std::uint64_t, haptics::safety_flag_count> safety{};  ///< ticks per bit of haptics::SafetyFlag
+  std::uint64_t not_finite = 0;                                    ///< records with a number that is not finite
   std::uint32_t most_contacts = 0;
   double deepest_m = 0.0;
   double largest_force_n = 0.0;

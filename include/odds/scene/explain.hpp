@@ -27,6 +27,7 @@ struct Explanation {
   std::vector<EffectLine> effects;  ///< all that are known, in the order of a tick
   std::uint64_t ticks = 0;          ///< of the trial, simulated time
   double step_us = 0.0;             ///< median of a whole step, collision included
+  std::string device;               ///< a line on the device and its scales; empty without one
   std::vector<std::string> warnings;
 };
 

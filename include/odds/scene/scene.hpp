@@ -57,6 +57,7 @@ struct Device {
   std::string type;
   haptics::Settings settings;  ///< the whole table; the device's factory reads its part
   haptics::SafetyLimits limits;
+  haptics::DeviceScale scale;
   std::optional<double> physical_damping_ns_per_m;
   haptics::Place place;
 };

@@ -86,6 +86,8 @@ class Simulation {
   [[nodiscard]] const std::vector<std::shared_ptr<const query::Shape>>& shapes() const noexcept { return shapes_; }
   /// Sentences about what may go wrong with this scene; e.g. the sampled-data rule.
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
+  /// After a run: a sentence if the device went beyond its workspace; "" if it did not.
+  [[nodiscard]] std::string workspace_warning() const;
   /// The budget that the queries really have.
   [[nodiscard]] const query::Budget& budget() const noexcept;
   [[nodiscard]] ode::World& world() noexcept { return *world_; }

@@ -16,11 +16,11 @@ class PassivityControl final : public Effect {
   // controller in its impedance form, bounded because a sampled damper is itself active beyond some strength.
   std::uint32_t on_hand(const TickView& tick, ode::Wrench& on_hand) noexcept override {
     if (tick.energy == nullptr || !(tick.energy->energy_j() < 0.0)) return 0;
-    const Vec3 velocity = tick.energy->step_m() / tick.step_s;
+    const Vec3 velocity = tick.energy->step_m() / tick.passed_s;  // the device's own, as its energy
     const double speed_squared = velocity.squaredNorm();
     if (!(speed_squared > 0.0)) return 0;
     const double damping = std::min(most_ns_per_m_, -tick.energy->energy_j() / (speed_squared * tick.step_s));
-    on_hand.force_n -= damping * velocity;
+    on_hand.force_n -= damping / tick.force_scale * velocity;
     return 1;
   }
 

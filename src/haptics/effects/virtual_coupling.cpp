@@ -28,8 +28,13 @@ class Coupling final : public Effect {
     on_hand.torque_nm += reaction.torque_nm;
     return 0;  // the same tick
   }
-  [[nodiscard]] std::string warning(const DeviceSpec& device, double period_s) const override {
-    return passivity_warning(coupling_, device, period_s).value_or("");
+  [[nodiscard]] std::vector<std::string> warnings(const DeviceSpec& device, const DeviceScale& scale,
+                                                  double period_s) const override {
+    std::vector<std::string> all;
+    if (auto warning = passivity_warning(coupling_, device, period_s, scale)) all.push_back(std::move(*warning));
+    if (!torque_) return all;
+    if (auto warning = torque_warning(coupling_, device, scale)) all.push_back(std::move(*warning));
+    return all;
   }
 
  private:
