@@ -32,7 +32,7 @@ std::string page(const RunInfo& info, const RunSummary& summary, std::span<const
         "</noscript>\n";
   }
   if (shows) html += page_replay(*replay);
-  html += page_latency(summary, charts);
+  html += page_latency(info, summary, charts);
   html += page_answers(summary, charts);
   html += page_forces(info, summary, charts);
   html += page_effects(info, summary);

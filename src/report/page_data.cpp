@@ -225,6 +225,8 @@ std::string page_data(const RunInfo& info, const RunSummary& summary, std::span<
   json.number(static_cast<double>(info.period_ns) * 1e-3);
   json.key("budget_us");
   json.number(info.budget_us);
+  json.key("stalls_measured");
+  json.number(info.simulated_time ? 0.0 : 1.0);
   json.key("end_s");
   json.number(static_cast<double>(summary.planned) * static_cast<double>(info.period_ns) * 1e-9);
   json.key("curves");

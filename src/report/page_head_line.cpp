@@ -38,7 +38,7 @@ double ns_at(const Histogram& histogram, double percentile) {
   return static_cast<double>(histogram.value_at_percentile(percentile));
 }
 
-std::string verdict(const RunSummary& s) {
+std::string verdict(const RunInfo& info, const RunSummary& s) {
   const std::size_t missed = count(s, State::missed);
   const std::size_t open = count(s, State::inconclusive);
   const char* colour = missed > 0 ? "missed" : open > 0 ? "inconclusive" : "met";
@@ -56,8 +56,10 @@ std::string verdict(const RunSummary& s) {
     const auto of = static_cast<double>(s.ticks_with_query);
     text += fmt::format(
         "{} of the ticks with a query were proved; in the others the answer is the likelier one, with its "
-        "probability. Queries took {} at the 99.9th percentile, net of stalls.",
-        percent(static_cast<double>(s.by_basis[0]) / of), duration(ns_at(s.query_net, 99.9)));
+        "probability. Queries took {} at the 99.9th percentile, {}.",
+        percent(static_cast<double>(s.by_basis[0]) / of),
+        duration(ns_at(info.simulated_time ? s.query_gross : s.query_net, 99.9)),
+        info.simulated_time ? "with the machine's stalls" : "net of stalls");
   }
   return fmt::format("<div class=\"verdict {}\"><strong>{}</strong><span>{}</span></div>\n", colour, words, text);
 }
@@ -81,10 +83,9 @@ std::string cards(const RunInfo& info, const RunSummary& s) {
   std::string html = "<div class=\"cards\">\n";
   html += card(duration(ns_at(s.tick, 99.9)),
                "tick latency, 99.9 % within (period " + duration(static_cast<double>(info.period_ns)) + ")");
-  html +=
-      card(duration(ns_at(s.query_net, 99.9)),
-           std::isfinite(info.budget_us) ? "query, net, 99.9 % within (budget " + duration(info.budget_us * 1e3) + ")"
-                                         : std::string("query, net, 99.9 % within (no budget)"));
+  html += card(duration(ns_at(info.simulated_time ? s.query_gross : s.query_net, 99.9)),
+               fmt::format("query, {}, 99.9 % within (budget: {})", info.simulated_time ? "gross" : "net",
+                           limit_text(info.budget_us, info.work_units)));
   html += card(duration(ns_at(s.wake, 99.9)), "wake-up, 99.9 % within: the machine's share");
   html += card(grouped(s.late + s.skipped), fmt::format("periods missed of {}", grouped(s.planned)));
   html += card(s.ticks_with_query > 0
@@ -115,11 +116,11 @@ std::string page_head_line(const RunInfo& info, const RunSummary& summary) {
       "<nav><a href=\"#latency\">Latency</a><a href=\"#answers\">Answers</a><a href=\"#forces\">Force and contact</a>"
       "<a href=\"#effects\">Effects</a><a href=\"#machine\">Machine</a><a href=\"#run\">Run</a><a "
       "href=\"#words\">Words used here</a></nav>\n";
-  html += verdict(summary);
+  html += verdict(info, summary);
   if (info.simulated_time) {
     html +=
         "<p class=\"note\">Simulated time: wake-up and tick latencies are those of a virtual clock. Query times are "
-        "real.</p>\n";
+        "real, with the machine's stalls in them.</p>\n";
   }
   return html + promises(summary) + cards(info, summary) + "</header>\n";
 }

@@ -11,7 +11,7 @@ namespace odds::report {
 
 [[nodiscard]] std::string page_head_line(const RunInfo& info,
                                          const RunSummary& summary);  ///< title, verdict, promises, cards
-[[nodiscard]] std::string page_latency(const RunSummary& summary, bool charts);
+[[nodiscard]] std::string page_latency(const RunInfo& info, const RunSummary& summary, bool charts);
 [[nodiscard]] std::string page_answers(const RunSummary& summary, bool charts);
 [[nodiscard]] std::string page_forces(const RunInfo& info, const RunSummary& summary, bool charts);
 [[nodiscard]] std::string page_replay(const RunReplay& replay);

@@ -36,19 +36,29 @@ std::string percentile_row(const char* label, const Histogram& histogram) {
                             histogram.count() == 0 ? "–" : duration(static_cast<double>(histogram.max())));
 }
 
-std::string percentile_table(const RunSummary& s) {
+std::string percentile_table(const RunInfo& info, const RunSummary& s) {
+  // In simulated time no stalls are measured: nothing is net of them.
+  const bool net = !info.simulated_time;
   return "<div class=\"wide\"><table class=\"figures\"><tr><th></th><th>samples</th><th>50 %</th><th>90 %</th><th>99 "
          "%</th>"
          "<th>99.9 %</th><th>99.99 %</th><th>longest</th></tr>\n" +
          percentile_row("tick: planned start to force", s.tick) +
          percentile_row("wake-up: planned start to running", s.wake) +
-         percentile_row("tick, net: its own work", s.tick_net) + percentile_row("collision phase, gross", s.collision) +
-         percentile_row("query, gross", s.query_gross) + percentile_row("query, net of stalls", s.query_net) +
-         percentile_row("query, net overshoot", s.query_overshoot) + percentile_row("simulation step", s.step) +
-         "</table></div>\n";
+         (net ? percentile_row("tick, net: its own work", s.tick_net) : "") +
+         percentile_row("collision phase, gross", s.collision) + percentile_row("query, gross", s.query_gross) +
+         (net ? percentile_row("query, net of stalls", s.query_net) +
+                    percentile_row("query, net overshoot", s.query_overshoot)
+              : "") +
+         percentile_row("simulation step", s.step) + "</table></div>\n";
 }
 
 bool has_device(const RunInfo& info) { return !info.device.empty() && info.device != "none"; }
+
+std::string contacts_of_a_pair(const RunInfo& info) {
+  if (info.max_contacts == 0) return "none, verdict only";
+  if (info.max_contacts == 1) return "one";
+  return fmt::format("a patch of at most {}", info.max_contacts);
+}
 
 struct AnswerKind {
   const char* label;
@@ -58,11 +68,11 @@ struct AnswerKind {
 
 }  // namespace
 
-std::string page_latency(const RunSummary& s, bool charts) {
+std::string page_latency(const RunInfo& info, const RunSummary& s, bool charts) {
   std::string html =
       "<h2 id=\"latency\">Latency</h2>\n<p>Tick and wake-up count from the planned start, and every planned period is "
       "in them, skipped ones too. The other rows are the durations of parts of a tick.</p>\n" +
-      percentile_table(s);
+      percentile_table(info, s);
   if (!charts) return html;
   html += "<div class=\"pair\">\n";
   html +=
@@ -82,8 +92,9 @@ std::string page_latency(const RunSummary& s, bool charts) {
                     "Peaks in both at once come from the machine; peaks in the "
                     "tick alone from the work.");
   html += time_line("chart-query", "Query time over time",
-                    "Gross is what passed on the clock, net leaves out the gaps in which "
-                    "the processor was elsewhere (marked as stalls).");
+                    info.simulated_time ? "What passed on the clock; stalls of the machine are in it."
+                                        : "Gross is what passed on the clock, net leaves out the gaps in which the "
+                                          "processor was elsewhere (marked as stalls).");
   if (s.late + s.skipped > 0) {
     html += time_line("chart-missed", "Missed periods",
                       "Late: the force came after the next tick was due. Skipped: the period "
@@ -232,7 +243,15 @@ std::string page_run(const RunInfo& info) {
   row("device", info.device);
   row("effects", info.effects.empty() ? "none" : fmt::format("{}", fmt::join(info.effects, ", ")));
   row("period", duration(static_cast<double>(info.period_ns)));
-  row("budget of a query", duration(info.budget_us * 1e3));
+  row("budget of a query", limit_text(info.budget_us, info.work_units));
+  row("budget of a step", limit_text(info.frame_us, info.frame_work_units));
+  row("contacts of a pair", contacts_of_a_pair(info));
+  if (info.max_contacts_per_step > 0) row("contacts of a step", fmt::format("at most {}", info.max_contacts_per_step));
+  row("contacts of bodies at rest", info.carry_motion > 0.0 && info.max_contacts > 1
+                                        ? fmt::format("carried along with the bodies, up to a motion of {:.3g} of "
+                                                      "their size",
+                                                      info.carry_motion)
+                                        : std::string("made anew in every step"));
   row("version", info.version);
   return html + "</table></div>\n";
 }

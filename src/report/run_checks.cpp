@@ -47,7 +47,15 @@ Check budget(const RunInfo& info, const RunSummary& s) {
   Check check{"budget", "Did every query end within its budget?", "", State::met};
   if (!std::isfinite(info.budget_us) || s.ticks_with_query == 0) {
     check.state = State::not_measured;
-    check.finding = s.ticks_with_query == 0 ? "no query was made" : "no budget in microseconds was set";
+    if (s.ticks_with_query == 0) {
+      check.finding = "no query was made";
+    } else {
+      const std::string limit = limit_text(info.budget_us, info.work_units);
+      check.finding = limit == "none" ? "no budget was set" : limit + " for a query: counted work, without a clock";
+    }
+    if (info.frame_work_units != RunInfo{}.frame_work_units) {
+      check.finding += fmt::format("; {} for all of a step", limit_text(info.frame_us, info.frame_work_units));
+    }
     return check;
   }
   const auto overshoot_ns = static_cast<double>(s.query_overshoot.value_at_percentile(99.9));
@@ -111,6 +119,10 @@ Check machine(const RunInfo& info, const RunSummary& s) {
                               percent(largest_stall_share));
   if (info.fitness) check.finding += "; before the run " + info.fitness->reason;
   if (!machine_was_quiet(info, s)) check.state = State::inconclusive;
+  if (info.simulated_time) {
+    check.state = State::not_measured;
+    check.finding = "simulated time: stalls are not measured";
+  }
   return check;
 }
 

@@ -1,5 +1,6 @@
 // The figures of a run for programs.
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "report/run_files.hpp"
@@ -13,6 +14,11 @@ using Json = nlohmann::ordered_json;
 /// JSON knows no infinity: a limit that is not set is null.
 Json number_or_null(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
 
+/// The same of a limit in work units.
+Json units_or_null(std::uint64_t units) {
+  return units == std::numeric_limits<std::uint64_t>::max() ? Json(nullptr) : Json(units);
+}
+
 Json figures(const Histogram& histogram) {
   const auto us = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-3; };
   return {{"samples", histogram.count()},
@@ -23,6 +29,11 @@ Json figures(const Histogram& histogram) {
           {"p99.9_us", us(histogram.value_at_percentile(99.9))},
           {"p99.99_us", us(histogram.value_at_percentile(99.99))},
           {"max_us", us(histogram.max())}};
+}
+
+/// Null in simulated time, where no stalls are measured: nothing is net of them.
+Json net(const RunInfo& info, const Histogram& histogram) {
+  return info.simulated_time ? Json(nullptr) : figures(histogram);
 }
 
 Json run(const RunInfo& info) {
@@ -39,7 +50,12 @@ Json run(const RunInfo& info) {
           {"effects", info.effects},
           {"period_us", static_cast<double>(info.period_ns) * 1e-3},
           {"budget_us", number_or_null(info.budget_us)},
+          {"work_units", units_or_null(info.work_units)},
           {"frame_us", number_or_null(info.frame_us)},
+          {"frame_work_units", units_or_null(info.frame_work_units)},
+          {"max_contacts", info.max_contacts},
+          {"max_contacts_per_step", info.max_contacts_per_step},
+          {"carry_motion", info.carry_motion},
           {"allowed_overshoot_us", number_or_null(info.allowed_overshoot_us)},
           {"simulated_time", info.simulated_time},
           {"stopped_early", info.loop.stopped}};
@@ -120,14 +136,14 @@ std::string summary_json(const RunInfo& info, const RunSummary& s) {
       {"format", "odds run summary 1"},
       {"run", run(info)},
       {"checks", checks},
-      {"latency", {{"wake", figures(s.wake)}, {"tick", figures(s.tick)}, {"tick_net", figures(s.tick_net)}}},
+      {"latency", {{"wake", figures(s.wake)}, {"tick", figures(s.tick)}, {"tick_net", net(info, s.tick_net)}}},
       {"query",
        {{"gross", figures(s.query_gross)},
-        {"net", figures(s.query_net)},
-        {"net_overshoot", figures(s.query_overshoot)},
+        {"net", net(info, s.query_net)},
+        {"net_overshoot", net(info, s.query_overshoot)},
         {"longest_gross_overshoot_us", s.longest_overshoot_us},
         {"frame_overshoot_us", info.frame_overshoot_us},
-        {"stall_share", s.stall_share}}},
+        {"stall_share", info.simulated_time ? Json(nullptr) : Json(s.stall_share)}}},
       {"phases", {{"collision", figures(s.collision)}, {"step", figures(s.step)}}},
       {"counts", counts(info, s)},
       {"contact",

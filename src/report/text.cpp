@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <limits>
 
 namespace odds::report {
 
@@ -80,6 +81,13 @@ std::string html_escaped(std::string_view text) {
     }
   }
   return safe;
+}
+
+std::string limit_text(double microseconds, std::uint64_t work_units) {
+  const bool units = work_units != std::numeric_limits<std::uint64_t>::max();
+  const std::string count = units ? grouped(work_units) + " work units" : "";
+  if (!std::isfinite(microseconds)) return units ? count : "none";
+  return duration(microseconds * 1e3) + (units ? " and " + count : "");
 }
 
 }  // namespace odds::report

@@ -13,4 +13,7 @@ namespace odds::report {
 [[nodiscard]] std::string utc_time(double epoch_seconds);       ///< "2024-05-01 12:00:00 UTC"
 [[nodiscard]] std::string html_escaped(std::string_view text);  ///< safe between tags and in quoted attributes
 
+/// A limit in microseconds, work units or both, for people: "100 µs", "2 000 work units", "none".
+[[nodiscard]] std::string limit_text(double microseconds, std::uint64_t work_units);
+
 }  // namespace odds::report

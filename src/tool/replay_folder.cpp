@@ -27,6 +27,14 @@ ordered_json describe(const scene::Simulation& simulation, const report::RunInfo
   const query::Budget& budget = simulation.budget();
   json["budget_us"] = std::isfinite(budget.microseconds) ? ordered_json(budget.microseconds) : ordered_json(nullptr);
   json["work_units"] = budget.work_units == no_limit ? ordered_json(nullptr) : ordered_json(budget.work_units);
+  json["frame_us"] = std::isfinite(info.frame_us) ? ordered_json(info.frame_us) : ordered_json(nullptr);
+  json["frame_work_units"] =
+      info.frame_work_units == no_limit ? ordered_json(nullptr) : ordered_json(info.frame_work_units);
+  if (scene.device) {
+    json["device"] = {{"name", scene.device->name}, {"type", scene.device->type}, {"track", "device.csv"}};
+  } else {
+    json["device"] = nullptr;
+  }
   for (const scene::Mesh& mesh : scene.meshes) {
     json["meshes"].push_back({{"name", mesh.name}, {"file", mesh.file}, {"scale", mesh.scale}});
   }

@@ -79,7 +79,12 @@ report::RunInfo describe(const scene::Simulation& simulation, const RunArguments
   for (const scene::AskedEffect& effect : scene.effects) info.effects.push_back(effect.name);
   info.period_ns = scene.loop.period_ns;
   info.budget_us = simulation.budget().microseconds;
-  info.frame_us = simulation.scene().frame.microseconds;
+  info.work_units = simulation.budget().work_units;
+  info.frame_us = scene.frame.microseconds;
+  info.frame_work_units = scene.frame.work_units;
+  info.max_contacts = scene.query.max_contacts;
+  info.max_contacts_per_step = scene.max_contacts;
+  info.carry_motion = scene.query.carry_motion;
   info.simulated_time = arguments.fast;
   info.host = realtime::describe_host();
   return info;

@@ -19,6 +19,13 @@ std::string percentiles(const report::Histogram& h) {
                      1e-3 * static_cast<double>(h.max()));
 }
 
+std::string budget(const report::RunInfo& info) {
+  const bool units = info.work_units != report::RunInfo{}.work_units;
+  const std::string count = units ? fmt::format("{} work units", info.work_units) : "none";
+  if (!std::isfinite(info.budget_us)) return count;
+  return fmt::format("{} us{}", info.budget_us, units ? " and " + count : "");
+}
+
 std::string safety(const haptics::SafetyCounts& c) {
   std::string text;
   const auto add = [&](const char* what, std::uint64_t count) {
@@ -48,10 +55,10 @@ void print_run_table(const report::RunInfo& info, const report::RunSummary& s, c
   if (!info.simulated_time) line("wake-up latency", percentiles(s.wake));
   if (!info.simulated_time) line("tick latency", percentiles(s.tick));
   if (!info.simulated_time) line("tick, net", percentiles(s.tick_net));
-  line("queries", fmt::format("{} in {} ticks, budget {}", s.queries, s.ticks_with_query,
-                              std::isfinite(info.budget_us) ? fmt::format("{} us", info.budget_us) : "in work units"));
-  line("query, net", percentiles(s.query_net));
-  line("query overshoot, net", percentiles(s.query_overshoot));
+  line("queries", fmt::format("{} in {} ticks, budget {}", s.queries, s.ticks_with_query, budget(info)));
+  line(info.simulated_time ? "query, gross" : "query, net",
+       percentiles(info.simulated_time ? s.query_gross : s.query_net));
+  if (!info.simulated_time) line("query overshoot, net", percentiles(s.query_overshoot));
   line("collision phase", percentiles(s.collision));
   line("world step", percentiles(s.step));
   line("answers (ticks)", fmt::format("{} proved, {} estimated, {} ended by the budget; {} hits", s.by_basis[0],

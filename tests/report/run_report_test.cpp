@@ -107,6 +107,70 @@ TEST(RunSummary, times_on_a_restless_machine_are_inconclusive_and_counts_are_jud
   EXPECT_EQ(state(summary, "budget"), State::inconclusive) << "by the stalls that the queries saw themselves";
 }
 
+/// A calm run in simulated time: limits are work units, no stalls are measured.
+MadeRecording simulated_recording() {
+  MadeRecording made = calm_recording();
+  made.info.simulated_time = true;
+  made.info.fitness.reset();
+  made.info.budget_us = std::numeric_limits<double>::infinity();
+  made.info.work_units = 2000;
+  made.info.frame_work_units = 7000;
+  made.info.max_contacts = 8;
+  made.info.max_contacts_per_step = 64;
+  made.info.carry_motion = 0.001;
+  return made;
+}
+
+TEST(RunSummary, simulated_time_passes_no_promise_about_times) {
+  const MadeRecording made = simulated_recording();
+  const RunSummary summary = summarize(made.info, made.ticks);
+  for (const char* key : {"deadline", "budget", "machine"}) EXPECT_EQ(state(summary, key), State::not_measured) << key;
+  for (const Check& check : summary.checks) {
+    if (check.key == "machine") {
+      EXPECT_EQ(check.finding, "simulated time: stalls are not measured");
+    }
+    if (check.key == "budget") {
+      EXPECT_EQ(check.finding,
+                "2,000 work units for a query: counted work, without a clock; 7,000 work units for all of a step");
+    }
+  }
+}
+
+TEST_F(RunReport, says_which_limits_and_which_contacts_were_in_use) {
+  MadeRecording made = simulated_recording();
+  RunFiles files = write(made);
+  std::string page = text_of(files.page);
+  for (const char* row :
+       {"<th>budget of a query</th><td>2,000 work units</td>", "<th>budget of a step</th><td>7,000 work units</td>",
+        "<th>contacts of a pair</th><td>a patch of at most 8</td>", "<th>contacts of a step</th><td>at most 64</td>",
+        "<td>carried along with the bodies"}) {
+    EXPECT_NE(page.find(row), std::string::npos) << row;
+  }
+  for (const char* untrue : {"unlimited", "net of stalls", "query, net", "tick, net"}) {
+    EXPECT_EQ(page.substr(0, page.find("<script")).find(untrue), std::string::npos) << untrue;
+  }
+  const auto json = nlohmann::json::parse(text_of(files.summary));
+  EXPECT_EQ(json["run"]["work_units"], 2000);
+  EXPECT_EQ(json["run"]["frame_work_units"], 7000);
+  EXPECT_EQ(json["run"]["max_contacts"], 8);
+  EXPECT_EQ(json["run"]["max_contacts_per_step"], 64);
+  EXPECT_EQ(json["run"]["carry_motion"], 0.001);
+  EXPECT_TRUE(json["run"]["budget_us"].is_null());
+  EXPECT_TRUE(json["query"]["net"].is_null());
+  EXPECT_TRUE(json["query"]["stall_share"].is_null());
+  EXPECT_TRUE(json["latency"]["tick_net"].is_null());
+
+  made = calm_recording();
+  made.info.max_contacts = 1;
+  files = write(made);
+  page = text_of(files.page);
+  for (const char* row : {"<th>budget of a step</th><td>none</td>", "<th>contacts of a pair</th><td>one</td>",
+                          "<td>made anew in every step</td>", "query, net of stalls"}) {
+    EXPECT_NE(page.find(row), std::string::npos) << row;
+  }
+  EXPECT_TRUE(nlohmann::json::parse(text_of(files.summary))["run"]["work_units"].is_null());
+}
+
 TEST(RunSummary, net_time_of_a_tick_is_the_smaller_of_its_two_bounds) {
   const auto longest_us = [](double stall_us, double processor_us) {
     MadeRecording made = calm_recording();  // awake for 150 us

@@ -76,12 +76,19 @@ TEST(Run, WritesEveryFileAndTheTable) {
                            "replay/poses.csv", "replay/replay.json"}) {
     EXPECT_GT(contents_of(folder / (std::string("out/") + file)).size(), 50U) << file;
   }
-  for (const char* line : {"300 of 300 ran", "query, net", "answers (ticks)", "force ", "report: out/report.html"}) {
+  for (const char* line : {"300 of 300 ran", "budget 1600 work units", "query, gross", "answers (ticks)", "force ",
+                           "report: out/report.html"}) {
     EXPECT_NE(ran.output.find(line), std::string::npos) << line << "\n" << ran.output;
   }
   const auto side_car = nlohmann::json::parse(contents_of(folder / "out/replay/replay.json"));
   EXPECT_EQ(side_car["bodies"].size(), 2U);
   EXPECT_EQ(side_car["work_units"], 1600);
+  EXPECT_TRUE(side_car["frame_work_units"].is_null());
+  EXPECT_EQ(side_car["device"]["name"], "hand");
+  EXPECT_EQ(side_car["device"]["track"], "device.csv");
+  const auto summary = nlohmann::json::parse(contents_of(folder / "out/summary.json"));
+  EXPECT_EQ(summary["run"]["work_units"], 1600);
+  EXPECT_EQ(summary["query"]["stall_share"], nullptr);
 }
 
 TEST(Run, AllocatesNothingInATick) {

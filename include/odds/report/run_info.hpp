@@ -43,10 +43,17 @@ struct RunInfo {
 
   std::int64_t period_ns = 1'000'000;
   double budget_us = std::numeric_limits<double>::infinity();  ///< of one query; infinity: none
-  double allowed_overshoot_us = 1.0;                           ///< net, at the 99.9th percentile
-  double frame_us = std::numeric_limits<double>::infinity();   ///< of all collisions of a step together; infinity: none
-  double frame_overshoot_us = 0.0;                             ///< largest, of a step's collisions beyond `frame_us`
-  std::uint64_t pairs_left_out = 0;                            ///< for which a frame had no time left, over all steps
+  /// Of one query, of all collisions of a step together; the greatest number: none. In simulated time these stand in
+  /// place of microseconds.
+  std::uint64_t work_units = std::numeric_limits<std::uint64_t>::max();
+  std::uint64_t frame_work_units = std::numeric_limits<std::uint64_t>::max();
+  int max_contacts = 0;                     ///< of a pair; more than one: a patch of contacts
+  std::uint32_t max_contacts_per_step = 0;  ///< of all pairs together; 0: not stated
+  double carry_motion = 0.0;          ///< contacts are carried along up to this part of a body's size; 0: made anew
+  double allowed_overshoot_us = 1.0;  ///< net, at the 99.9th percentile
+  double frame_us = std::numeric_limits<double>::infinity();  ///< of all collisions of a step together; infinity: none
+  double frame_overshoot_us = 0.0;                            ///< largest, of a step's collisions beyond `frame_us`
+  std::uint64_t pairs_left_out = 0;                           ///< for which a frame had no time left, over all steps
   bool simulated_time = false;  ///< wake-up and tick times are a virtual clock's; query times are real all the same
   realtime::LoopSummary loop;   ///< as run_periodic returned it
 

@@ -124,6 +124,7 @@
   // The charts -------------------------------------------------------------------------------------------------------
   const period = {at: data.period_us, label: 'period ' + micro(data.period_us)};
   const budget = data.budget_us == null ? [] : [{at: data.budget_us, label: 'budget ' + micro(data.budget_us)}];
+  const net = (make) => data.stalls_measured ? [make()] : [];  // in simulated time nothing is net of stalls
   const asMicro = (item) => item.dataset.label + ': ' + micro(item.parsed.y, 4);
   const atTime = (items) => items.length ? items[0].parsed.x.toFixed(3) + ' s' : '';
 
@@ -132,7 +133,7 @@
       series(label, name, data.curves[key].map(([x, y]) => ({x, y})), {borderDash: dash, borderWidth: 2});
     draw('chart-curve', {
       datasets: [curve('tick', 'blue', 'tick'), curve('wake-up', 'orange', 'wake', [7, 3]),
-        curve('query, gross', 'purple', 'gross', [2, 3]), curve('query, net', 'green', 'net')],
+        curve('query, gross', 'purple', 'gross', [2, 3]), ...net(() => curve('query, net', 'green', 'net'))],
       options: {
         scales: {
           x: axis('percentile of the samples', {
@@ -154,7 +155,7 @@
       {stepped: true, ...more});
     draw('chart-bars', {
       datasets: [bars('tick', 'blue', 'tick'), bars('wake-up', 'orange', 'wake', {borderDash: [7, 3]}),
-        bars('query, net', 'green', 'net')],
+        bars(data.stalls_measured ? 'query, net' : 'query', 'green', 'net')],
       options: {
         scales: {
           x: logMicro('latency'),
@@ -181,9 +182,9 @@
     drawTimeLine('chart-latency', logMicro('latency'), [
       series('tick', 'blue', points(time.t, time.tick)), series('wake-up', 'orange', points(time.t, time.wake))], [period]);
     drawTimeLine('chart-query', logMicro('time in queries'), [
-      series('net', 'green', points(time.t, time.net)), series('gross', 'purple', points(time.t, time.gross)),
-      series('stalls', 'ink', points(time.t, time.stall.map((us) => us > 0 ? us : null)),
-        {showLine: false, pointRadius: 3, pointStyle: 'crossRot'})], budget);
+      ...net(() => series('net', 'green', points(time.t, time.net))), series('gross', 'purple', points(time.t, time.gross)),
+      ...net(() => series('stalls', 'ink', points(time.t, time.stall.map((us) => us > 0 ? us : null)),
+        {showLine: false, pointRadius: 3, pointStyle: 'crossRot'}))], budget);
     drawTimeLine('chart-missed', axis('periods', {beginAtZero: true, ticks: {precision: 0}}), [
       series('late', 'orange', points(time.t, time.late), {barThickness: 4, grouped: false}),
       series('skipped', 'red', points(time.t, time.skipped), {barThickness: 4, grouped: false})], [],
