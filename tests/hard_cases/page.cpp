@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "hard_cases/judgement.hpp"
+#include "report/base64.hpp"
 
 namespace odds::hard_cases {
 namespace {
@@ -15,20 +16,24 @@ constexpr const char* colours[] = {"#222", "#0072b2", "#009e73", "#d55e00"};
 constexpr double width = 900.0;
 constexpr double height = 130.0;
 
-double size_of(const Sample& s) { return std::hypot(s.force_n[0], s.force_n[1], s.force_n[2]); }
+// The force on the hand in N; where there is none, the deepest contact in mm.
+double size_of(const Sample& s, bool has_hand) {
+  return has_hand ? std::hypot(s.force_n[0], s.force_n[1], s.force_n[2]) : 1e3 * s.depth_m;
+}
 
-// The size of the force over time: the exact run dark, 50 us blue, 5 us green, 1 us orange.
-std::string picture(const Outcome& outcome) {
-  double most_n = 1e-9;
+// Over time: the exact run dark, 50 us blue, 5 us green, 1 us orange.
+std::string chart(const Outcome& outcome) {
+  const bool has_hand = outcome.runs.front().has_hand;
+  double most = 1e-9;
   double end_s = 1e-9;
   for (const Figures& run : outcome.runs) {
     for (const Sample& s : run.samples) {
-      if (std::isfinite(size_of(s))) most_n = std::max(most_n, size_of(s));
+      if (std::isfinite(size_of(s, has_hand))) most = std::max(most, size_of(s, has_hand));
       end_s = std::max(end_s, s.t_s);
     }
   }
-  std::string svg = fmt::format("<svg viewBox=\"0 0 {} {}\" width=\"{}\" role=\"img\" aria-label=\"force over time\">",
-                                width, height + 12, width);
+  std::string svg = fmt::format("<svg viewBox=\"0 0 {} {}\" width=\"{}\" role=\"img\" aria-label=\"{} over time\">",
+                                width, height + 12, width, has_hand ? "force" : "deepest contact");
   for (std::size_t r = outcome.runs.size(); r-- > 0;) {  // the exact one on top
     const auto& samples = outcome.runs[r].samples;
     const std::size_t stride = std::max<std::size_t>(1, samples.size() / 500);
@@ -36,16 +41,17 @@ std::string picture(const Outcome& outcome) {
     for (std::size_t i = 0; i < samples.size(); i += stride) {
       const Sample* peak = &samples[i];
       for (std::size_t k = i; k < std::min(samples.size(), i + stride); ++k) {
-        if (size_of(samples[k]) > size_of(*peak)) peak = &samples[k];
+        if (size_of(samples[k], has_hand) > size_of(*peak, has_hand)) peak = &samples[k];
       }
-      points += fmt::format("{:.1f},{:.1f} ", width * peak->t_s / end_s, height * (1.0 - size_of(*peak) / most_n));
+      points +=
+          fmt::format("{:.1f},{:.1f} ", width * peak->t_s / end_s, height * (1.0 - size_of(*peak, has_hand) / most));
     }
     svg += fmt::format("<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"1\" points=\"{}\"/>", colours[r], points);
   }
   return svg + fmt::format(
-                   "<text x=\"2\" y=\"10\" font-size=\"9\">{:.3g} N</text><text x=\"{}\" y=\"{}\" "
+                   "<text x=\"2\" y=\"10\" font-size=\"9\">{:.3g} {}</text><text x=\"{}\" y=\"{}\" "
                    "font-size=\"9\">{:.2f} s</text></svg>",
-                   most_n, width - 34, height + 10, end_s);
+                   most, has_hand ? "N" : "mm deep", width - 34, height + 10, end_s);
 }
 
 std::string or_dash(const std::optional<double>& number, double factor, const char* unit) {
@@ -96,6 +102,41 @@ std::string findings(const Figures& f) {
   add(f.missed, true);
   add(f.off, f.feel_is_judged());
   return html;
+}
+
+// What the figures below do not say.
+std::string limits_of(const std::vector<Outcome>& outcomes) {
+  std::string handless;
+  std::string uncompared;
+  std::string never_deep;
+  const auto add = [](std::string& list, const Outcome& outcome) {
+    list += (list.empty() ? "" : ", ") + outcome.hard_case->name;
+  };
+  for (const Outcome& outcome : outcomes) {
+    const bool has_hand = outcome.runs.front().has_hand;
+    if (!has_hand) add(handless, outcome);
+    if (has_hand && !outcome.hard_case->compares) add(uncompared, outcome);
+    const auto is_deep = [](const Figures& f) { return f.deep > 0; };
+    if (has_hand && std::none_of(outcome.runs.begin(), outcome.runs.end(), is_deep)) add(never_deep, outcome);
+  }
+  const auto item = [](const std::string& list, const char* what) {
+    return list.empty() ? std::string() : fmt::format("<li>{}: {}.</li>\n", what, list);
+  };
+  return "<p>What the figures do not say:</p>\n<ul>\n" +
+         item(never_deep,
+              "nothing is ever as deep there as the case calls deep, so that nothing deep can be missed (0 of 0)") +
+         item(handless,
+              "without a hand there is no force to compare, and no exact query beside the ticks; the curve is "
+              "the deepest contact") +
+         item(uncompared,
+              "too lively, or too far from rest, for the hand's force to be compared tick by tick with the "
+              "run without a budget; that of contacts at the same poses is") +
+         "</ul>\n";
+}
+
+std::string still_of(const Outcome& outcome) {
+  return fmt::format("<img alt=\"{} where a contact was deepest\" src=\"data:image/png;base64,{}\">",
+                     outcome.hard_case->name, report::base64_encode(outcome.runs.front().picture));
 }
 
 // Every case with every budget: where to look.
@@ -150,18 +191,20 @@ std::string page_of(const std::vector<Outcome>& outcomes, double seconds_taken) 
       "td,th{border-bottom:1px solid #ccc;padding:2px "
       "6px;text-align:right}td:first-child,th:first-child,td:nth-last-child(-n+2),th:nth-last-child(-n+2){text-align:"
       "left}"
-      "td{white-space:nowrap}svg{display:block;max-width:100%}ul{margin:.5em 0;font-size:13px}"
+      "td{white-space:nowrap}.look{display:flex;align-items:center}svg{display:block;min-width:0;flex:1}ul{margin:.5em "
+      "0;font-size:13px}"
       ".good{color:#060}.bad{color:#b00}.weak{color:#960}</style></head><body>\n<h1>Hard cases</h1>\n";
-  html += counts(tally(outcomes), seconds_taken) + index_of(outcomes);
+  html += counts(tally(outcomes), seconds_taken) + index_of(outcomes) + limits_of(outcomes);
   for (const Outcome& outcome : outcomes) {
     html += fmt::format(
-        "<h2 id=\"{0}\">{0}</h2>\n<p>{1}</p>\n{2}\n<table><tr><th>budget</th><th>ticks</th><th>not "
+        "<h2 id=\"{0}\">{0}</h2>\n<p>{1}</p>\n<div "
+        "class=\"look\">{3}{2}</div>\n<table><tr><th>budget</th><th>ticks</th><th>not "
         "finite</th><th>largest "
         "N</th><th>given J</th>"
         "<th>deep missed</th><th>contacts p95</th><th>angle p95</th><th>hand p95</th><th>angle "
         "p95</th><th>onset</th><th>noise</th><th>contacts</th><th>deepest mm</th>"
         "<th>safety ticks</th><th>safety</th><th>feel</th></tr>\n",
-        outcome.hard_case->name, outcome.hard_case->what, picture(outcome));
+        outcome.hard_case->name, outcome.hard_case->what, chart(outcome), still_of(outcome));
     std::string found;
     for (const Figures& f : outcome.runs) {
       html += row(f);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "hard_cases/compare.hpp"
@@ -15,6 +16,7 @@
 #include "odds/query/pair.hpp"
 #include "odds/scene/same_poses.hpp"
 #include "odds/scene/simulation.hpp"
+#include "support/picture.hpp"
 
 namespace odds::hard_cases {
 namespace {
@@ -128,6 +130,43 @@ void note(Figures& figures, const haptics::TickRecord& record, double exact_dept
   figures.samples.push_back(sample);
 }
 
+/// Where the bodies were when a contact was deepest.
+class Still {
+ public:
+  void note(const ode::World& world, double depth_m) {
+    if (!poses_.empty() && !(depth_m > deepest_m_)) return;
+    deepest_m_ = depth_m;
+    poses_.resize(world.body_count());
+    for (std::uint32_t i = 0; i < world.body_count(); ++i) poses_[i] = world.state({i}).pose;
+  }
+  /// What moves in the middle, and about as much again around it.
+  [[nodiscard]] std::string drawn(const ode::World& world) const {
+    std::vector<testing::Drawn> bodies;
+    Vec3 lower = Vec3::Constant(std::numeric_limits<double>::infinity());
+    Vec3 upper = -lower;
+    for (std::uint32_t i = 0; i < poses_.size(); ++i) {
+      const mesh::TriangleMesh& mesh = world.shape({i})->mesh();
+      bodies.push_back({&mesh, poses_[i], !world.is_dynamic({i})});
+      if (bodies.back().fixed) continue;
+      for (const Vec3& vertex : mesh.vertices()) {
+        lower = lower.cwiseMin(poses_[i] * vertex);
+        upper = upper.cwiseMax(poses_[i] * vertex);
+      }
+    }
+    testing::View view;
+    view.centre = 0.5 * (lower + upper);
+    view.from = Vec3(1.0, -2.2, 0.7);
+    view.width_m = 2.0 * (upper - lower).norm();
+    view.columns = 300;
+    view.rows = 200;
+    return testing::picture_of(bodies, view);
+  }
+
+ private:
+  double deepest_m_ = 0.0;
+  std::vector<math::Pose> poses_;
+};
+
 Result<Figures> run_once(const HardCase& hard_case, const Budget& budget, const std::string& folder, double share) {
   const double seconds = hard_case.seconds * share;
   Result<Scene> parsed = scene_of(hard_case, budget, seconds, folder);
@@ -142,6 +181,7 @@ Result<Figures> run_once(const HardCase& hard_case, const Budget& budget, const 
   if (simulation.device() != nullptr) simulation.device()->enable_forces(true);
   Figures figures;
   figures.budget = budget.name;
+  Still still;
   const auto began = std::chrono::steady_clock::now();
   const std::int64_t period_ns = simulation.scene().loop.period_ns;
   const auto end_ns = static_cast<std::int64_t>(seconds * 1e9);
@@ -152,9 +192,12 @@ Result<Figures> run_once(const HardCase& hard_case, const Budget& budget, const 
     haptics::TickRecord record;
     simulation.renderer().tick(now_ns, record);
     note(figures, record, exact_depth_m, hard_case.deep_m, now_ns, missed_in_row);
+    still.note(simulation.world(), record.max_depth_m);
     now_ns = next_ns(hard_case.trouble, tick, now_ns, period_ns);
   }
   figures.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  figures.has_hand = simulation.device() != nullptr;
+  if (budget.work_units == 0) figures.picture = still.drawn(simulation.world());
   figures.failed_reads = simulation.renderer().failed_reads();
   figures.rescued = simulation.renderer().rescued_steps();
   figures.left_out = simulation.renderer().contacts_left_out();

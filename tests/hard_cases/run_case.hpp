@@ -46,6 +46,8 @@ struct Figures {
   /// The force of contacts on the tool, in each tick at the pose of the exact run. Not where nobody holds a tool.
   std::optional<report::ForceDifference> at_same_poses;
   double wall_s = 0.0;
+  bool has_hand = false;  ///< else there is no force, and no exact query beside the ticks
+  std::string picture;    ///< bytes of a PNG: the bodies where a contact was deepest
   std::vector<Sample> samples;
   std::vector<std::string> harmful;  ///< numbers, forces or energy that must never be, at any budget
   std::vector<std::string> missed;   ///< deep contacts that were not seen, bodies that fell through
