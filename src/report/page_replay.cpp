@@ -49,9 +49,11 @@ std::string meshes_json(const RunReplay& replay) {
     for (const auto& v : mesh.vertices) vertices.insert(vertices.end(), v.begin(), v.end());
     for (const mesh::Triangle& t : mesh.triangles) indices.insert(indices.end(), t.begin(), t.end());
     std::vector<float> boxes;
-    for (const ReplayBox& box : mesh.boxes) {
-      boxes.insert(boxes.end(), box.center.begin(), box.center.end());
-      boxes.insert(boxes.end(), box.half.begin(), box.half.end());
+    for (const query::UpperBox& box : mesh.boxes) {
+      for (const double x : box.center) boxes.push_back(static_cast<float>(x));
+      for (const double x : box.half) boxes.push_back(static_cast<float>(x));
+      boxes.push_back(static_cast<float>(box.first));
+      boxes.push_back(static_cast<float>(box.children));
     }
     json += fmt::format("{}{{\"vertices\":{},\"indices\":{},\"boxes\":{}}}", json.size() > 1 ? "," : "",
                         packed(vertices), packed(indices), packed(boxes));
@@ -120,9 +122,9 @@ std::string page_replay(const RunReplay& replay) {
       "<h2 id=\"replay\">Replay</h2>\n<p>The run again: bodies where they were, the force on the hand as an arrow at "
       "the tool, "
       "the hand as a dot; contacts as red needles along their normals, the most probable pairs of cells of queries "
-      "without a proof as amber ones, the longer the likelier. <em>Front</em> shows, for the eye, which boxes "
-      "overlap at this pose, down to seven levels, in halvings of the meshes shown: not the hierarchies that the run "
-      "searched. Drag to turn, wheel to come nearer, space to "
+      "without a proof as amber ones, the longer the likelier. <em>Front</em> shows where a search of this pose "
+      "arrives in the hierarchies of the run, down to their thousand largest boxes: those that overlap another body's. "
+      "Drag to turn, wheel to come nearer, space to "
       "play.{}</p>\n<figure class=\"replay\"><canvas "
       "id=\"replay-view\" "
       "tabindex=\"0\" role=\"img\" aria-label=\"the scene in three dimensions\"></canvas><div "

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "report/glb_builder.hpp"
+#include "report/replay_front.hpp"
 
 namespace odds::report {
 namespace {
@@ -14,7 +15,9 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t most_contacts = 16;  // marks that are shown at once
 constexpr std::size_t most_cell_pairs = 8;
-constexpr float hidden = 1e-6F;  // a scale of zero makes some readers divide by it
+constexpr std::size_t most_front_boxes = 24;
+constexpr std::size_t front_opened = 64;  // boxes of each hierarchy
+constexpr float hidden = 1e-6F;           // a scale of zero makes some readers divide by it
 
 struct Track {
   std::vector<float> translations;
@@ -48,6 +51,7 @@ class Glb {
       force();
       marks(false, most_contacts, "contact");
       marks(true, most_cell_pairs, "cell pair");
+      front();
     }
     const double half = std::numbers::sqrt2 / 2.0;
     const std::size_t world =
@@ -60,7 +64,7 @@ class Glb {
   }
 
  private:
-  enum Material : int { still, moving, tool, force_colour, contact_colour, cell_colour };
+  enum Material : int { still, moving, tool, force_colour, contact_colour, cell_colour, front_colour };
 
   void material(double r, double g, double b) {
     glb_.json["materials"].push_back(
@@ -75,6 +79,7 @@ class Glb {
     material(0.54, 0.05, 0.004);
     material(0.6, 0.0, 0.0);
     material(0.8, 0.45, 0.0);
+    material(0.2, 0.05, 0.35);
   }
 
   std::size_t mesh(const std::vector<float>& vertices, const std::vector<std::uint32_t>& indices, int colour,
@@ -214,6 +219,38 @@ class Glb {
     if (used == 0) return;
     const std::size_t shape = arrow(cell_pairs ? cell_colour : contact_colour, name);
     for (std::size_t i = 0; i < used; ++i) add_animated(name, shape, tracks[i], "STEP");
+  }
+
+  // The edges of a cube of half 1.
+  std::size_t frame_of_a_box() {
+    std::vector<float> corners;
+    for (unsigned c = 0; c < 8; ++c) {
+      for (unsigned axis = 0; axis < 3; ++axis) corners.push_back((c >> axis & 1U) != 0 ? 1.0F : -1.0F);
+    }
+    const std::size_t made =
+        mesh(corners, {0, 1, 1, 3, 3, 2, 2, 0, 4, 5, 5, 7, 7, 6, 6, 4, 0, 4, 1, 5, 2, 6, 3, 7}, front_colour, "front");
+    glb_.json["meshes"][made]["primitives"][0]["mode"] = 1;  // lines
+    return made;
+  }
+
+  // Boxes come and go: those of a picture take the first places.
+  void front() {
+    std::vector<Track> tracks(most_front_boxes);
+    std::size_t used = 0;
+    for (const ReplayFrame& frame : replay_.frames) {
+      const std::vector<FrontBox> boxes = front_of(replay_, frame, front_opened, most_front_boxes);
+      used = std::max(used, boxes.size());
+      for (std::size_t n = 0; n < most_front_boxes; ++n) {
+        const bool shows = n < boxes.size();
+        push(tracks[n].translations, shows ? Vec3(boxes[n].center - origin_m_) : Vec3::Zero());
+        push(tracks[n].rotations, shows ? Quat(boxes[n].axes) : Quat::Identity());
+        push(tracks[n].scales, shows ? boxes[n].half.cwiseMax(static_cast<double>(hidden)).eval()
+                                     : Vec3::Constant(static_cast<double>(hidden)).eval());
+      }
+    }
+    if (used == 0) return;
+    const std::size_t shape = frame_of_a_box();
+    for (std::size_t i = 0; i < used; ++i) add_animated("front", shape, tracks[i], "STEP");
   }
 
   void add_animated(const std::string& name, std::size_t shape, const Track& track, const char* interpolation) {

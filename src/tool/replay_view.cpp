@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t most_triangles = 20'000;  // of one mesh: a page that opens at once
 constexpr std::size_t most_frames = 6'000;
-constexpr int box_levels = 7;
+constexpr std::size_t most_boxes = 1000;  // of one mesh
 
 }  // namespace
 
@@ -18,7 +18,7 @@ report::RunReplay replay_view(const scene::Simulation& simulation, const scene::
   report::RunReplay replay;
   for (const auto& shape : simulation.shapes()) {
     report::ReplayMesh mesh = report::simplified(shape->mesh(), most_triangles);
-    mesh.boxes = report::upper_boxes(mesh, box_levels);
+    mesh.boxes = query::upper_boxes(*shape, most_boxes);
     replay.meshes.push_back(std::move(mesh));
   }
   for (const scene::Body& body : simulation.scene().bodies) {

@@ -15,9 +15,9 @@ namespace odds::report {
 namespace {
 
 ReplayMesh replay_mesh(const std::string& shape) {
-  const auto made = mesh::made::make_shape(shape);
-  ReplayMesh mesh = simplified(made.value(), 20'000);
-  mesh.boxes = upper_boxes(mesh, 5);
+  const auto made = std::make_shared<const mesh::TriangleMesh>(mesh::made::make_shape(shape).value());
+  ReplayMesh mesh = simplified(*made, 20'000);
+  mesh.boxes = query::upper_boxes(*query::Shape::build(made).value(), 100);
   return mesh;
 }
 

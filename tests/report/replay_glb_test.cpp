@@ -69,6 +69,52 @@ TEST(ReplayGlb, HasTheLayoutOfItsSpecification) {
   }
 }
 
+std::vector<query::UpperBox> boxes_of(const std::string& name) {
+  const auto mesh = std::make_shared<const mesh::TriangleMesh>(mesh::made::make_shape(name).value());
+  return query::upper_boxes(*query::Shape::build(mesh).value(), 200);
+}
+
+TEST(ReplayGlb, DrawsTheFrontWhereBoxesOverlapAndOnlyThere) {
+  const MadeRecording made = made_recording(1.0);
+  RunReplay replay = made_replay();
+  replay.meshes[0].boxes = boxes_of("made:icosphere:radius=0.02,frequency=4");
+  replay.meshes[1].boxes = boxes_of("made:box:x=0.2,y=0.2,z=0.02");
+  for (std::size_t i = 0; i < replay.frames.size(); ++i) {
+    if (i >= replay.frames.size() / 2) replay.frames[i].poses[0].translation.z() += 1.0;
+  }
+  const std::string file = replay_glb(made.info, replay, made.ticks).value();
+  const auto json = nlohmann::json::parse(file.substr(20, number_at(file, 12)));
+  std::size_t boxes = 0;
+  std::size_t front = 0;
+  for (std::size_t i = 0; i < json.at("nodes").size(); ++i) {
+    const auto& node = json["nodes"][i];
+    if (node.value("name", "") != "front") continue;
+    ++boxes;
+    front = i;
+    EXPECT_EQ(json["meshes"][node["mesh"].get<std::size_t>()]["primitives"][0]["mode"], 1) << "lines";
+  }
+  ASSERT_GE(boxes, 2U) << "one of each body at least";
+  const auto& animation = json.at("animations")[0];
+  std::size_t shown = 0;
+  std::size_t seen = 0;
+  for (const auto& channel : animation.at("channels")) {
+    if (channel["target"]["node"] != front || channel["target"]["path"] != "scale") continue;
+    const auto& sampler = animation["samplers"][channel["sampler"].get<std::size_t>()];
+    EXPECT_EQ(sampler["interpolation"], "STEP");
+    const auto& scales = json["accessors"][sampler["output"].get<std::size_t>()];
+    const std::size_t at =
+        20 + number_at(file, 12) + 8 +
+        json["bufferViews"][scales["bufferView"].get<std::size_t>()]["byteOffset"].get<std::size_t>();
+    for (std::size_t i = 0; i < replay.frames.size(); ++i) {
+      float scale = 0.0F;
+      std::memcpy(&scale, file.data() + at + 12 * i, sizeof scale);
+      if (scale > 1e-5F) ++(i < replay.frames.size() / 2 ? shown : seen);
+    }
+  }
+  EXPECT_GT(shown, 0U);
+  EXPECT_EQ(seen, 0U) << "of a ball a metre above the plate";
+}
+
 TEST(ReplayGlb, AnEmptyRunIsAFileToo) {
   const MadeRecording made;
   RunReplay replay = made_replay();

@@ -8,27 +8,18 @@
 
 #include "odds/math/pose.hpp"
 #include "odds/mesh/triangle_mesh.hpp"
+#include "odds/query/upper_boxes.hpp"
 
 namespace odds::report {
-
-/// A box of a hierarchy, axes of the mesh's frame, metres.
-struct ReplayBox {
-  std::array<float, 3> center{};
-  std::array<float, 3> half{};
-};
 
 /// A mesh for the eye. Metres, in the mesh's own frame.
 struct ReplayMesh {
   std::vector<std::array<float, 3>> vertices;
   std::vector<mesh::Triangle> triangles;
   std::uint64_t triangles_of_mesh = 0;  ///< before it was simplified
-  /// The upper levels of a binary hierarchy over `triangles`, the children of box i at 2 i + 1 and 2 i + 2; 2^k - 1 of
-  /// them. The page shows with them which boxes a search has to open: the front.
-  std::vector<ReplayBox> boxes = {};
+  /// Of the hierarchy that the run searched. The page shows with them which boxes a search has to open: the front.
+  std::vector<query::UpperBox> boxes = {};
 };
-
-/// Boxes for ReplayMesh::boxes, `levels` in 1 .. 12. Empty for a mesh without triangles.
-[[nodiscard]] std::vector<ReplayBox> upper_boxes(const ReplayMesh& mesh, int levels);
 
 /// The mesh with at most about `most_triangles`: vertices that share a cell of a grid become one, triangles without
 /// an area vanish. Small features may disappear; the collision queries never see it.

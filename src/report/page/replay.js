@@ -140,20 +140,20 @@
     if (inverse.invert) inverse.invert(); else inverse.getInverse(relative);
     const e = inverse.multiply(b.matrixWorld).elements;
     const turn = [[e[0], e[4], e[8]], [e[1], e[5], e[9]], [e[2], e[6], e[10]]], shift = [e[12], e[13], e[14]];
-    const boxA = a.userData.boxes, boxB = b.userData.boxes, countA = boxA.length / 6, countB = boxB.length / 6;
+    const boxA = a.userData.boxes, boxB = b.userData.boxes, countA = boxA.length, countB = boxB.length;
     const stack = countA && countB ? [[0, 0]] : [];
     while (stack.length && left.tests > 0) {
       const [i, j] = stack.pop();
       --left.tests;
-      if (apart(boxA.subarray(6 * i, 6 * i + 6), boxB.subarray(6 * j, 6 * j + 6), turn, shift)) continue;
-      const openA = 2 * i + 2 < countA, openB = 2 * j + 2 < countB;
+      if (apart(boxA.subarray(8 * i, 8 * i + 6), boxB.subarray(8 * j, 8 * j + 6), turn, shift)) continue;
+      const openA = boxA[8 * i + 7], openB = boxB[8 * j + 7];  // children; 6: the first one
       if (!openA && !openB) {
         opened.get(a).add(i);
         opened.get(b).add(j);
-      } else if (openA && (!openB || boxA[6 * i + 3] + boxA[6 * i + 4] + boxA[6 * i + 5] >= boxB[6 * j + 3] + boxB[6 * j + 4] + boxB[6 * j + 5])) {
-        stack.push([2 * i + 1, j], [2 * i + 2, j]);
+      } else if (openA && (!openB || boxA[8 * i + 3] + boxA[8 * i + 4] + boxA[8 * i + 5] >= boxB[8 * j + 3] + boxB[8 * j + 4] + boxB[8 * j + 5])) {
+        for (let k = 0; k < openA; ++k) stack.push([boxA[8 * i + 6] + k, j]);
       } else {
-        stack.push([i, 2 * j + 1], [i, 2 * j + 2]);
+        for (let k = 0; k < openB; ++k) stack.push([i, boxB[8 * j + 6] + k]);
       }
     }
   };
@@ -171,7 +171,7 @@
     let shown = 0;
     for (const [object, set] of opened) {
       for (const i of set) {
-        const box = object.userData.boxes.subarray(6 * i, 6 * i + 6);
+        const box = object.userData.boxes.subarray(8 * i, 8 * i + 6);
         const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((c) => new THREE.Vector3(box[0] + (c & 1 ? 1 : -1) * box[3],
           box[1] + (c & 2 ? 1 : -1) * box[4], box[2] + (c & 4 ? 1 : -1) * box[5]).applyMatrix4(object.matrixWorld));
         for (const c of edges) positions.push(corners[c].x, corners[c].y, corners[c].z);
