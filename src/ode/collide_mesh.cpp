@@ -25,6 +25,7 @@ query::Request request_for(const Settings& settings, int limit) noexcept {
   request.k_min = settings.k_min;
   request.max_contacts = limit;
   request.carry_motion = settings.carry_motion;
+  request.margin = settings.margin_m;
   request.solids = true;
   return request;
 }
@@ -79,9 +80,9 @@ void write_contact(ContactWriter& writer, const query::Contact& contact, const m
                    bool o1_is_a) noexcept {
   const Vec3 into_a = pose_a.rotation * contact.normal;
   if (o1_is_a) {
-    writer.add(pose_a * contact.position, into_a, contact.depth, contact.triangle_a, contact.triangle_b);
+    writer.add_signed(pose_a * contact.position, into_a, contact.depth, contact.triangle_a, contact.triangle_b);
   } else {
-    writer.add(pose_a * contact.position, -into_a, contact.depth, contact.triangle_b, contact.triangle_a);
+    writer.add_signed(pose_a * contact.position, -into_a, contact.depth, contact.triangle_b, contact.triangle_a);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <ode/ode.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "odds/math/types.hpp"
@@ -31,7 +32,12 @@ class ContactWriter {
   /// (so that a NaN never enters a simulation).
   bool add(const Vec3& position, const Vec3& normal, double depth, std::uint32_t triangle_1,
            std::uint32_t triangle_2) noexcept {
-    const bool sound = position.allFinite() && normal.allFinite() && depth >= 0.0 && depth < dInfinity;
+    return depth >= 0.0 && add_signed(position, normal, depth, triangle_1, triangle_2);
+  }
+  /// The same of bodies that may not touch: a negative depth is a gap.
+  bool add_signed(const Vec3& position, const Vec3& normal, double depth, std::uint32_t triangle_1,
+                  std::uint32_t triangle_2) noexcept {
+    const bool sound = position.allFinite() && normal.allFinite() && std::abs(depth) < dInfinity;
     if (full() || !sound) return false;
     auto* contact = reinterpret_cast<dContactGeom*>(bytes_ + static_cast<std::ptrdiff_t>(count_) * skip_);
     for (int axis = 0; axis < 3; ++axis) {

@@ -44,6 +44,7 @@ Settings combine(const Settings& a, const Settings& b) noexcept {
   both.k_min = std::max(a.k_min, b.k_min);
   both.max_contacts = std::min(a.max_contacts, b.max_contacts);
   both.carry_motion = std::min(a.carry_motion, b.carry_motion);
+  both.margin_m = std::max(a.margin_m, b.margin_m);
   both.method = std::min(a.method, b.method);
   both.estimator = std::min(a.estimator, b.estimator);
   both.undecided_policy = std::max(a.undecided_policy, b.undecided_policy);
@@ -111,6 +112,7 @@ void compute_aabb(dGeomID geom, dReal aabb[6]) noexcept {
   // Some roundings of the sums above, so that the box surely holds the mesh.
   half += Vec3::Constant(8e-16 * (center.cwiseAbs().maxCoeff() + pose->translation.cwiseAbs().maxCoeff() +
                                   local_center.cwiseAbs().sum() + half.maxCoeff()));
+  half += Vec3::Constant(own_data(geom).settings.margin_m);
   for (int axis = 0; axis < 3; ++axis) {
     aabb[2 * axis] = static_cast<dReal>(center[axis] - half[axis]);
     aabb[2 * axis + 1] = static_cast<dReal>(center[axis] + half[axis]);

@@ -25,6 +25,7 @@ struct Settings {
   std::uint32_t k_min = 10;
   int max_contacts = 8;
   double carry_motion = tolerances::resting_motion;
+  double margin_m = 0.0;
   query::Method method = query::Method::incremental;
   query::EstimatorKind estimator = query::EstimatorKind::kinematic;
   int undecided_policy = ODDS_UNDECIDED_HIT;

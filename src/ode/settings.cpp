@@ -91,6 +91,22 @@ dReal dGeomOddsMeshGetCarryMotion(dGeomID geom) noexcept {
   return get<dReal>(geom, __func__, [](const Settings& s) { return s.carry_motion; });
 }
 
+int dGeomOddsMeshSetMargin(dGeomID geom, dReal metres) noexcept {
+  return set(geom, __func__, metres >= 0 && metres < dInfinity, "the margin must be >= 0 metres, and finite",
+             [=](Settings& s) { s.margin_m = metres; });
+}
+
+dReal dGeomOddsMeshGetMargin(dGeomID geom) noexcept {
+  return get<dReal>(geom, __func__, [](const Settings& s) { return s.margin_m; });
+}
+
+void oddsLetNear(dContact* contact, dReal step_s) noexcept {
+  if (contact == nullptr || !(contact->geom.depth < 0) || !(step_s > 0)) return;
+  const bool moves = (contact->surface.mode & dContactMotionN) != 0;
+  contact->surface.motionN = (moves ? contact->surface.motionN : 0) + contact->geom.depth / step_s;
+  contact->surface.mode |= dContactMotionN;
+}
+
 int dGeomOddsMeshSetMethod(dGeomID geom, int method) noexcept {
   return set(geom, __func__, method >= ODDS_METHOD_EXACT && method <= ODDS_METHOD_TIME_CRITICAL,
              "the method must be one of ODDS_METHOD_EXACT, _INCREMENTAL, _TIME_CRITICAL",

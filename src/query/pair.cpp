@@ -8,6 +8,7 @@
 #include "odds/math/tolerances.hpp"
 #include "query/answer_odds_table.hpp"
 #include "query/likeliest_place.hpp"
+#include "query/near_contacts.hpp"
 #include "query/pair_contacts.hpp"
 #include "query/pair_memory.hpp"
 #include "query/pair_within.hpp"
@@ -194,24 +195,15 @@ void forget_if_elsewhere(const PosedMeshes& meshes, Pair::Implementation& pair) 
 }
 
 template <class Tree>
-void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const Request& request,
-            Pair::Implementation& pair) noexcept {
-  Spending spending(request.budget, pair.ending.ns());
+void answer_met(const Tree& a, const Tree& b, const PosedMeshes& meshes, const math::Pose& pose_b_in_a,
+                const Request& request, Pair::Implementation& pair, Spending& spending) noexcept {
   Answer& answer = pair.answer;
-  answer = {};
-  pair.hits.clear();
-  const PosedMeshes meshes(pair.a->mesh(), pair.b->mesh(), a.origin(), b.origin(), pose_b_in_a);
-  forget_if_elsewhere(meshes, pair);
-  if (carry_contacts(meshes, pose_b_in_a, request, pair, spending)) {
-    answer.cost = spending.close();
-    return;
-  }
+  if (carry_contacts(meshes, pose_b_in_a, request, pair, spending)) return;
   if (is_still_apart(b, meshes, request, pair)) {
     pair.has_witness = false;
     if (!answer_within(meshes, pose_b_in_a, request, b.reach(), pair.within_is_of_front, pair, spending)) {
       note_clear(meshes, pose_b_in_a, request, pair);
     }
-    answer.cost = spending.close();
     return;
   }
   SearchResult result;
@@ -238,6 +230,19 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
   } else if (pair.within == Within::neither) {
     pair.previous_normal.setZero();
   }
+}
+
+template <class Tree>
+void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const Request& request,
+            Pair::Implementation& pair) noexcept {
+  Spending spending(request.budget, pair.ending.ns());
+  Answer& answer = pair.answer;
+  answer = {};
+  pair.hits.clear();
+  const PosedMeshes meshes(pair.a->mesh(), pair.b->mesh(), a.origin(), b.origin(), pose_b_in_a);
+  forget_if_elsewhere(meshes, pair);
+  answer_met(a, b, meshes, pose_b_in_a, request, pair, spending);
+  if (request.margin > 0.0) add_near_contacts(pose_b_in_a, request, pair, spending);
   answer.cost = spending.close();
   if (spending.ending_ns() > 0 && pair.hits.empty()) pair.ending.note(spending.ending_ns());
 }
@@ -245,7 +250,8 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
 bool usable(const math::Pose& pose, const Request& request) noexcept {
   return pose.is_rigid(tolerances::pose_orthonormality) && request.budget.microseconds > 0.0 &&
          request.budget.work_units > 0 && request.p_min > 0.0 && request.p_min <= 1.0 && request.k_min >= 1 &&
-         request.max_contacts >= 0 && request.carry_motion >= 0.0 && request.carry_motion <= 1.0;
+         request.max_contacts >= 0 && request.margin >= 0.0 && request.carry_motion >= 0.0 &&
+         request.carry_motion <= 1.0;
 }
 
 }  // namespace
@@ -343,6 +349,7 @@ void Pair::reset() noexcept {
   implementation_->known_depth.forget();
   implementation_->known_direction.forget();
   implementation_->carried.forget();
+  implementation_->near.forget();
   implementation_->has_witness = false;
   implementation_->within = Within::neither;
   implementation_->within_is_of_front = false;

@@ -14,6 +14,7 @@
 #include "query/ending_reserve.hpp"
 #include "query/known_depth.hpp"
 #include "query/known_direction.hpp"
+#include "query/near_contacts.hpp"
 #include "query/recalibration.hpp"
 #include "query/scratch_pool.hpp"
 #include "query/shape_data.hpp"
@@ -67,6 +68,7 @@ struct Pair::Implementation {
   KnownDepth known_depth;
   KnownDirection known_direction;
   CarriedContacts carried;
+  NearContacts near;
   EndingReserve ending;
   std::array<Contact, most_contacts> contacts;  ///< the answer's
   Answer answer;

@@ -33,8 +33,10 @@ T value_or_throw(Result<T> result) {
 std::string Collider::name() const {
   switch (kind) {
     case Kind::odds:
-      if (!std::isfinite(budget_us)) return "odds, no limit";
-      return in_work ? fmt::format("odds, {} units", work_units()) : fmt::format("odds, {:g} µs", budget_us);
+      return (!std::isfinite(budget_us) ? std::string("odds, no limit")
+              : in_work                 ? fmt::format("odds, {} units", work_units())
+                                        : fmt::format("odds, {:g} µs", budget_us)) +
+             (margin_m > 0.0 ? fmt::format(", margin {:g} mm", 1e3 * margin_m) : std::string());
     case Kind::stock:
       return "ODE's dTriMesh";
     case Kind::primitive:
@@ -147,6 +149,12 @@ void Arena::prepare() {
       if (oddsPreparePair(items_[i].geom, items_[j].geom) == 0) throw std::runtime_error(oddsGetLastError());
     }
   }
+  if (!(collider_.margin_m > 0.0)) return;
+  for (const Item& item : items_) {
+    if (item.mesh && dGeomOddsMeshSetMargin(item.geom, collider_.margin_m) == 0) {
+      throw std::runtime_error(oddsGetLastError());
+    }
+  }
 }
 
 int Arena::collide(dGeomID a, dGeomID b, dContact* contacts) const {
@@ -181,6 +189,8 @@ void Arena::near(void* self, dGeomID a, dGeomID b) {
       contact.surface.mode |= dContactSoftERP;
       contact.surface.soft_erp = arena.physics_.soft_erp;
     }
+    oddsLetNear(&contact, step_s);
+    oddsLetNear(&contact, step_s);
     dJointAttach(dJointCreateContact(arena.world_, arena.joints_, &contact), body_a, body_b);
   }
 }

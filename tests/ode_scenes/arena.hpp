@@ -28,6 +28,7 @@ struct Collider {
   Kind kind = Kind::odds;
   double budget_us = 100.0;  ///< of odds
   bool in_work = false;      ///< as work units in place of microseconds: the same bits on every run, on any machine
+  double margin_m = 0.0;     ///< of odds: surfaces that part by less keep their contacts
 
   [[nodiscard]] bool ours() const noexcept { return kind == Kind::odds; }
   [[nodiscard]] std::string name() const;

@@ -15,6 +15,7 @@ constexpr double from_x = -0.15;
 constexpr double to_x = 0.15;
 constexpr double press_m = 0.003;
 constexpr double tube = 0.008;
+constexpr double margin_m = 0.0002;  // four steps of the tool
 constexpr double most_change_n = 0.1;
 constexpr double ball_density = 0.05 / (4.0 / 3.0 * 3.14159265 * tube * tube * tube);  // 50 g, as ODE's sphere
 constexpr Physics physics{"", 50, 1.0 / 11.0, 0.1, 0.3, 64};
@@ -68,7 +69,9 @@ Run run_drag(const std::string& tool, const Mesh& ground, const std::vector<doub
     if (i == 500) hand.change_n.clear();
     if (i % 10 == 0) run.traces[0].points.emplace_back(arena.time_s(), hand.felt_n());
   }
-  run.figures.push_back({"change of force, p99", percentile(hand.change_n, 0.99), "N/ms", most_change_n});
+  const bool judged = collider.margin_m > 0.0;
+  run.figures.push_back({"change of force, p99", percentile(hand.change_n, 0.99), "N/ms",
+                         judged ? std::optional<double>(most_change_n) : std::nullopt});
   run.figures.push_back({"p99.9", percentile(hand.change_n, 0.999), "N/ms"});
   run.figures.push_back({"greatest change", percentile(hand.change_n, 1.0), "N/ms"});
   run.figures.push_back({"greatest force", hand.most_n, "N"});
@@ -87,20 +90,31 @@ Section drag(const Plan& plan) {
       "A tool over hilly ground",
       "<p>A torus of 1,024 triangles, a gear of 1,536 and a ball of 1,280 are dragged at 50 mm/s over ground of 8,192 "
       "triangles and pressed 3 mm into it, by a spring of 2000 N/m: how much does the spring's force change "
-      "within a millisecond? For ODE's sphere, 0.05 N.</p>",
+      "within a millisecond? For ODE's sphere, 0.05 N. A tool that rests on points without depth loses one now and "
+      "then "
+      "by some nanometres, and drops for a tick: with a margin, surfaces that are near have contacts that let them "
+      "come "
+      "nearer by their gap and no faster. The bar is for runs with a margin.</p>",
       "s",
       "force of the spring, N",
       false,
       {}};
   const Mesh ground = made("terrain:side=0.5,height=0.02,feature=0.3,depth=0.05,cells=64", false);
   const std::vector<double> path = heights(ground);
-  for (const char* tool :
-       {"torus:ring=0.02,tube=0.008,around=32,across=16", "gear:module=0.002,teeth=16,flank=8,root=3",
-        "icosphere:radius=0.008,frequency=8"}) {
+  for (const char* tool : {"torus:ring=0.02,tube=0.008,around=32,across=16",
+                           "gear:module=0.002,teeth=16,flank=8,root=3", "icosphere:radius=0.008,frequency=8"}) {
     const bool first = tool[0] == 't';
+    std::vector<Collider> all;
     for (const Collider& collider : colliders(plan, first)) {
+      if (collider.ours()) {
+        all.push_back(collider);
+        all.back().margin_m = margin_m;
+      }
+      if (!collider.ours() || collider.budget_us >= 100.0) all.push_back(collider);
+    }
+    for (const Collider& collider : all) {
       section.runs.push_back(run_drag(tool, ground, path, collider));
-      fmt::print("drag {:<20} {:<18} {}\n", std::string(tool).substr(0, 5), collider.name(), section.runs.back().note);
+      fmt::print("drag {:<20} {:<32} {}\n", std::string(tool).substr(0, 5), collider.name(), section.runs.back().note);
       std::fflush(stdout);
       const bool told = first && (!collider.ours() || collider.budget_us >= 100.0);
       if (!told) section.runs.back().traces.clear();

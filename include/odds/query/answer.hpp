@@ -48,7 +48,7 @@ constexpr std::uint32_t no_feature = std::numeric_limits<std::uint32_t>::max();
 struct Contact {
   Vec3 position = Vec3::Zero();  ///< metres
   Vec3 normal = Vec3::UnitZ();   ///< unit; points into A: moving A along it by `depth` ends this contact (ODE's rule)
-  double depth = 0.0;            ///< metres, >= 0
+  double depth = 0.0;            ///< metres, >= 0; of surfaces that have come apart (Request::margin) minus the gap
   std::uint32_t triangle_a = no_feature;  ///< index into A's mesh, or no_feature where the contact is an estimate
   std::uint32_t triangle_b = no_feature;  ///< index into B's mesh, or no_feature
 };

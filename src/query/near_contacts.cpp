@@ -1,0 +1,100 @@
+#include "query/near_contacts.hpp"
+
+#include <optional>
+
+#include "query/counted_ray.hpp"
+#include "query/pair_memory.hpp"
+
+namespace odds::query {
+namespace {
+
+constexpr std::int64_t ray_finish_ns = 2000;  ///< of one ray, and writing the answer
+constexpr std::uint64_t most_nodes = 96;      ///< of one ray
+/// Of the smaller body's size: nearer to each other two contacts that push to the same side are one.
+constexpr double same_place = 0.02;
+constexpr double same_side = 0.5;  ///< cosine
+
+struct Gap {
+  double length;
+  std::uint32_t triangle;
+};
+
+/// How far a surface lies from `point` along `direction`, both in the shape's mesh frame: no farther than `margin`,
+/// and seen from outside if it is that of a solid. 0 where the point has passed it by no more than that.
+std::optional<Gap> gap_to(const Shape& shape, const Vec3& point, const Vec3& direction, double margin,
+                          Spending& spending) noexcept {
+  if (!spending.allows(most_nodes) || !spending.may_make_contacts()) return {};
+  RayEffort effort;
+  // From as far behind the point, which itself is on a surface that the other one may have just come through.
+  const auto hit = cast_counted_ray(shape, point - margin * direction, direction, 2.0 * margin, most_nodes, effort);
+  spending.spend_node_pairs(static_cast<std::uint32_t>(effort.nodes));
+  if (!hit || !effort.finished) return {};
+  if (shape.is_solid()) {
+    const mesh::Triangle& t = shape.mesh().triangles()[hit->triangle];
+    const std::span<const Vec3> vertices = shape.mesh().vertices();
+    const Vec3 outward = (vertices[t[1]] - vertices[t[0]]).cross(vertices[t[2]] - vertices[t[0]]);
+    if (!(outward.dot(direction) < 0.0)) return {};
+  }
+  return Gap{std::max(hit->distance - margin, 0.0), hit->triangle};
+}
+
+/// Of what touched a run ago: how near the surfaces are there now, along the normal of then.
+std::optional<Contact> contact_across(const HeldContact& touched, const math::Pose& pose_b_in_a, double margin,
+                                      const Pair::Implementation& pair, Spending& spending) noexcept {
+  Contact contact = touched.at(pose_b_in_a);
+  const math::Pose pose_a_in_b = pose_b_in_a.inverse();
+  const Vec3 on_b = pose_b_in_a * touched.on_b();
+  const auto below =
+      gap_to(*pair.b, pose_a_in_b * touched.on_a(), pose_a_in_b.rotation * -contact.normal, margin, spending);
+  const auto above = gap_to(*pair.a, on_b, contact.normal, margin, spending);
+  if (!below && !above) return {};
+  if (below && (!above || below->length <= above->length)) {
+    contact.position = touched.on_a() - 0.5 * below->length * contact.normal;
+    contact.depth = -below->length;
+    contact.triangle_b = below->triangle;
+  } else {
+    contact.position = on_b + 0.5 * above->length * contact.normal;
+    contact.depth = -above->length;
+    contact.triangle_a = above->triangle;
+  }
+  return contact;
+}
+
+}  // namespace
+
+void add_near_contacts(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair,
+                       Spending& spending) noexcept {
+  Answer& answer = pair.answer;
+  if (answer.basis != Basis::proved || request.polygon_free || pair.within == Within::b_in_a ||
+      pair.within == Within::a_in_b) {
+    pair.near.forget();
+    return;
+  }
+  std::size_t count = answer.contacts.size();
+  const std::size_t met = count;
+  const std::size_t room = std::min<std::size_t>(static_cast<std::size_t>(request.max_contacts), most_contacts);
+  if (answer.contacts.data() != pair.contacts.data())
+    std::copy_n(answer.contacts.begin(), count, pair.contacts.begin());
+  const double size = std::min(pair.a->mesh().size(), pair.b->mesh().size());
+  const auto known = [&](const Contact& contact, std::size_t from, std::size_t to) noexcept {
+    return std::any_of(pair.contacts.begin() + static_cast<std::ptrdiff_t>(from),
+                       pair.contacts.begin() + static_cast<std::ptrdiff_t>(to), [&](const Contact& other) noexcept {
+                         return (other.position - contact.position).norm() < same_place * size &&
+                                other.normal.dot(contact.normal) > same_side;
+                       });
+  };
+  spending.reserve_for_contacts(ray_finish_ns);
+  for (const HeldContact& touched : pair.near.last()) {
+    if (count >= room) break;
+    if (touched.parted(pose_b_in_a).slip > size || known(touched.at(pose_b_in_a), 0, met)) continue;
+    const auto found = contact_across(touched, pose_b_in_a, request.margin, pair, spending);
+    if (found && !known(*found, 0, count)) pair.contacts[count++] = *found;
+  }
+  std::sort(pair.contacts.begin() + static_cast<std::ptrdiff_t>(met),
+            pair.contacts.begin() + static_cast<std::ptrdiff_t>(count),
+            [](const Contact& x, const Contact& y) { return x.depth > y.depth; });
+  answer.contacts = std::span(pair.contacts).first(count);
+  pair.near.keep(answer.contacts, pose_b_in_a);
+}
+
+}  // namespace odds::query
