@@ -6,6 +6,7 @@
 #include <span>
 
 #include "odds/math/pose.hpp"
+#include "odds/math/tolerances.hpp"
 #include "odds/query/answer.hpp"
 #include "odds/query/held_contact.hpp"
 
@@ -24,7 +25,7 @@ class HeldContacts {
   static constexpr double most_slip_undecided = 0.1;
   static constexpr double most_gap = 0.002;
   /// Of the smaller body's size: nearer to each other two contacts are one.
-  static constexpr double same_place = 0.02;
+  static constexpr double same_place = tolerances::same_contact_place;
   /// Runs that add contacts and do not find one again, after which it is let go: a rim of which each run finds a tenth
   /// is found in fewer.
   static constexpr int most_added = 40;
@@ -32,7 +33,7 @@ class HeldContacts {
   /// than the few that a starved one finds.
   static constexpr double most_trusted = 0.01;
   /// Cosine above which two contacts push to the same side.
-  static constexpr double same_side = 0.5;
+  static constexpr double same_side = tolerances::same_contact_side;
   /// A stalled processor is away for some milliseconds.
   static constexpr int most_runs = 10;
   /// Of the smaller body's size: bodies that have moved less since what is held was made have not sunk in deeper than

@@ -100,7 +100,7 @@ dReal dGeomOddsMeshGetMargin(dGeomID geom) noexcept {
   return get<dReal>(geom, __func__, [](const Settings& s) { return s.margin_m; });
 }
 
-void oddsLetNear(dContact* contact, dReal step_s) noexcept {
+void oddsMakeSpeculative(dContact* contact, dReal step_s) noexcept {
   if (contact == nullptr || !(contact->geom.depth < 0) || !(step_s > 0)) return;
   const bool moves = (contact->surface.mode & dContactMotionN) != 0;
   contact->surface.motionN = (moves ? contact->surface.motionN : 0) + contact->geom.depth / step_s;

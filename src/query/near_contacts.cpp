@@ -1,41 +1,33 @@
 #include "query/near_contacts.hpp"
 
+#include <cmath>
 #include <optional>
 
-#include "query/counted_ray.hpp"
+#include "odds/math/tolerances.hpp"
+#include "query/budgeted_ray.hpp"
 #include "query/pair_memory.hpp"
 
 namespace odds::query {
 namespace {
 
 constexpr std::int64_t ray_finish_ns = 2000;  ///< of one ray, and writing the answer
-constexpr std::uint64_t most_nodes = 96;      ///< of one ray
-/// Of the smaller body's size: nearer to each other two contacts that push to the same side are one.
-constexpr double same_place = 0.02;
-constexpr double same_side = 0.5;  ///< cosine
 
 struct Gap {
   double length;
   std::uint32_t triangle;
 };
 
-/// How far a surface lies from `point` along `direction`, both in the shape's mesh frame: no farther than `margin`,
-/// and seen from outside if it is that of a solid. 0 where the point has passed it by no more than that.
+/// How far a surface lies from `point` along `direction`, both in the shape's mesh frame: no farther than `margin`, and
+/// not slanting. 0 where the point has passed it by no more than that.
 std::optional<Gap> gap_to(const Shape& shape, const Vec3& point, const Vec3& direction, double margin,
                           Spending& spending) noexcept {
-  if (!spending.allows(most_nodes) || !spending.may_make_contacts()) return {};
-  RayEffort effort;
+  RayHit hit;
   // From as far behind the point, which itself is on a surface that the other one may have just come through.
-  const auto hit = cast_counted_ray(shape, point - margin * direction, direction, 2.0 * margin, most_nodes, effort);
-  spending.spend_node_pairs(static_cast<std::uint32_t>(effort.nodes));
-  if (!hit || !effort.finished) return {};
-  if (shape.is_solid()) {
-    const mesh::Triangle& t = shape.mesh().triangles()[hit->triangle];
-    const std::span<const Vec3> vertices = shape.mesh().vertices();
-    const Vec3 outward = (vertices[t[1]] - vertices[t[0]]).cross(vertices[t[2]] - vertices[t[0]]);
-    if (!(outward.dot(direction) < 0.0)) return {};
-  }
-  return Gap{std::max(hit->distance - margin, 0.0), hit->triangle};
+  const Vec3 from = point - margin * direction;
+  if (cast_budgeted_ray(shape, from, direction, 2.0 * margin, spending, hit) != Seen::surface) return {};
+  const double cosine = facing(shape, hit.triangle, direction);
+  if (!((shape.is_solid() ? -cosine : std::abs(cosine)) > tolerances::same_contact_side)) return {};
+  return Gap{std::max(hit.distance - margin, 0.0), hit.triangle};
 }
 
 /// Of what touched a run ago: how near the surfaces are there now, along the normal of then.
@@ -73,22 +65,20 @@ void add_near_contacts(const math::Pose& pose_b_in_a, const Request& request, Pa
   std::size_t count = answer.contacts.size();
   const std::size_t met = count;
   const std::size_t room = std::min<std::size_t>(static_cast<std::size_t>(request.max_contacts), most_contacts);
-  if (answer.contacts.data() != pair.contacts.data())
-    std::copy_n(answer.contacts.begin(), count, pair.contacts.begin());
-  const double size = std::min(pair.a->mesh().size(), pair.b->mesh().size());
-  const auto known = [&](const Contact& contact, std::size_t from, std::size_t to) noexcept {
-    return std::any_of(pair.contacts.begin() + static_cast<std::ptrdiff_t>(from),
-                       pair.contacts.begin() + static_cast<std::ptrdiff_t>(to), [&](const Contact& other) noexcept {
-                         return (other.position - contact.position).norm() < same_place * size &&
-                                other.normal.dot(contact.normal) > same_side;
-                       });
+  const double near = tolerances::same_contact_place * std::min(pair.a->mesh().size(), pair.b->mesh().size());
+  const auto known = [&](const Contact& contact) noexcept {
+    const std::span so_far = std::span(pair.contacts).first(count);
+    return std::any_of(so_far.begin(), so_far.end(), [&](const Contact& other) noexcept {
+      return (other.position - contact.position).norm() < near &&
+             other.normal.dot(contact.normal) > tolerances::same_contact_side;
+    });
   };
   spending.reserve_for_contacts(ray_finish_ns);
   for (const HeldContact& touched : pair.near.last()) {
     if (count >= room) break;
-    if (touched.parted(pose_b_in_a).slip > size || known(touched.at(pose_b_in_a), 0, met)) continue;
+    if (touched.parted(pose_b_in_a).slip > near || known(touched.at(pose_b_in_a))) continue;
     const auto found = contact_across(touched, pose_b_in_a, request.margin, pair, spending);
-    if (found && !known(*found, 0, count)) pair.contacts[count++] = *found;
+    if (found && !known(*found)) pair.contacts[count++] = *found;
   }
   std::sort(pair.contacts.begin() + static_cast<std::ptrdiff_t>(met),
             pair.contacts.begin() + static_cast<std::ptrdiff_t>(count),

@@ -195,8 +195,8 @@ void forget_if_elsewhere(const PosedMeshes& meshes, Pair::Implementation& pair) 
 }
 
 template <class Tree>
-void answer_met(const Tree& a, const Tree& b, const PosedMeshes& meshes, const math::Pose& pose_b_in_a,
-                const Request& request, Pair::Implementation& pair, Spending& spending) noexcept {
+void search_and_answer(const Tree& a, const Tree& b, const PosedMeshes& meshes, const math::Pose& pose_b_in_a,
+                       const Request& request, Pair::Implementation& pair, Spending& spending) noexcept {
   Answer& answer = pair.answer;
   if (carry_contacts(meshes, pose_b_in_a, request, pair, spending)) return;
   if (is_still_apart(b, meshes, request, pair)) {
@@ -241,8 +241,12 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
   pair.hits.clear();
   const PosedMeshes meshes(pair.a->mesh(), pair.b->mesh(), a.origin(), b.origin(), pose_b_in_a);
   forget_if_elsewhere(meshes, pair);
-  answer_met(a, b, meshes, pose_b_in_a, request, pair, spending);
-  if (request.margin > 0.0) add_near_contacts(pose_b_in_a, request, pair, spending);
+  search_and_answer(a, b, meshes, pose_b_in_a, request, pair, spending);
+  if (request.margin > 0.0) {
+    add_near_contacts(pose_b_in_a, request, pair, spending);
+  } else {
+    pair.near.forget();
+  }
   answer.cost = spending.close();
   if (spending.ending_ns() > 0 && pair.hits.empty()) pair.ending.note(spending.ending_ns());
 }
@@ -250,8 +254,8 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
 bool usable(const math::Pose& pose, const Request& request) noexcept {
   return pose.is_rigid(tolerances::pose_orthonormality) && request.budget.microseconds > 0.0 &&
          request.budget.work_units > 0 && request.p_min > 0.0 && request.p_min <= 1.0 && request.k_min >= 1 &&
-         request.max_contacts >= 0 && request.margin >= 0.0 && request.carry_motion >= 0.0 &&
-         request.carry_motion <= 1.0;
+         request.max_contacts >= 0 && request.margin >= 0.0 && std::isfinite(request.margin) &&
+         request.carry_motion >= 0.0 && request.carry_motion <= 1.0;
 }
 
 }  // namespace
@@ -326,6 +330,7 @@ void Pair::note_apart(const math::Pose& pose_b_in_a) noexcept {
         const Tree& b = *std::get_if<Tree>(&pair.b->data().tree);
         const PosedMeshes meshes(pair.a->mesh(), pair.b->mesh(), a.origin(), b.origin(), pose_b_in_a);
         note_clear(meshes, pose_b_in_a, {.solids = true}, pair);
+        pair.near.forget();
         pair.within_is_of_front = false;
       },
       pair.a->data().tree);

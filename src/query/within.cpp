@@ -6,16 +6,11 @@
 #include <limits>
 
 #include "odds/math/tolerances.hpp"
-#include "query/counted_ray.hpp"
+#include "query/budgeted_ray.hpp"
 
 namespace odds::query {
 namespace {
 
-// Within a time, of one ray: less than 2 us. 1 in 20,000 rays in a million triangles visits more than 22 wide nodes; of
-// trees of spheres 1 in 1,000 visits more than 400 and is not decided.
-constexpr std::uint64_t most_wide_nodes = 64;
-constexpr std::uint64_t most_generic_nodes = 256;
-constexpr std::uint64_t least_nodes = 16;  // with less it is not begun
 constexpr double endless = std::numeric_limits<double>::infinity();
 
 Vec3 middle(const Shape& shape) noexcept { return 0.5 * shape.mesh().lower() + 0.5 * shape.mesh().upper(); }
@@ -30,34 +25,12 @@ bool can_hold(const Shape& outer, const Vec3& point) noexcept {
   return outer.is_solid() && outer.has_polygons() && in_box(outer, point);
 }
 
-enum class Seen : std::uint8_t { exit, none, unknown };
-
-/// A ray within the budget.
-Seen cast_within(const Shape& shape, const Vec3& point, const Vec3& direction, Spending& spending,
-                 RayHit& found) noexcept {
-  if (!spending.allows(least_nodes) || !spending.may_make_contacts()) return Seen::unknown;
-  std::uint64_t most = spending.units_left();
-  if (std::isfinite(spending.left_us())) {
-    most = std::min(most, shape.volume() == volume::Kind::wide ? most_wide_nodes : most_generic_nodes);
-  }
-  RayEffort effort;
-  const std::optional<RayHit> hit = cast_counted_ray(shape, point, direction, endless, most, effort);
-  spending.spend_node_pairs(static_cast<std::uint32_t>(effort.nodes));
-  if (!effort.finished) return Seen::unknown;
-  if (hit) found = *hit;
-  return hit ? Seen::exit : Seen::none;
-}
-
 /// Where a line from `point` leaves the solid: none if the surface that it meets first is seen from outside.
 Seen exit_along(const Shape& solid, const Vec3& point, const Vec3& direction, Spending& spending,
                 RayHit& exit) noexcept {
-  const Seen seen = cast_within(solid, point, direction, spending, exit);
-  if (seen != Seen::exit) return seen;
-  const mesh::TriangleMesh& mesh = solid.mesh();
-  const mesh::Triangle& t = mesh.triangles()[exit.triangle];
-  const Vec3& p = mesh.vertices()[t[0]];
-  const Vec3 outward = (mesh.vertices()[t[1]] - p).cross(mesh.vertices()[t[2]] - p);
-  return outward.dot(direction) > 0.0 ? Seen::exit : Seen::none;
+  const Seen seen = cast_budgeted_ray(solid, point, direction, endless, spending, exit);
+  if (seen != Seen::surface) return seen;
+  return facing(solid, exit.triangle, direction) > 0.0 ? Seen::surface : Seen::none;
 }
 
 /// Away from the middle of the box, where the surface is nearest in most solids; any direction at the middle itself.
@@ -67,7 +40,7 @@ Vec3 outwards(const Shape& solid, const Vec3& point) noexcept {
   return length > 1e-9 * solid.mesh().size() ? Vec3(away / length) : Vec3(Vec3(0.48, 0.6, 0.64));
 }
 
-/// exit: the point is inside; none: outside.
+/// surface: the point is inside; none: outside.
 Seen holds(const Shape& outer, const Vec3& point, Spending& spending) noexcept {
   if (!can_hold(outer, point)) return Seen::none;
   const Vec3 direction = outwards(outer, point);
@@ -95,12 +68,12 @@ Contact contact_along(const Nested& nested, const Vec3& point, const Vec3& direc
   const Vec3 along = nested.pose.rotation.transpose() * direction;
   const double back = (begin - middle(nested.inner)).norm() + nested.inner.mesh().size();
   RayHit entry;
-  const Seen seen = cast_within(nested.inner, begin - back * along, along.normalized(), spending, entry);
+  const Seen seen = cast_budgeted_ray(nested.inner, begin - back * along, along.normalized(), endless, spending, entry);
   // Where the line misses it, or meets it only farther on: its first vertex at least is to leave.
   const double of_vertex = direction.dot(point - nested.pose * first_vertex(nested.inner));
-  const double far = std::max(0.0, seen == Seen::exit ? back - entry.distance : of_vertex);
+  const double far = std::max(0.0, seen == Seen::surface ? back - entry.distance : of_vertex);
   Contact contact;
-  contact.triangle_b = seen == Seen::exit ? entry.triangle : no_feature;
+  contact.triangle_b = seen == Seen::surface ? entry.triangle : no_feature;
   contact.depth = exit.distance + far;
   contact.position = point + 0.5 * (exit.distance - far) * direction;
   contact.normal = direction;
@@ -116,9 +89,9 @@ bool may_be_within(const Shape& a, const Shape& b, const math::Pose& b_in_a) noe
 
 Within within(const Shape& a, const Shape& b, const math::Pose& b_in_a, Spending& spending) noexcept {
   const Seen b_held = holds(a, b_in_a * first_vertex(b), spending);
-  if (b_held == Seen::exit) return Within::b_in_a;
+  if (b_held == Seen::surface) return Within::b_in_a;
   const Seen a_held = holds(b, b_in_a.inverse() * first_vertex(a), spending);
-  if (a_held == Seen::exit) return Within::a_in_b;
+  if (a_held == Seen::surface) return Within::a_in_b;
   return b_held == Seen::none && a_held == Seen::none ? Within::neither : Within::unknown;
 }
 
@@ -128,14 +101,14 @@ std::optional<Contact> way_out(const Shape& a, const Shape& b, const math::Pose&
   const bool b_inside = which == Within::b_in_a;
   const Nested nested = b_inside ? Nested{a, b, b_in_a} : Nested{b, a, b_in_a.inverse()};
   const Vec3 centre = nested.pose * middle(nested.inner);
-  const bool centre_is_inside = holds(nested.outer, centre, spending) == Seen::exit;
+  const bool centre_is_inside = holds(nested.outer, centre, spending) == Seen::surface;
   const Vec3 point = centre_is_inside ? centre : nested.pose * first_vertex(nested.inner);
   Vec3 best = Vec3::Zero();
   RayHit exit;
   double least = endless;
   const auto offer = [&](const Vec3& direction, double factor) noexcept {
     RayHit found;
-    if (exit_along(nested.outer, point, direction, spending, found) != Seen::exit) return;
+    if (exit_along(nested.outer, point, direction, spending, found) != Seen::surface) return;
     if (!(factor * found.distance < least)) return;
     least = factor * found.distance;
     exit = found;

@@ -73,21 +73,21 @@ TEST_F(Margin, WidensTheBoxSoThatASpaceAsksInTime) {
   }
 }
 
-TEST(LetNear, ChangesOnlyContactsThatAreApart) {
+TEST(MakeSpeculative, ChangesOnlyContactsThatAreApart) {
   dContact contact{};
   contact.geom.depth = 1e-3;
-  oddsLetNear(&contact, step_s);
+  oddsMakeSpeculative(&contact, step_s);
   EXPECT_EQ(contact.surface.mode, 0);
   contact.geom.depth = -1e-4;
-  for (const dReal bad : {0.0, -1.0, std::nan("")}) oddsLetNear(&contact, bad);
+  for (const dReal bad : {0.0, -1.0, std::nan("")}) oddsMakeSpeculative(&contact, bad);
   EXPECT_EQ(contact.surface.mode, 0);
-  oddsLetNear(&contact, step_s);
+  oddsMakeSpeculative(&contact, step_s);
   EXPECT_EQ(contact.surface.mode, dContactMotionN);
   EXPECT_NEAR(contact.surface.motionN, -0.1, 1e-15);
   contact.surface.motionN = 0.3;
-  oddsLetNear(&contact, step_s);
+  oddsMakeSpeculative(&contact, step_s);
   EXPECT_NEAR(contact.surface.motionN, 0.2, 1e-15) << "a motion of its own stays";
-  oddsLetNear(nullptr, step_s);
+  oddsMakeSpeculative(nullptr, step_s);
 }
 
 /// What a brick of 1 kg comes to when it is let go at some height and pressed down.
@@ -120,7 +120,7 @@ class BrickUnderLoad : public Margin {
         dContact contact{};
         contact.geom = found;
         contact.surface.mu = 0.5;
-        oddsLetNear(&contact, step_s);
+        oddsMakeSpeculative(&contact, step_s);
         dJointAttach(dJointCreateContact(world, joints, &contact), dGeomGetBody(found.g1), dGeomGetBody(found.g2));
       }
       dWorldQuickStep(world, step_s);

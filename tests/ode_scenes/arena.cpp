@@ -189,8 +189,7 @@ void Arena::near(void* self, dGeomID a, dGeomID b) {
       contact.surface.mode |= dContactSoftERP;
       contact.surface.soft_erp = arena.physics_.soft_erp;
     }
-    oddsLetNear(&contact, step_s);
-    oddsLetNear(&contact, step_s);
+    oddsMakeSpeculative(&contact, step_s);
     dJointAttach(dJointCreateContact(arena.world_, arena.joints_, &contact), body_a, body_b);
   }
 }

@@ -106,8 +106,18 @@ TEST_F(NearBricks, NeitherASlipNorARefusalIsRemembered) {
   EXPECT_TRUE(run(above(1e-5)).empty());
 }
 
+TEST_F(NearBricks, OnlyTheRunBeforeCounts) {
+  ASSERT_FALSE(run(above(-1e-5)).empty());
+  EXPECT_TRUE(run(above(0.01), request(0.0)).empty());
+  EXPECT_TRUE(run(above(1e-5)).empty()) << "a run without a margin was in between";
+  ASSERT_FALSE(run(above(-1e-5)).empty());
+  pair.note_apart(above(0.01));
+  EXPECT_TRUE(run(above(1e-5)).empty()) << "a broad phase saw them apart";
+}
+
 TEST_F(NearBricks, RefuseAMarginThatIsNone) {
-  for (const double bad : {-1e-9, std::nan("")}) EXPECT_EQ(pair.run(above(1e-5), request(bad)).basis, Basis::budget);
+  for (const double bad : {-1e-9, std::nan(""), std::numeric_limits<double>::infinity()})
+    EXPECT_EQ(pair.run(above(1e-5), request(bad)).basis, Basis::budget);
 }
 
 TEST_F(NearBricks, KeepWithinTheirWork) {
@@ -138,6 +148,24 @@ TEST(NearContacts, APegThatLeavesAWallIsNearIt) {
   for (const Contact& contact : answer.contacts) {
     EXPECT_GT(contact.normal.x(), 0.5) << "into the plate, as the peg pushed";
     EXPECT_NEAR(-contact.depth, 2e-5, 1e-5);
+  }
+}
+
+TEST(NearContacts, ABallThatTurnedAwayIsNotNear) {
+  // Turned about the place where it touched a block, by its edge, and moved off it: above the place, within the margin,
+  // is the same side of the ball, which slants more and more; below the ball is nothing.
+  const auto block = made("box:x=0.2,y=0.2,z=0.1");
+  const auto ball = made("icosphere:radius=0.02,frequency=12");
+  auto pair = std::move(Pair::make(block, ball)).value();
+  const Request asked{.max_contacts = 8, .margin = margin};
+  const Vec3 place(0.1 - 1e-5, 0, 0.05);
+  for (const double degrees : {10.0, 30.0, 75.0}) {
+    pair.reset();
+    const Mat3 turned = Eigen::AngleAxisd(degrees * 3.14159265358979 / 180.0, Vec3::UnitY()).toRotationMatrix();
+    ASSERT_FALSE(pair.run({Mat3::Identity(), place + Vec3(0, 0, 0.02 - 1e-6)}, asked).contacts.empty());
+    const Answer& answer = pair.run({turned, place + turned * Vec3(0, 0, 0.02) + Vec3(2e-5, 0, 0)}, asked);
+    ASSERT_EQ(answer.verdict, Verdict::clear) << degrees;
+    EXPECT_EQ(answer.contacts.empty(), degrees > 60.0) << degrees;
   }
 }
 

@@ -118,6 +118,12 @@ inline constexpr double level_overlap = 0.01;
 inline constexpr double spacing_by_depth = 0.5;
 inline constexpr double spacing_by_lever = 1e-3;  ///< see spacing_by_depth
 
+/// Contacts of two runs that lie nearer to each other than this part of the smaller body's size, and whose normals'
+/// cosine is above same_contact_side, are one; a surface at a greater slant is not what a contact was with.
+/// Test: NearBricks.WhatMeetsIsTheSameWithAMarginAsWithout, NearContacts.ABallThatTurnedAwayIsNotNear.
+inline constexpr double same_contact_place = 0.02;
+inline constexpr double same_contact_side = 0.5;  ///< see same_contact_place
+
 /// A half extent of a node below this part of the largest counts as this part when cells are counted; no unit. Thinner
 /// cells would be filled or empty by the rounding of corners (1e-7 in floats).
 /// Test: WellFilledCells.FlatBoxKeepsItsSurfaceInOneLayerDespiteRounding.

@@ -150,7 +150,7 @@ dReal dGeomOddsMeshGetCarryMotion(dGeomID geom) ODDS_NOTHROW;
 
 /* Two meshes that touched in the last collision keep their contacts while they are apart by no more than this, metres,
  * >= 0; of a pair the greater one holds. Default 0: none. Their depth is minus the gap. Hand every contact to
- * oddsLetNear, which lets bodies come nearer by the gap in a step and no faster (a speculative contact; ODE by itself
+ * oddsMakeSpeculative, which lets bodies come nearer by the gap in a step and no faster (a speculative contact; ODE by itself
  * takes a negative depth for 0, and would hold bodies that far apart): what slides over a mesh under load is not dropped
  * for a tick wherever one of its contacts is lost by a nanometre. What bodies move in a few steps is enough. It widens
  * the geom's box, when the geom moves next; that of a dTriMesh is ODE's own. Two rays a contact that was lost, of the
@@ -159,7 +159,7 @@ int dGeomOddsMeshSetMargin(dGeomID geom, dReal metres) ODDS_NOTHROW;
 dReal dGeomOddsMeshGetMargin(dGeomID geom) ODDS_NOTHROW;
 /* For the near callback, before dJointCreateContact: if the contact's depth is negative, adds depth / step_s to its
  * motionN (dContactMotionN is set). Any other contact, a null one, or a step that is not > 0: nothing. Thread-safe. */
-void oddsLetNear(dContact* contact, dReal step_s) ODDS_NOTHROW;
+void oddsMakeSpeculative(dContact* contact, dReal step_s) ODDS_NOTHROW;
 
 /* Of a pair: time-critical only if it is set on both. */
 enum { ODDS_METHOD_EXACT = 0, ODDS_METHOD_INCREMENTAL = 1 /* default */, ODDS_METHOD_TIME_CRITICAL = 2 };

@@ -39,10 +39,11 @@ struct Request {
   /// depth and the motion since. Of a mesh in several pieces one tells for all. Some 2 us within the solid's bounding
   /// box, 5 to 10 within the solid; where the budget has not so much left, the answer is undecided. Not polygon-free.
   bool solids = false;
-  /// Metres, >= 0. Surfaces that touched in the run before and have come apart by no more than this keep a contact,
-  /// whose depth is minus the gap, measured anew by two rays along its normal. A solver that lets them come nearer by
-  /// the gap in a step, and no faster, does not drop a body for a tick where it has lost a contact by a nanometre. Of
-  /// queries that were decided by proof, behind the contacts of surfaces that meet; for what budget is left. 0: none.
+  /// Metres, >= 0, finite. Surfaces that touched in the run before and have come apart by no more than this keep a
+  /// contact, whose depth is minus the gap, measured anew by two rays along its normal. A solver that lets them come
+  /// nearer by the gap in a step, and no faster, does not drop a body for a tick where it has lost a contact by a
+  /// nanometre. Of queries that were decided by proof, behind the contacts of surfaces that meet; for what budget is
+  /// left. 0: none.
   double margin = 0.0;
   /// Whether a pair of leaves has its volumes tested before its triangles (Algorithm 4.2 leaves it open). Of the
   /// generic framework only: the wide engine tests the eight leaves of a node at once with their siblings and has
