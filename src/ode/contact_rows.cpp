@@ -34,16 +34,33 @@ void add_friction(const ContactPoint& point, dContact& contact) {
 
 }  // namespace
 
-ContactPoint contact_point(const dContactGeom& found, int count, const ContactModel& model, bool velocity, dBodyID a,
+ContactModel of_pair(const ContactModel& model, double step_s, dBodyID a, dBodyID b) noexcept {
+  ContactModel pair = model;
+  if (model.law != ContactLaw::constraint) return pair;
+  constexpr double yielding = 1e-6;  // less, and the rows of many contacts of a pair depend on each other
+  double inverse_mass = 0.0;
+  for (const dBodyID body : {a, b}) {
+    if (body == nullptr) continue;
+    dMass mass;
+    dBodyGetMass(body, &mass);
+    inverse_mass += 1.0 / mass.mass;
+  }
+  const double weight = 1.0 / (yielding * step_s * inverse_mass);
+  pair.stiffness_n_per_m = model.error_reduction * weight / step_s;
+  pair.damping_ns_per_m = (1.0 - model.error_reduction) * weight;
+  return pair;
+}
+
+ContactPoint contact_point(const dContactGeom& found, int count, const ContactModel& pair, bool velocity, dBodyID a,
                            dBodyID b) noexcept {
   ContactPoint point;
   point.position_m = vector_of(found.pos);
   point.normal = vector_of(found.normal);
   point.depth_m = found.depth;
   // The contacts of a pair are springs side by side: each takes its share, so that the pair is as stiff as asked.
-  point.surface.stiffness_n_per_m = model.stiffness_n_per_m / count;
-  point.surface.damping_ns_per_m = model.damping_ns_per_m / count;
-  point.surface.friction = model.friction;
+  point.surface.stiffness_n_per_m = pair.stiffness_n_per_m / count;
+  point.surface.damping_ns_per_m = pair.damping_ns_per_m / count;
+  point.surface.friction = pair.friction;
   if (!velocity) return point;
   dVector3 at_point;
   if (a != nullptr) {

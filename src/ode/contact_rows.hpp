@@ -8,9 +8,14 @@
 
 namespace odds::ode {
 
-/// One of `count` points of a pair, with its share of the model's stiffness and damping. `velocity`: whether to compute
+/// The stiffness and damping of a pair by the model's law. A constraint is the spring and damper that takes
+/// error_reduction of the overlap away in a step, and yields by a millionth of what the pair's reduced mass would. Null
+/// bodies stand still.
+[[nodiscard]] ContactModel of_pair(const ContactModel& model, double step_s, dBodyID a, dBodyID b) noexcept;
+
+/// One of `count` points of a pair, with its share of the pair's stiffness and damping. `velocity`: whether to compute
 /// that too. Null bodies stand still.
-[[nodiscard]] ContactPoint contact_point(const dContactGeom& found, int count, const ContactModel& model, bool velocity,
+[[nodiscard]] ContactPoint contact_point(const dContactGeom& found, int count, const ContactModel& pair, bool velocity,
                                          dBodyID a, dBodyID b) noexcept;
 
 /// False if a number is not finite or nothing would push: such a point must not reach the solver.

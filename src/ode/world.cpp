@@ -17,7 +17,9 @@
 #include "ode/first_look.hpp"
 #include "ode/mass_properties.hpp"
 #include "ode/meeting_answer.hpp"
+#include "ode/penalty.hpp"
 #include "ode/vectors.hpp"
+#include "ode/world_body.hpp"
 #include "ode/world_frame.hpp"
 #include "ode/world_options.hpp"
 
@@ -39,17 +41,6 @@ void count_message(int, const char*, va_list) { solver_messages.fetch_add(1, std
 BodyId id_of(dGeomID geom) {
   return {static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(dGeomGetData(geom)))};
 }
-
-struct Body {
-  std::string name;
-  std::shared_ptr<const query::Shape> shape;
-  Geom geom;
-  dBodyID body = nullptr;  // null: fixed
-  MassProperties mass;
-  std::unique_ptr<CouplingJoint> coupling;
-  BodyState last_good;
-  Vec3 contact_impulse_ns = Vec3::Zero();  // since prepare()
-};
 
 }  // namespace
 
@@ -85,13 +76,11 @@ struct World::Implementation {
   Result<Body*> add(std::shared_ptr<const query::Shape> shape, const math::Pose& pose, const std::string& name);
   std::optional<Error> prepare_pairs();
   void warm_up_solver();
-  void add_contact(const ContactPoint& point, const dContactGeom& found, dBodyID a, dBodyID b);
+  void add_contact(const ContactPoint& point, std::size_t count, const dContactGeom& found, dBodyID a, dBodyID b);
   void note_momenta();
   void note_contacts();
   void apply_damping();
   void hold_to_limits(Body& body);
-  void place(Body& body, const BodyState& state);
-  [[nodiscard]] BodyState state_of(const Body& body) const;
   static void near(void* self, dGeomID a, dGeomID b) noexcept;
 };
 
@@ -117,37 +106,6 @@ Result<Body*> World::Implementation::add(std::shared_ptr<const query::Shape> sha
     return error;
   }
   return &body;
-}
-
-BodyState World::Implementation::state_of(const Body& body) const {
-  if (body.body == nullptr) return body.last_good;
-  BodyState state;
-  state.pose.rotation = matrix_of(dBodyGetRotation(body.body));
-  state.pose.translation = vector_of(dBodyGetPosition(body.body)) - state.pose.rotation * body.mass.center_m;
-  state.velocity_m_per_s = vector_of(dBodyGetLinearVel(body.body));
-  state.angular_velocity_rad_per_s = vector_of(dBodyGetAngularVel(body.body));
-  return state;
-}
-
-void World::Implementation::place(Body& body, const BodyState& state) {
-  dMatrix3 rotation;
-  to_ode(state.pose.rotation, rotation);
-  const Vec3& p = state.pose.translation;
-  body.last_good = state;
-  if (body.body == nullptr) {
-    dGeomSetRotation(body.geom.id(), rotation);
-    dGeomSetPosition(body.geom.id(), p.x(), p.y(), p.z());
-    return;
-  }
-  const Vec3 center = state.pose * body.mass.center_m;
-  const Vec3& v = state.velocity_m_per_s;
-  const Vec3& w = state.angular_velocity_rad_per_s;
-  dBodySetRotation(body.body, rotation);
-  dBodySetPosition(body.body, center.x(), center.y(), center.z());
-  dBodySetLinearVel(body.body, v.x(), v.y(), v.z());
-  dBodySetAngularVel(body.body, w.x(), w.y(), w.z());
-  dBodySetForce(body.body, 0.0, 0.0, 0.0);
-  dBodySetTorque(body.body, 0.0, 0.0, 0.0);
 }
 
 void World::Implementation::apply_damping() {
@@ -194,7 +152,7 @@ void World::Implementation::warm_up_solver() {
     Eigen::Map<Vec3>(geom.pos) = vector_of(dBodyGetPosition(body.body)) - 1e-3 * direction;
     ContactPoint point = contact_point(geom, 1, options.contact, false, body.body, nullptr);
     if (options.angular_friction) point.surface.rolling_m = point.surface.spinning_m = 1e-3;
-    add_contact(point, geom, body.body, nullptr);
+    add_contact(point, 1, geom, body.body, nullptr);
   };
   const ContactModel asked = options.contact;
   options.contact.friction = 1.0;
@@ -220,37 +178,45 @@ void World::Implementation::near(void* self, dGeomID a, dGeomID b) noexcept {
   const int count = dCollide(a, b, most, found.data(), sizeof(dContactGeom));
   const dBodyID body_a = dGeomGetBody(a);
   const dBodyID body_b = dGeomGetBody(b);
-  const bool velocity = world.options.contact_velocity || world.options.contact.friction > 0.0;
+  const ContactModel& model = world.options.contact;
+  const bool velocity = world.options.contact_velocity || model.friction > 0.0 || model.law == ContactLaw::penalty;
+  const ContactModel pair = of_pair(model, world.options.step_s, body_a, body_b);
   std::array<ContactPoint, 2 * most_contacts_per_pair> points;  // as many again for effects to add
   for (int i = 0; i < count; ++i) {
     const auto at = static_cast<std::size_t>(i);
-    points[at] = contact_point(found[at], count, world.options.contact, velocity, body_a, body_b);
+    points[at] = contact_point(found[at], count, pair, velocity, body_a, body_b);
   }
   const auto made = std::span(points).first(static_cast<std::size_t>(std::max(0, count)));
   Meeting meeting{.a = id_of(a), .b = id_of(b), .contacts = made, .room = points};
   note_answer(a, b, meeting, world.summary);
   ++world.summary.meetings;
   if (world.hook.call != nullptr) world.hook.call(world.hook.self, meeting);
-  if (!world.options.contact.responds) return;
+  if (!model.responds) return;
   dContactGeom geoms{};
   geoms.g1 = a;
   geoms.g2 = b;
-  for (const ContactPoint& point : meeting.contacts) world.add_contact(point, geoms, body_a, body_b);
+  for (const ContactPoint& point : meeting.contacts) {
+    world.add_contact(point, meeting.contacts.size(), geoms, body_a, body_b);
+  }
 }
 
-void World::Implementation::add_contact(const ContactPoint& point, const dContactGeom& found, dBodyID a, dBodyID b) {
+void World::Implementation::add_contact(const ContactPoint& point, std::size_t count, const dContactGeom& found,
+                                        dBodyID a, dBodyID b) {
   if (!can_be_solved(point) || contacts_made >= options.max_contacts_per_step) {
     ++summary.contacts_left_out;
     return;
   }
-  const dContact contact = contact_rows(point, found, options.step_s);
+  const Surface& surface = point.surface;
+  const dContact contact =
+      options.contact.law == ContactLaw::penalty
+          ? penalty_rows(point, found, count, a, b, options.step_s, options.contact.max_correcting_velocity_m_per_s)
+          : contact_rows(point, found, options.step_s);
   dJointAttach(dJointCreateContact(world, contacts, &contact), a, b);
   ++summary.contacts;
   ++contacts_made;
-  const Surface& surface = point.surface;
   summary.friction_rows += surface.friction > 0.0 ? 2U : 0U;
   summary.angular_rows += (surface.rolling_m > 0.0 ? 2U : 0U) + (surface.spinning_m > 0.0 ? 1U : 0U);
-  summary.max_depth_m = std::max(summary.max_depth_m, static_cast<double>(contact.geom.depth));
+  summary.max_depth_m = std::max(summary.max_depth_m, point.depth_m);
 }
 
 void World::Implementation::note_momenta() {
@@ -319,7 +285,7 @@ Result<BodyId> World::add_fixed(std::shared_ptr<const query::Shape> shape, const
   if (!body) return body.error();
   dGeomSetCategoryBits(body.value()->geom.id(), fixed_bit);
   dGeomSetCollideBits(body.value()->geom.id(), dynamic_bit);
-  self.place(*body.value(), body.value()->last_good);
+  place(*body.value(), body.value()->last_good);
   return BodyId{static_cast<std::uint32_t>(self.bodies.size() - 1)};
 }
 
@@ -346,7 +312,7 @@ Result<BodyId> World::add_dynamic(std::shared_ptr<const query::Shape> shape, con
   dGeomSetCategoryBits(body.geom.id(), dynamic_bit);
   dGeomSetCollideBits(body.geom.id(), fixed_bit | dynamic_bit);
   ++self.dynamic_bodies;
-  self.place(body, body.last_good);
+  place(body, body.last_good);
   self.apply_damping();
   return BodyId{static_cast<std::uint32_t>(self.bodies.size() - 1)};
 }
@@ -436,9 +402,7 @@ void World::apply(BodyId id, const Wrench& wrench) noexcept {
   dBodyAddTorque(body.body, wrench.torque_nm.x(), wrench.torque_nm.y(), wrench.torque_nm.z());
 }
 
-BodyState World::state(BodyId id) const noexcept {
-  return implementation_->state_of(*implementation_->bodies[id.index]);
-}
+BodyState World::state(BodyId id) const noexcept { return state_of(*implementation_->bodies[id.index]); }
 
 void World::set_state(BodyId id, const BodyState& state) noexcept {
   if (!state.pose.is_rigid(rigid_within) || !state.velocity_m_per_s.allFinite() ||
@@ -446,9 +410,9 @@ void World::set_state(BodyId id, const BodyState& state) noexcept {
     return;
   Body& body = *implementation_->bodies[id.index];
   const WorldOptions& options = implementation_->options;
-  const double moved = (state.pose.translation - implementation_->state_of(body).pose.translation).norm();
+  const double moved = (state.pose.translation - state_of(body).pose.translation).norm();
   if (moved > options.max_speed_m_per_s * options.step_s) forget_place(body.geom.id());  // it has not come that way
-  implementation_->place(body, state);
+  place(body, state);
 }
 
 const MassProperties& World::mass(BodyId id) const noexcept { return implementation_->bodies[id.index]->mass; }
@@ -462,7 +426,10 @@ void World::set_meeting_hook(const MeetingHook& hook) noexcept { implementation_
 
 void World::set_contact(const ContactModel& contact) noexcept {
   implementation_->options.contact = contact;
-  dWorldSetContactMaxCorrectingVel(implementation_->world, contact.max_correcting_velocity_m_per_s);
+  // A penalty force is bounded where it is computed; here it is told as a speed.
+  dWorldSetContactMaxCorrectingVel(implementation_->world, contact.law == ContactLaw::penalty
+                                                               ? dReal{dInfinity}
+                                                               : contact.max_correcting_velocity_m_per_s);
 }
 
 void World::set_gravity(const Vec3& g) noexcept {

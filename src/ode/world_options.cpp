@@ -18,6 +18,9 @@ std::optional<Error> check(const WorldOptions& o) {
     return bad("the contact's stiffness or damping is out of range",
                "give a stiffness above zero, a damping of at least zero");
   }
+  if (!(o.contact.error_reduction > 0.0 && o.contact.error_reduction <= 1.0)) {
+    return bad("the share of an overlap that a step takes away is out of range", "give more than 0, at most 1");
+  }
   if (!(o.contact.friction >= 0.0)) return bad("the friction coefficient is negative", "give at least zero");
   if (o.query.max_contacts < 0 || o.query.max_contacts > most_contacts_per_pair) {
     return bad("the contacts of a pair are out of range", "give 0 to 8");

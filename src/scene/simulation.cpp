@@ -105,6 +105,7 @@ std::optional<Error> Simulation::load() {
     error->file = scene_.file;
     return error;
   }
+  if (device_) warn_of_effects();
   renderer_->set_substeps({scene_.substep_way_m, scene_.most_substeps});
   if (!renderer_->begin()) {
     return Error{scene_.file, scene_.device->place.text(),
@@ -143,13 +144,7 @@ std::optional<Error> Simulation::add_hand() {
     if (options_.use_device) used = options_.use_device(std::move(used));
     device_ = std::make_unique<haptics::RecordingDevice>(std::move(used), ticks_);
     if (auto error = device_->open()) return error;
-    haptics::DeviceSpec spec = device_->spec();
-    if (scene_.device->physical_damping_ns_per_m)
-      spec.physical_damping_ns_per_m = *scene_.device->physical_damping_ns_per_m;
-    for (std::size_t i = 0; i < effects_->size(); ++i) {
-      for (std::string& warning : effects_->effect(i).warnings(spec, scene_.device->scale, scene_.loop.period_s()))
-        warnings_.push_back(std::move(warning));
-    }
+    const haptics::DeviceSpec spec = device_->spec();
     if (!spec.actuates_force) {
       warnings_.push_back(fmt::format("the device '{}' exerts no force: the hand feels nothing", spec.name));
     }
@@ -160,6 +155,17 @@ std::optional<Error> Simulation::add_hand() {
   }
   renderer_ = std::make_unique<haptics::Renderer>(*world_, hand, *effects_, options_.allocations);
   return std::nullopt;
+}
+
+// After bind(): some depend on the bodies.
+void Simulation::warn_of_effects() {
+  haptics::DeviceSpec spec = device_->spec();
+  if (scene_.device->physical_damping_ns_per_m)
+    spec.physical_damping_ns_per_m = *scene_.device->physical_damping_ns_per_m;
+  for (std::size_t i = 0; i < effects_->size(); ++i) {
+    for (std::string& warning : effects_->effect(i).warnings(spec, scene_.device->scale, scene_.loop.period_s()))
+      warnings_.push_back(std::move(warning));
+  }
 }
 
 std::string Simulation::workspace_warning() const {

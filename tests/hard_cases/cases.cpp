@@ -155,6 +155,13 @@ std::vector<HardCase> control(const std::string& knot) {
            "0\n"
            "[effects.passivity_control]\nmax_damping_ns_per_m = 20\n",
        1.5, Trouble::none, 5.0, 2e-3, 5e-4, 0.05, false},
+      {"penalty_law", "The same press by a penalty force of 10,000 N/m, near the edge of its stability.",
+       pressed + press + "[effects.contact]\nlaw = \"penalty\"\nstiffness_n_per_m = 10000\n" + friction + pull},
+      {"penalty_too_stiff", "And of 1e6 N/m, far beyond it.",
+       pressed + press + "[effects.contact]\nlaw = \"penalty\"\nstiffness_n_per_m = 1e6\n" + friction + pull, 1.0,
+       Trouble::none, 5.0, 2e-3, 5e-4, 0.05, false},
+      {"constraint_law", "The same press against a constraint: no overlap at all.",
+       pressed + press + "[effects.contact]\nlaw = \"constraint\"\n" + friction + pull},
       {"missed_ticks", "One tick in ten never runs, now and then forty in a row.",
        pressed + press + contact + friction + pull, 1.0, Trouble::missed_ticks, 5.0, 1e-3, 5e-4, 0.05, false},
       {"clock_jumps", "The clock jumps ahead by 300 ms, twice, and stands still, once.",

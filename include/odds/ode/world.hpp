@@ -18,13 +18,23 @@
 
 namespace odds::ode {
 
+/// By which law two bodies in contact push each other apart. Friction is the solver's, bounded by that force, in all.
+enum class ContactLaw : std::uint8_t {
+  compliant,   ///< a spring and damper solved implicitly with everything else: stable for every stiffness and damping
+  penalty,     ///< the same spring and damper as a force of the step's beginning: what haptic renderers do; stable
+               ///< while stiffness times the step's square stays below the mass that it moves
+  constraint,  ///< no overlap is allowed: what there is, is reduced by a share in each step, at any load
+};
+
 /// What two bodies in contact do to each other.
 struct ContactModel {
   bool enabled = true;   ///< false: nothing is collided at all
   bool responds = true;  ///< false: pairs are queried and meet (MeetingHook), but nothing pushes them apart
+  ContactLaw law = ContactLaw::compliant;
   double stiffness_n_per_m =
       20000.0;                     ///< of a whole pair: its contacts share it, so that their number is not felt; > 0
   double damping_ns_per_m = 20.0;  ///< likewise; >= 0
+  double error_reduction = 0.2;    ///< of a constraint: share of the overlap that a step takes away, (0, 1]
   double friction = 0.0;           ///< Coulomb's mu; 0: no friction rows at all
   double max_correcting_velocity_m_per_s =
       1.0;  ///< how fast overlap may be pushed apart; bounds the force of deep contacts

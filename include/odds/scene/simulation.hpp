@@ -103,6 +103,7 @@ class Simulation {
   std::optional<Error> load();
   std::optional<Error> add_bodies();
   std::optional<Error> add_hand();
+  void warn_of_effects();
   void report(std::string_view what, double share) const;
   [[nodiscard]] PoseTrack make_pose_track() const;
   void run_loop(const std::stop_token& stop, RunOutcome& outcome);

@@ -25,6 +25,11 @@ class Friction final : public Effect {
   [[nodiscard]] std::string_view evaluates() const noexcept override { return "contacts"; }
   [[nodiscard]] std::string_view rests_on() const noexcept override { return "contact"; }
   void configure(ode::WorldOptions& options) const override { options.contact.friction = parameters_.mu; }
+  [[nodiscard]] std::optional<Error> bind(const ode::World& world) override {
+    if (!(parameters_.viscous_ns_per_m > 0.0) || world.options().contact.law != ode::ContactLaw::constraint) return {};
+    return Error{"", "", "viscous friction needs the normal force, which a constraint tells only when it is solved",
+                 "take law = \"compliant\" or \"penalty\" in [effects.contact], or remove 'viscous_ns_per_m'"};
+  }
   std::uint32_t meet(const TickView&, ode::Meeting& meeting) noexcept override {
     const double all = stiffness_of_all(meeting);
     for (ode::ContactPoint& point : meeting.contacts) {

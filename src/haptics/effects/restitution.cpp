@@ -13,6 +13,11 @@ class Restitution final : public Effect {
   [[nodiscard]] std::uint32_t stages() const noexcept override { return stage_meeting; }
   [[nodiscard]] std::string_view evaluates() const noexcept override { return "contacts"; }
   [[nodiscard]] std::string_view rests_on() const noexcept override { return "contact"; }
+  [[nodiscard]] std::optional<Error> bind(const ode::World& world) override {
+    if (world.options().contact.law != ode::ContactLaw::penalty) return std::nullopt;
+    return Error{"", "", "a penalty force knows no impact, and so no restitution",
+                 "take law = \"compliant\" or \"constraint\" in [effects.contact], or remove [effects.restitution]"};
+  }
   // An impact is over within a tick: the contact is rigid then, and its spring, which would add a speed of its own, is
   // silent until the bodies have parted or come to rest.
   std::uint32_t meet(const TickView&, ode::Meeting& meeting) noexcept override {

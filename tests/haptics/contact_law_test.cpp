@@ -1,0 +1,179 @@
+// The laws of contact: a compliant row, a penalty force, a constraint.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "haptics/on_floor.hpp"
+
+namespace odds::scene {
+namespace {
+
+constexpr double g = 9.81;
+
+class ContactLaw : public testing::TestWithParam<const char*> {
+ protected:
+  static std::string law(const std::string& more = "") {
+    return "[effects.contact]\nlaw = \"" + std::string(GetParam()) + "\"\n" + more;
+  }
+  static bool yields() { return GetParam() != std::string("constraint"); }
+};
+
+TEST_P(ContactLaw, ABodyRestsAsDeepAsItSays) {
+  const auto simulation = simulate(
+      on_floor(moving("cube", "cube", 0, 0.0199, 0.5) + law(yields() ? "damping_ns_per_m = 60\n" : "") + gravity, 2.0));
+  run_ticks(*simulation, 2000);
+  const ode::BodyState cube = simulation->world().state({1});
+  const double depth = 0.02 - cube.pose.translation.z();
+  if (yields()) {
+    EXPECT_NEAR(depth, 0.5 * g / 20000, 0.02 * 0.5 * g / 20000);
+  } else {
+    EXPECT_LT(depth, 1e-6);
+  }
+  EXPECT_LT(cube.velocity_m_per_s.norm(), 1e-6);
+}
+
+TEST_P(ContactLaw, FrictionHoldsBelowItsAngleAndSlidesAbove) {
+  for (const double along : {2.5, 4.0}) {
+    const auto simulation =
+        simulate(on_floor(moving("cube", "cube", 0, 0.0199) + law() + "[effects.gravity]\ng_m_per_s2 = [" +
+                          std::to_string(along) + ", 0, -9]\n[effects.friction]\nmu = 0.3\n"));
+    run_ticks(*simulation, 500);
+    const ode::BodyState before = simulation->world().state({1});
+    run_ticks(*simulation, 500);
+    const ode::BodyState after = simulation->world().state({1});
+    if (along < 0.3 * 9) {
+      EXPECT_LT(std::abs(after.pose.translation.x() - before.pose.translation.x()), 1e-5)
+          << "it sticks, and does not creep";
+    } else {
+      EXPECT_NEAR((after.velocity_m_per_s - before.velocity_m_per_s).x() / 0.5, along - 0.3 * 9, 0.02);
+    }
+  }
+}
+
+TEST_P(ContactLaw, RollingStopsAfterTheWayThatEnergySays) {
+  const auto simulation =
+      simulate(on_floor(moving("ball", "ball", 0, 0.02) + law() + gravity +
+                            "[effects.friction]\nmu = 0.8\n[effects.rolling_friction]\nrolling_m = 0.002\n",
+                        4.0));
+  run_ticks(*simulation, 100);
+  throw_body(*simulation, 1, Vec3(0.3, 0, 0), Vec3(0, 15.0, 0));
+  const double from = simulation->world().state({1}).pose.translation.x();
+  run_ticks(*simulation, 2500);
+  EXPECT_LT(simulation->world().state({1}).velocity_m_per_s.norm(), 0.01);
+  EXPECT_NEAR(simulation->world().state({1}).pose.translation.x() - from, 0.5 * 0.3 * 0.3 * 1.4 / (0.1 * g), 0.012);
+}
+
+TEST_P(ContactLaw, SpinningStopsByItsTorque) {
+  const auto simulation = simulate(
+      on_floor(moving("ball", "ball", 0, 0.02) + law() + gravity + "[effects.rolling_friction]\nspinning_m = 0.001\n"));
+  run_ticks(*simulation, 100);
+  throw_body(*simulation, 1, Vec3::Zero(), Vec3(0, 0, 20.0));
+  run_ticks(*simulation, 100);
+  const double rate = 0.001 * g / (0.4 * 0.02 * 0.02);  // rad/s2
+  EXPECT_NEAR(simulation->world().state({1}).angular_velocity_rad_per_s.z(), 20.0 - 0.1 * rate, 1.0);
+}
+
+TEST_P(ContactLaw, ABounceGivesNoMoreThanTheFall) {
+  for (const char* mesh : {"ball", "cube", "bar"}) {
+    const auto simulation =
+        simulate(on_floor(moving("thing", mesh, 0, 0.25) + law(yields() ? "damping_ns_per_m = 0\n" : "") + gravity +
+                          "[effects.friction]\nmu = 0.4\n"));
+    throw_body(*simulation, 1, Vec3(0.5, 0, -0.5), Vec3(1, 3, 2));
+    const auto energy = [&] {
+      const ode::BodyState s = simulation->world().state({1});
+      const ode::MassProperties& m = simulation->world().mass({1});
+      const Vec3 spin = s.pose.rotation.transpose() * s.angular_velocity_rad_per_s;
+      return 0.5 * m.mass_kg * s.velocity_m_per_s.squaredNorm() + 0.5 * spin.dot(m.inertia_kg_m2 * spin) +
+             m.mass_kg * g * (s.pose * m.center_m).z();
+    };
+    const double begun = energy();
+    double most = 0.0;
+    run_ticks(*simulation, 1500, [&](int, const haptics::TickRecord&) { most = std::max(most, energy()); });
+    EXPECT_LT(most, begun * 1.02) << mesh;
+  }
+}
+
+TEST_P(ContactLaw, WhatBeginsDeepLeavesNoFasterThanItMayBeCorrected) {
+  const auto simulation =
+      simulate(on_floor(moving("ball", "ball", 0, 0.005) + law("max_correcting_velocity_m_per_s = 0.2\n")));
+  double fastest = 0.0;
+  run_ticks(*simulation, 500, [&](int, const haptics::TickRecord&) {
+    fastest = std::max(fastest, simulation->world().state({1}).velocity_m_per_s.norm());
+  });
+  EXPECT_LT(fastest, 0.2 * 1.1);
+  EXPECT_GT(simulation->world().state({1}).pose.translation.z(), 0.0195) << "it is out";
+}
+
+TEST_P(ContactLaw, TheImpulseOfContactsCarriesTheWeight) {
+  Result<Scene> parsed =
+      parse_scene(trimmed(on_floor(moving("cube", "cube", 0, 0.0199, 0.5) + law() + gravity, 2.0)), "test.toml", ".");
+  ASSERT_TRUE(parsed.ok());
+  SimulationOptions options;
+  options.simulated_time = true;
+  options.contact_impulse = true;
+  const auto simulation = std::move(Simulation::make(std::move(parsed).value(), options)).value();
+  run_ticks(*simulation, 1000);
+  const Vec3 before = simulation->world().contact_impulse({1});
+  run_ticks(*simulation, 500);
+  const Vec3 force = (simulation->world().contact_impulse({1}) - before) / 0.5;
+  EXPECT_NEAR(force.z(), 0.5 * g, 0.01 * 0.5 * g);
+}
+
+TEST_P(ContactLaw, AnEmptyTankOnlyStopsAnApproach) {
+  const auto simulation =
+      simulate(on_floor(moving("ball", "ball", 0, 0.005) + law() + "[effects.energy_tank]\ninitial_j = 0\n"));
+  run_ticks(*simulation, 500);
+  EXPECT_NEAR(simulation->world().state({1}).pose.translation.z(), 0.005, 1e-6) << "it may not push";
+}
+
+INSTANTIATE_TEST_SUITE_P(Laws, ContactLaw, testing::Values("compliant", "penalty", "constraint"),
+                         [](const auto& law) { return std::string(law.param); });
+
+TEST(ContactLaws, RefuseWhatDoesNothing) {
+  const std::string ball = moving("ball", "ball", 0, 0.1);
+  const auto says = [&](const std::string& keys, const char* part) {
+    const std::string message = refusal(on_floor(ball + "[effects.contact]\n" + keys));
+    EXPECT_NE(message.find(part), std::string::npos) << message;
+  };
+  says("law = \"hard\"\n", "compliant");
+  says("law = \"constraint\"\nstiffness_n_per_m = 100\n", "does not yield");
+  says("law = \"constraint\"\ndamping_ns_per_m = 100\n", "does not yield");
+  says("error_reduction = 0.3\n", "only a constraint");
+  says("law = \"constraint\"\nerror_reduction = 1.3\n", "out of range");
+}
+
+std::string made_says(const std::string& effects) {
+  Result<Scene> parsed = parse_scene(trimmed(on_floor(moving("ball", "ball", 0, 0.1) + effects)), "test.toml", ".");
+  if (!parsed) return parsed.error().message();
+  const auto made = Simulation::make(std::move(parsed).value(), {});
+  return made.ok() ? "taken" : made.error().message();
+}
+
+TEST(ContactLaws, RefuseEffectsThatTheyCannotCarry) {
+  const std::string bounce = "[effects.restitution]\ncoefficient = 0.5\n";
+  const std::string thick = "[effects.friction]\nmu = 0.1\nviscous_ns_per_m = 1\n";
+  const auto law = [](const std::string& name) { return "[effects.contact]\nlaw = \"" + name + "\"\n"; };
+  EXPECT_NE(made_says(law("penalty") + bounce).find("knows no impact"), std::string::npos);
+  EXPECT_NE(made_says(law("constraint") + thick).find("viscous friction"), std::string::npos);
+  EXPECT_EQ(made_says(law("constraint") + bounce), "taken");
+  EXPECT_EQ(made_says(law("penalty") + thick), "taken");
+}
+
+TEST(ContactLaws, APenaltyTooStiffForItsBodyIsSaid) {
+  const std::string hand = "[device.hand]\ntype = \"null\"\n[effects.virtual_coupling]\n";
+  const std::string tool =
+      "[[body]]\nname = \"tool\"\nmesh = \"ball\"\nmotion = \"dynamic\"\nmass_kg = 0.05\ndevice = \"hand\"\n";
+  const auto warned = [&](const std::string& keys) {
+    const auto simulation = simulate(on_floor(tool + hand + "[effects.contact]\n" + keys));
+    for (const std::string& warning : simulation->warnings()) {
+      if (warning.starts_with("contact:")) return true;
+    }
+    return false;
+  };
+  EXPECT_TRUE(warned("law = \"penalty\"\nstiffness_n_per_m = 20000\n"));
+  EXPECT_FALSE(warned("law = \"penalty\"\nstiffness_n_per_m = 10000\n"));
+  EXPECT_FALSE(warned("stiffness_n_per_m = 20000\n"));
+}
+
+}  // namespace
+}  // namespace odds::scene
