@@ -34,4 +34,23 @@ void compare(const Figures& exact, double touching_n, Figures& figures) {
   if (onset(exact) >= 0 && onset(figures) >= 0) figures.onset_ticks = onset(figures) - onset(exact);
 }
 
+report::ForceDifference of_all_ticks(const std::vector<Outcome>& outcomes, std::size_t run) {
+  std::vector<report::ForceSample> exact;
+  std::vector<report::ForceSample> limited;
+  for (const Outcome& outcome : outcomes) {
+    // In units of what counts as touching in the case, for micrometres have micronewtons.
+    const auto append = [&](const Figures& figures, std::vector<report::ForceSample>& to) {
+      for (report::ForceSample sample : forces(figures.samples)) {
+        sample.force_n /= outcome.hard_case->touching_n;
+        to.push_back(sample);
+      }
+    };
+    const Figures& first = outcome.runs.front();
+    if (!first.has_hand || outcome.runs[run].samples.size() != first.samples.size()) continue;
+    append(first, exact);
+    append(outcome.runs[run], limited);
+  }
+  return report::compare_forces(exact, limited, 1.0, rate_hz);
+}
+
 }  // namespace odds::hard_cases

@@ -5,11 +5,15 @@
 
 #include <cstdlib>
 
+#include "hard_cases/compare.hpp"
+
 namespace odds::hard_cases {
 namespace {
 
 constexpr double most_force_error = 0.07;  // what people begin to notice, of a force ...
 constexpr double most_angle_deg = 18.0;    // ... and of its direction
+
+bool is_near(double error, double angle_deg) { return error <= most_force_error && angle_deg <= most_angle_deg; }
 
 void judge_safety(const HardCase& hard_case, Figures& f) {
   const auto harmful = [&](const std::string& what) { f.harmful.push_back(what); };
@@ -62,6 +66,8 @@ void judge(const HardCase& hard_case, Figures& figures) {
   judge_feel(hard_case, figures);
 }
 
+bool Tally::all_ticks_near() const { return is_near(all_ticks.error_p95, all_ticks.angle_p95_deg); }
+
 bool compared(const Figures& figures) { return figures.at_same_poses && figures.at_same_poses->ticks > 0; }
 
 std::vector<Tally> tally(const std::vector<Outcome>& outcomes) {
@@ -72,6 +78,10 @@ std::vector<Tally> tally(const std::vector<Outcome>& outcomes) {
       const Figures& run = outcome.runs[i];
       Tally& sum = tallies[i];
       ++sum.runs;
+      if (run.force_error_p95 && run.angle_error_p95_deg) {
+        ++sum.runs_compared;
+        if (is_near(*run.force_error_p95, *run.angle_error_p95_deg)) ++sum.runs_near;
+      }
       if (run.harmful.empty()) ++sum.harmless;
       if (run.safe()) ++sum.safe;
       if (!compared(run)) continue;
@@ -79,6 +89,7 @@ std::vector<Tally> tally(const std::vector<Outcome>& outcomes) {
       if (run.off.empty()) ++sum.feels_right;
     }
   }
+  for (std::size_t i = 0; i < tallies.size(); ++i) tallies[i].all_ticks = of_all_ticks(outcomes, i);
   return tallies;
 }
 

@@ -23,6 +23,11 @@ struct Tally {
   std::size_t safe = 0;      ///< and nothing deep missed
   std::size_t compared = 0;
   std::size_t feels_right = 0;
+  // Of the hand, each run on its own; where runs part for good a small difference early makes a great one later.
+  std::size_t runs_compared = 0;
+  std::size_t runs_near = 0;  ///< within 7 % and 18 degrees at the 95th percentile of their ticks
+  report::ForceDifference all_ticks = {};
+  [[nodiscard]] bool all_ticks_near() const;
 };
 /// One for each budget, in the order of the runs.
 [[nodiscard]] std::vector<Tally> tally(const std::vector<Outcome>& outcomes);

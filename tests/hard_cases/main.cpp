@@ -46,7 +46,13 @@ void print(const Outcome& outcome) {
 void print(const std::vector<Tally>& tallies) {
   for (const Tally& t : tallies) {
     fmt::print("budget {:<6} safe {:2} of {:2} (no harm {:2} of {:2})", t.budget, t.safe, t.runs, t.harmless, t.runs);
-    if (t.compared > 0) fmt::print("  feels as without a budget {:2} of {:2}", t.feels_right, t.compared);
+    if (t.compared > 0) {
+      fmt::print(
+          "  feels as without a budget {:2} of {:2}  each run on its own near {:2} of {:2}, all {} ticks {:.1f} % "
+          "{:.1f} deg",
+          t.feels_right, t.compared, t.runs_near, t.runs_compared, t.all_ticks.ticks, 100.0 * t.all_ticks.error_p95,
+          t.all_ticks.angle_p95_deg);
+    }
     fmt::print("\n");
   }
 }
@@ -114,7 +120,9 @@ int run(const std::string& folder, const std::string& only, const std::string& k
     for (const Figures& f : outcome.value().runs) all_hold = all_hold && f.holds();
     outcomes.push_back(std::move(outcome).value());
   }
-  print(tally(outcomes));
+  const std::vector<Tally> tallies = tally(outcomes);
+  print(tallies);
+  for (const Tally& t : tallies) all_hold = all_hold && (t.budget != "50 us" || t.all_ticks_near());
   const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   std::ofstream(folder + "/hard_cases.html") << page_of(outcomes, took_s);
   fmt::print("page: {}/hard_cases.html\n", folder);
