@@ -187,7 +187,12 @@ void World::Implementation::near(void* self, dGeomID a, dGeomID b) noexcept {
     points[at] = contact_point(found[at], count, pair, velocity, body_a, body_b);
   }
   const auto made = std::span(points).first(static_cast<std::size_t>(std::max(0, count)));
-  Meeting meeting{.a = id_of(a), .b = id_of(b), .contacts = made, .room = points};
+  Meeting meeting{.a = id_of(a),
+                  .b = id_of(b),
+                  .stiffness_n_per_m = pair.stiffness_n_per_m,
+                  .damping_ns_per_m = pair.damping_ns_per_m,
+                  .contacts = made,
+                  .room = points};
   note_answer(a, b, meeting, world.summary);
   ++world.summary.meetings;
   if (world.hook.call != nullptr) world.hook.call(world.hook.self, meeting);

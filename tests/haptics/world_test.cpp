@@ -168,6 +168,42 @@ TEST(WorldContact, ABoxRestsOnAPlateAsDeepAsTheStiffnessSays) {
   EXPECT_LT(world.state(body).pose.translation.head<2>().norm(), 5e-3);
 }
 
+// Whoever puts contacts in the place of others (deep_contact) goes by it.
+TEST(WorldContact, AMeetingTellsHowStiffThePairIsByItsLaw) {
+  struct Heard {
+    double stiffness_n_per_m = 0.0;
+    double of_points_n_per_m = 0.0;
+    double damping_ns_per_m = 0.0;
+  };
+  for (const ContactLaw law : {ContactLaw::compliant, ContactLaw::penalty, ContactLaw::constraint}) {
+    WorldOptions options = repeatable_options();
+    options.contact.law = law;
+    options.contact.stiffness_n_per_m = 5000;
+    World world = make(options);
+    ASSERT_TRUE(world.add_fixed(floor_plate(), at(0, 0, 0), "floor").ok());
+    ASSERT_TRUE(world.add_dynamic(cube(), at(0, 0, 0.0999), {.mass_kg = 0.5}, "cube").ok());
+    ASSERT_FALSE(world.prepare().has_value());
+    Heard heard;
+    world.set_meeting_hook({[](void* self, Meeting& meeting) noexcept {
+                              auto& to = *static_cast<Heard*>(self);
+                              to.stiffness_n_per_m = meeting.stiffness_n_per_m;
+                              to.damping_ns_per_m = meeting.damping_ns_per_m;
+                              for (const ContactPoint& point : meeting.contacts)
+                                to.of_points_n_per_m += point.surface.stiffness_n_per_m;
+                            },
+                            &heard});
+    ASSERT_GT(world.step().contacts, 0U);
+    EXPECT_NEAR(heard.of_points_n_per_m, heard.stiffness_n_per_m, 1e-9 * heard.stiffness_n_per_m);
+    if (law != ContactLaw::constraint) {
+      EXPECT_EQ(heard.stiffness_n_per_m, 5000);
+      continue;
+    }
+    const double weight = 1e-3 * heard.stiffness_n_per_m + heard.damping_ns_per_m;
+    EXPECT_NEAR(weight, 1e6 * 0.5 / 1e-3, 1.0) << "yields by a millionth";
+    EXPECT_NEAR(1e-3 * heard.stiffness_n_per_m / weight, 0.2, 1e-12) << "takes a fifth away";
+  }
+}
+
 TEST(WorldContact, TheImpulseOfContactsCarriesTheWeightWhereItIsAskedFor) {
   for (const bool asked : {true, false}) {
     WorldOptions options = repeatable_options();

@@ -45,6 +45,8 @@ struct Meeting {
   query::Verdict verdict = query::Verdict::clear;
   query::Basis basis = query::Basis::proved;
   double probability = 0.0;          ///< of a hit, [0, 1]
+  double stiffness_n_per_m = 0.0;    ///< of the pair, by the world's law; its contacts share it
+  double damping_ns_per_m = 0.0;     ///< likewise
   std::span<ContactPoint> contacts;  ///< may be changed; what is not finite afterwards is left out
   std::span<ContactPoint> room;      ///< begins with `contacts`, which may be made shorter, or longer up to its end
 };

@@ -74,7 +74,6 @@ class DeepContact final : public Effect {
     std::array<ode::ContactPoint, query::InnerSpheres::corners> patch;
     const std::size_t of_patch = weight < 1.0 ? std::min(meeting.contacts.size(), patch.size()) : 0;
     std::copy_n(meeting.contacts.begin(), of_patch, patch.begin());
-    const ode::ContactModel& model = world.options().contact;
     std::size_t count = 0;
     for (std::uint32_t i = 0; i < overlap.count && count < meeting.room.size(); ++i) {
       const query::DeepOverlap::Part& part = overlap.parts[i];
@@ -85,9 +84,9 @@ class DeepContact final : public Effect {
       point.position_m = pose_a * part.position;
       point.normal = pose_a.rotation * (part.push / push);
       point.depth_m = overlap.depth;  // of all alike, so that a bound of the correcting velocity turns no force
-      point.surface.stiffness_n_per_m = weight * push * model.stiffness_n_per_m;
-      point.surface.damping_ns_per_m = weight * push * model.damping_ns_per_m;
-      point.surface.friction = model.friction;
+      point.surface.stiffness_n_per_m = weight * push * meeting.stiffness_n_per_m;
+      point.surface.damping_ns_per_m = weight * push * meeting.damping_ns_per_m;
+      point.surface.friction = world.options().contact.friction;
       point.velocity_m_per_s =
           velocity_at(world, meeting.a, point.position_m) - velocity_at(world, meeting.b, point.position_m);
     }
