@@ -314,7 +314,8 @@ TEST_F(SceneSchema, RefusesWhatDisagrees) {
 }
 
 TEST_F(SceneSchema, FitsEverySceneOfTheTree) {
-  std::vector<std::filesystem::path> files = {source / "tests/fuzz/seeds/every_effect.toml"};
+  std::vector<std::filesystem::path> files = {source / "tests/fuzz/seeds/every_effect.toml",
+                                              source / "tests/fuzz/seeds/contact_laws.toml"};
   for (const auto& entry : std::filesystem::directory_iterator(source / "demos/scenes")) {
     if (entry.path().extension() == ".toml") files.push_back(entry.path());
   }

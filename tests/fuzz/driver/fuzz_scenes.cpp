@@ -101,7 +101,8 @@ std::vector<std::string> scene_texts() {
        std::filesystem::directory_iterator(std::filesystem::path(ODDS_SOURCE_DIR) / "demos/scenes")) {
     texts.push_back(read_whole(entry.path()));
   }
-  texts.push_back(read_whole(std::filesystem::path(ODDS_SOURCE_DIR) / "tests/fuzz/seeds/every_effect.toml"));
+  for (const char* seed : {"every_effect.toml", "contact_laws.toml"})
+    texts.push_back(read_whole(std::filesystem::path(ODDS_SOURCE_DIR) / "tests/fuzz/seeds" / seed));
   std::sort(texts.begin(), texts.end());
   return texts;
 }
