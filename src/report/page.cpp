@@ -31,6 +31,9 @@ std::string page(const RunInfo& info, const RunSummary& summary, std::span<const
         "<noscript><p class=\"note\">The charts need JavaScript, which is off. Every figure is in the tables too.</p>"
         "</noscript>\n";
   }
+  for (const std::string& warning : info.warnings) {
+    html += "<p class=\"note\"><b>Warning:</b> " + html_escaped(warning) + "</p>\n";
+  }
   if (shows) html += page_replay(*replay);
   html += page_latency(info, summary, charts);
   html += page_answers(summary, charts);

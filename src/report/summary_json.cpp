@@ -136,6 +136,7 @@ std::string summary_json(const RunInfo& info, const RunSummary& s) {
       {"format", "odds run summary 1"},
       {"run", run(info)},
       {"checks", checks},
+      {"warnings", info.warnings},
       {"latency", {{"wake", figures(s.wake)}, {"tick", figures(s.tick)}, {"tick_net", net(info, s.tick_net)}}},
       {"query",
        {{"gross", figures(s.query_gross)},

@@ -110,7 +110,8 @@ int run(const RunArguments& arguments) {
   progress.done();
   if (!made) return fail(made.error());
   scene::Simulation& simulation = *made.value();
-  for (const std::string& warning : simulation.warnings()) fmt::print(stderr, "warning: {}\n", warning);
+  const auto warn = [](const std::string& warning) { fmt::print(stderr, "warning: {}\n", warning); };
+  for (const std::string& warning : simulation.warnings()) warn(warning);
 
   const std::chrono::duration<double> epoch = std::chrono::system_clock::now().time_since_epoch();
   report::RunInfo info = describe(simulation, arguments, epoch.count());
@@ -121,8 +122,11 @@ int run(const RunArguments& arguments) {
     const Watcher watcher(arguments.seconds.value_or(simulation.scene().loop.seconds), stop);
     outcome = simulation.run(stop.get_token());
   }
-  if (const std::string warning = simulation.workspace_warning(); !warning.empty())
-    fmt::print(stderr, "warning: {}\n", warning);
+  info.warnings = simulation.warnings();
+  if (const std::string warning = simulation.workspace_warning(); !warning.empty()) {
+    warn(warning);
+    info.warnings.push_back(warning);
+  }
   info.loop = outcome.loop;
   info.thread = outcome.thread;
   info.pairs_left_out = outcome.pairs_left_out;

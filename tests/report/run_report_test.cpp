@@ -314,6 +314,18 @@ TEST_F(RunReport, hostile_names_stay_text) {
   EXPECT_TRUE(nlohmann::json::accept(text_of(files.summary)));
 }
 
+TEST_F(RunReport, repeats_the_warnings_of_the_program) {
+  MadeRecording made = calm_recording();
+  EXPECT_EQ(text_of(write(made).page).find("Warning:"), std::string::npos);
+  made.info.warnings = {"stiff & <b>loud</b>", "second"};
+  const RunFiles files = write(made);
+  const std::string page = text_of(files.page);
+  EXPECT_NE(page.find("<b>Warning:</b> stiff &amp; &lt;b&gt;loud&lt;/b&gt;</p>"), std::string::npos);
+  EXPECT_NE(page.find("<b>Warning:</b> second</p>"), std::string::npos);
+  const auto json = nlohmann::json::parse(text_of(directory_ / "summary.json"));
+  EXPECT_EQ(json["warnings"], nlohmann::json(made.info.warnings));
+}
+
 TEST(Texts, times_that_no_clock_shows_are_unknown) {
   EXPECT_EQ(utc_time(0.0), "1970-01-01 00:00:00 UTC");
   EXPECT_EQ(utc_time(1714564800.5), "2024-05-01 12:00:00 UTC");

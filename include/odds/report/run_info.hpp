@@ -39,6 +39,7 @@ struct RunInfo {
   std::string bounding_volume;  ///< "obb"
   std::string device;           ///< "scripted: press"
   std::vector<std::string> effects;
+  std::vector<std::string> warnings;    ///< what the program had to say about the scene, before and after the run
   std::vector<RunEffect> effect_costs;  ///< in the order in which they act; what was not asked for is not here
 
   std::int64_t period_ns = 1'000'000;
