@@ -68,6 +68,11 @@ void judge(const HardCase& hard_case, Figures& figures) {
 
 bool Tally::all_ticks_near() const { return is_near(all_ticks.error_p95, all_ticks.angle_p95_deg); }
 
+bool stays_near(const Figures& figures) {
+  return !figures.force_error_p95 || !figures.angle_error_p95_deg ||
+         is_near(*figures.force_error_p95, *figures.angle_error_p95_deg);
+}
+
 bool compared(const Figures& figures) { return figures.at_same_poses && figures.at_same_poses->ticks > 0; }
 
 std::vector<Tally> tally(const std::vector<Outcome>& outcomes) {
@@ -80,7 +85,7 @@ std::vector<Tally> tally(const std::vector<Outcome>& outcomes) {
       ++sum.runs;
       if (run.force_error_p95 && run.angle_error_p95_deg) {
         ++sum.runs_compared;
-        if (is_near(*run.force_error_p95, *run.angle_error_p95_deg)) ++sum.runs_near;
+        if (stays_near(run)) ++sum.runs_near;
       }
       if (run.harmful.empty()) ++sum.harmless;
       if (run.safe()) ++sum.safe;

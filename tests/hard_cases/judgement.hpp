@@ -12,6 +12,9 @@ namespace odds::hard_cases {
 /// Fills in what did not hold: Figures::harmful, missed and off.
 void judge(const HardCase& hard_case, Figures& figures);
 
+/// Whether a run on its own stays within 7 % and 18 degrees of the exact one, or has no such figures.
+[[nodiscard]] bool stays_near(const Figures& figures);
+
 /// Whether a run has forces to compare with those of the exact one.
 [[nodiscard]] bool compared(const Figures& figures);
 

@@ -109,6 +109,7 @@ std::string limits_of(const std::vector<Outcome>& outcomes) {
   std::string handless;
   std::string uncompared;
   std::string never_deep;
+  std::string parted;
   const auto add = [](std::string& list, const Outcome& outcome) {
     list += (list.empty() ? "" : ", ") + outcome.hard_case->name;
   };
@@ -116,6 +117,8 @@ std::string limits_of(const std::vector<Outcome>& outcomes) {
     const bool has_hand = outcome.runs.front().has_hand;
     if (!has_hand) add(handless, outcome);
     if (has_hand && !outcome.hard_case->compares) add(uncompared, outcome);
+    const auto goes_its_own_way = [](const Figures& f) { return f.feel_is_judged() && !stays_near(f); };
+    if (std::any_of(outcome.runs.begin(), outcome.runs.end(), goes_its_own_way)) add(parted, outcome);
     const auto is_deep = [](const Figures& f) { return f.deep > 0; };
     if (has_hand && std::none_of(outcome.runs.begin(), outcome.runs.end(), is_deep)) add(never_deep, outcome);
   }
@@ -131,7 +134,7 @@ std::string limits_of(const std::vector<Outcome>& outcomes) {
          item(uncompared,
               "too lively, or too far from rest, for the hand's force to be compared tick by tick with the "
               "run without a budget; that of contacts at the same poses is") +
-         "</ul>\n";
+         item(parted, "left to itself the run with 50 µs goes another way than the one without a budget") + "</ul>\n";
 }
 
 std::string still_of(const Outcome& outcome) {

@@ -40,8 +40,8 @@ class Contact final : public Effect {
     const double most = felt_kg / (step_s_ * step_s_);
     if (model_.stiffness_n_per_m <= most) return {};
     return {
-        fmt::format("contact: a penalty of {:.4g} N/m may tremble on a body of {:.3g} kg with steps of {:.3g} ms: stay "
-                    "below {:.3g} N/m, or take law = \"compliant\"",
+        fmt::format("contact: a penalty of {:.6g} N/m may tremble on a body of {:.3g} kg with steps of {:.3g} ms: stay "
+                    "below {:.6g} N/m, or take law = \"compliant\"",
                     model_.stiffness_n_per_m, lightest_kg_, 1e3 * step_s_, most)};
   }
 
