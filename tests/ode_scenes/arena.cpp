@@ -28,6 +28,10 @@ T value_or_throw(Result<T> result) {
   return std::move(result).value();
 }
 
+unsigned long units_of(double us) {
+  return std::max(1UL, static_cast<unsigned long>(std::lround(scene::work_units_per_us * us)));
+}
+
 }  // namespace
 
 std::string Collider::name() const {
@@ -36,7 +40,11 @@ std::string Collider::name() const {
       return (!std::isfinite(budget_us) ? std::string("odds, no limit")
               : in_work                 ? fmt::format("odds, {} units", work_units())
                                         : fmt::format("odds, {:g} µs", budget_us)) +
-             (margin_m > 0.0 ? fmt::format(", margin {:g} mm", 1e3 * margin_m) : std::string());
+             (margin_m > 0.0 ? fmt::format(", margin {:g} mm", 1e3 * margin_m) : std::string()) +
+             (frame_us > 0.0
+                  ? fmt::format(", {:g} {} a frame", in_work ? static_cast<double>(units_of(frame_us)) : frame_us,
+                                in_work ? "units" : "µs")
+                  : std::string());
     case Kind::stock:
       return "ODE's dTriMesh";
     case Kind::primitive:
@@ -47,9 +55,7 @@ std::string Collider::name() const {
   return "";
 }
 
-unsigned long Collider::work_units() const {
-  return std::max(1UL, static_cast<unsigned long>(std::lround(scene::work_units_per_us * budget_us)));
-}
+unsigned long Collider::work_units() const { return units_of(budget_us); }
 
 /// A mesh in ODE's form; ODE keeps pointers to the arrays.
 struct Arena::Data {
@@ -149,6 +155,12 @@ void Arena::prepare() {
       if (oddsPreparePair(items_[i].geom, items_[j].geom) == 0) throw std::runtime_error(oddsGetLastError());
     }
   }
+  if (collider_.frame_us > 0.0) {
+    frame_.reset(oddsFrameBudgetCreate(4096));
+    const bool good = collider_.in_work ? oddsFrameBudgetSetWork(frame_.get(), units_of(collider_.frame_us)) != 0
+                                        : oddsFrameBudgetSetTime(frame_.get(), collider_.frame_us) != 0;
+    if (!good) throw std::runtime_error(oddsGetLastError());
+  }
   if (!(collider_.margin_m > 0.0)) return;
   for (const Item& item : items_) {
     if (item.mesh && dGeomOddsMeshSetMargin(item.geom, collider_.margin_m) == 0) {
@@ -196,7 +208,11 @@ void Arena::near(void* self, dGeomID a, dGeomID b) {
 
 void Arena::step() {
   const double before = thread_us();
-  dSpaceCollide(space_, this, &Arena::near);
+  if (frame_) {
+    oddsSpaceCollide(space_, this, &Arena::near, frame_.get());
+  } else {
+    dSpaceCollide(space_, this, &Arena::near);
+  }
   dWorldQuickStep(world_, step_s);
   dJointGroupEmpty(joints_);
   frame_us.push_back(thread_us() - before);

