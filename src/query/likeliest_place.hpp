@@ -13,17 +13,23 @@
 namespace odds::query {
 
 /// The mean over the shortlist in A's tree frame, each pair weighted by how deep it overlaps for its thickness and how
-/// small it is; the normal also by how flat both patches are. Two patches that nobody has looked into cannot be told to
-/// overlap deeper than the thinner of them is thick, and they may not meet at all: the depth is the expected one, for
+/// small it is; the normal also by how flat both patches are and, of solids, how much they face each other, for at an
+/// edge those beside the ones that meet are as near. Two patches that nobody has looked into cannot be told to overlap
+/// deeper than the thinner of them is thick, and they may not meet at all: the depth is the expected one, for
 /// `probability` of a hit, so that a force made of it grows with what is known. Precondition: the list is not empty.
 template <class Met>
-[[nodiscard]] Contact likeliest_place(const Met& met, const Shortlist& list, double probability) noexcept {
+[[nodiscard]] Contact likeliest_place(const Met& met, const Shortlist& list, double probability,
+                                      const Vec3* solids_apart) noexcept {
+  constexpr double unopposed = 0.01;         // of what is flat: less, and all that is known lies beside what meets
+  constexpr double least_opposition = 0.01;  // so that patches of which none faces another have a direction, too
   std::array<MetPlace, Shortlist::capacity> places;
   std::array<double, Shortlist::capacity> weights;
   Contact mean;
   Vec3 position = Vec3::Zero();
   Vec3 facing = Vec3::Zero();
   double sum = 0.0;
+  double opposed = 0.0;
+  double flat = 0.0;
   std::size_t count = 0;
   for (const NodePair& pair : list) {
     const MetPlace& place = places[count] = met.place(pair.a, pair.b);
@@ -32,9 +38,12 @@ template <class Met>
         static_cast<double>(math::rough_exp2(std::clamp(pair.rank, -20.0F, 4.0F))) * place.inverse_size;
     weights[count++] = weight;
     position += weight * place.position;
-    facing += weight * place.facing;
+    facing += weight * (solids_apart != nullptr ? least_opposition + place.opposition : 1.0) * place.facing;
     sum += weight;
+    opposed += weight * place.opposition;
+    flat += weight * place.flatness;
   }
+  if (solids_apart != nullptr && opposed < unopposed * flat) facing = *solids_apart;
   const double length = facing.norm();
   if (!(sum > 0.0) || !std::isfinite(sum) || !(length > 0.0) || !std::isfinite(length)) return mean;
   mean.position = position / sum;

@@ -128,6 +128,7 @@ using NodeWeights = std::array<float, NodeNumbers::count>;
 struct MetPlace {
   Vec3 position;        ///< between both centroids, nearer to that of the smaller node, which says more about where
   Vec3 facing;          ///< mean normal of B's surface less that of A's: from outwards of A to into A; 0 .. 2 long
+  double opposition;    ///< 0 .. 1: how much the mean normals face each other; 0 of sides of an edge, that cannot meet
   Vec3 beyond;          ///< from A's centroid to B's
   double thickness;     ///< of the thinner of both patches
   double flatness;      ///< 0 .. 1: a patch that faces all ways, as of a whole closed body, has no side to be beyond
@@ -148,6 +149,7 @@ struct MetPlace {
   place.beyond = centroid_b - centroid_a;
   place.position = centroid_a + (1.0 - weight_a) * place.beyond;
   place.facing = normal_b - normal_a;
+  place.opposition = std::clamp(-normal_a.dot(normal_b), 0.0, 1.0);
   constexpr double closed = 1e-3;
   if (!(place.facing.squaredNorm() > closed * closed)) {
     place.facing = closed * (b_in_a.rotation * b.slab_normal.cast<double>());

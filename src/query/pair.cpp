@@ -139,8 +139,8 @@ wide::Encounter encounter_of(const tree::WideTree& a, const tree::WideTree& b, c
 
 /// Verdict, probability and place from what the search left undecided, if it did.
 template <class Met>
-void forecast(const Met& met, const SearchResult& result, const Request& request, const Spending& spending,
-              Pair::Implementation& pair) noexcept {
+void forecast(const Met& met, const PosedMeshes& meshes, const SearchResult& result, const Request& request,
+              const Spending& spending, Pair::Implementation& pair) noexcept {
   Answer& answer = pair.answer;
   for (const NodePair& open : result.shortlist) met.prefetch(open);
   double undecided = 0.5;  // of a hit; even odds if nothing is known of what is open
@@ -155,7 +155,9 @@ void forecast(const Met& met, const SearchResult& result, const Request& request
   judge(result, undecided, request, !pair.hits.empty(), answer);
   if (answer.basis == Basis::proved || result.shortlist.empty()) return;
   answer.has_cell_pair = true;
-  answer.cell_pair = likeliest_place(met, result.shortlist, answer.probability);
+  const Vec3 apart = pair.previous_normal.isZero() ? Vec3(-meshes.pose().translation) : pair.previous_normal;
+  const bool both_solid = pair.a->is_solid() && pair.b->is_solid();
+  answer.cell_pair = likeliest_place(met, result.shortlist, answer.probability, both_solid ? &apart : nullptr);
   answer.cell_pair.position += met.a().origin();
   answer.cell_pair_probability = static_cast<double>(cell_probability);
 }
@@ -215,7 +217,7 @@ void search_and_answer(const Tree& a, const Tree& b, const PosedMeshes& meshes, 
   } else {
     const auto encounter = encounter_of(a, b, meshes, request);
     result = search(encounter, meshes, request, scratch->queue, pair, spending);
-    forecast(encounter, result, request, spending, pair);
+    forecast(encounter, meshes, result, request, spending, pair);
   }
   pair.within_is_of_front = false;
   if (!pair.hits.empty()) pair.within = Within::neither;
