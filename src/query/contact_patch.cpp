@@ -5,60 +5,30 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #include "odds/math/tolerances.hpp"
-#include "query/patch_components.hpp"
-#include "query/patch_normal.hpp"
-#include "query/patch_overlap.hpp"
-#include "query/patch_rim.hpp"
-#include "query/patch_select.hpp"
-#include "query/patch_watch.hpp"
-#include "query/patch_witnesses.hpp"
+#include "query/patch_scratch.hpp"
 #include "query/spread_step.hpp"
 
 namespace odds::query {
 namespace {
 
+using patch::Effort;
+using patch::hasty_pieces;
+using patch::least_pairs;
+using patch::Patch;
+using patch::thorough;
 using patch::Watch;
 using patch::Witness;
 
-constexpr std::size_t witnesses_per_pair = 6;
-// Only coplanar triangles give more than one, and of a face full of those a sample is as good.
-constexpr std::size_t pieces_per_pair = 3;
-constexpr std::size_t least_pairs = 16;  ///< looked at however late it is
-
-/// How thoroughly a patch is made: by the clock, or, when that has run out, from some pieces of rim without it.
-struct Effort {
-  std::size_t sample;  ///< pairs that candidate normals are compared on
-  bool ends_only;      ///< of all pairs only those at the ends of the patch are asked for witnesses
-};
-constexpr Effort thorough{24, false};
-constexpr Effort hasty{12, true};
-constexpr std::size_t hasty_pieces = 48;
-
-/// A finished patch.
-struct Patch {
-  Vec3 normal = Vec3::UnitZ();
-  Vec3 lower = Vec3::Zero();  ///< box of the rim
-  Vec3 upper = Vec3::Zero();
-  Vec3 centre = Vec3::Zero();  ///< of the surface that the rim spans
-  double low = 0.0;            ///< of the rim, and depth below it, along `normal`
-  double high = 0.0;
-  double depth = 0.0;
-  double length = 0.0;  ///< of the rim
-  patch::Chosen chosen;
-  bool dropped = false;
-};
-
 /// Centroid of the surface that the rim spans, which unlike the mean of the rim does not care how finely it is cut.
-Vec3 span_centre(const patch::Rim& rim, std::span<const std::uint32_t> indices, const Vec3& middle,
-                 const Vec3& normal) noexcept {
+Vec3 span_centre(const patch::Rim& rim, std::span<const std::uint32_t> indices, const Vec3& middle, const Vec3& normal,
+                 Watch& watch) noexcept {
   Vec3 sum = Vec3::Zero();
   double weight = 0.0;
   double magnitude = 0.0;
-  for (const std::uint32_t index : indices) {
-    const patch::RimPiece& piece = rim.pieces[index];
+  for (std::size_t i = 0; i < indices.size() && !watch.late_in_small_steps(i); ++i) {
+    const patch::RimPiece& piece = rim.pieces[indices[i]];
     if (!piece.counts) continue;
     const Vec3 from = piece.from - middle;
     const Vec3 to = piece.to - middle;
@@ -76,57 +46,6 @@ double spacing(double depth, double lever) noexcept {
 }
 
 }  // namespace
-
-struct PatchBuilder::Scratch {
-  explicit Scratch(std::size_t hit_capacity)
-      : pairs(hit_capacity),
-        pieces(pieces_per_pair * hit_capacity + patch::most_pieces_of_a_pair),
-        by_patch(pieces.size()),
-        witnesses(witnesses_per_pair * std::min(hit_capacity, patch::Telling::most) + 64),
-        components(pieces.size(), hit_capacity),
-        telling(pieces.size()) {}
-
-  using Measured = std::array<Witness, most_contacts + 3>;  ///< those that span the patch, its centre, its summits
-  using Indices = std::span<const std::uint32_t>;
-
-  void place_pairs(const PatchInput& input, Watch& watch) noexcept;
-  void make_rim(const PatchInput& input, std::size_t most_pairs, Watch& watch) noexcept;
-  void cut_pairs(const PatchInput& input, std::size_t count, bool silent_too, Watch& watch) noexcept;
-  void sort_by_patch(std::size_t count) noexcept;
-  [[nodiscard]] Indices pieces_of(std::size_t patch) const noexcept {
-    return {by_patch.data() + first_of_patch[patch], first_of_patch[patch + 1] - first_of_patch[patch]};
-  }
-  bool make_patches(const PatchInput& input, Watch& watch) noexcept;
-  void straighten(const PatchInput& input, std::span<const patch::RimSums> sums, Watch& watch) noexcept;
-  void make_hasty_patch(const PatchInput& input) noexcept;
-  Patch make_patch(const PatchInput& input, const patch::RimSums& sums, Indices indices, const Effort& effort,
-                   Watch& watch) noexcept;
-  Patch patch_along(const Vec3& normal, const PatchInput& input, const patch::RimSums& sums, Indices indices,
-                    const Effort& effort, Watch& watch) noexcept;
-  void find_witnesses(Indices indices, const patch::Frame& frame, Watch& watch) noexcept;
-  std::size_t probe(const PatchInput& input, const Vec3& centre, double reach, const patch::Frame& frame,
-                    const patch::Chosen& spread, Measured& measured, Watch& watch) noexcept;
-  void drop_opposed(const Vec3* previous) noexcept;
-  void write(const PatchInput& input) noexcept;
-
-  std::vector<patch::PlacedPair> pairs;
-  std::vector<patch::RimPiece> pieces;
-  std::vector<std::uint32_t> by_patch;
-  std::array<std::uint32_t, patch::Components::most + 1> first_of_patch{};
-  std::vector<Witness> witnesses;
-  patch::Components components;
-  patch::Telling telling;
-  patch::Fan fan;
-  std::array<Patch, patch::Components::most> patches;
-  std::array<Contact, most_contacts> contacts;
-  patch::Rim rim;
-  std::size_t pair_count = 0;
-  std::size_t piece_count = 0;
-  std::size_t witness_count = 0;
-  std::size_t patch_count = 0;
-  std::size_t contact_count = 0;
-  bool finished = true;
-};
 
 void PatchBuilder::Scratch::place_pairs(const PatchInput& input, Watch& watch) noexcept {
   const std::size_t count = std::min(input.hits.size(), pairs.size());
@@ -147,6 +66,7 @@ void PatchBuilder::Scratch::make_rim(const PatchInput& input, std::size_t most_p
   Vec3 lower = Vec3::Constant(std::numeric_limits<double>::infinity());
   Vec3 upper = -lower;
   for (std::size_t i = 0; i < piece_count; ++i) {
+    static_cast<void>(watch.late_in_small_steps(i));
     lower = lower.cwiseMin(pieces[i].from).cwiseMin(pieces[i].to);
     upper = upper.cwiseMax(pieces[i].from).cwiseMax(pieces[i].to);
   }
@@ -170,14 +90,14 @@ void PatchBuilder::Scratch::cut_pairs(const PatchInput& input, std::size_t count
   }
 }
 
-void PatchBuilder::Scratch::sort_by_patch(std::size_t count) noexcept {
+void PatchBuilder::Scratch::sort_by_patch(std::size_t count, Watch& watch) noexcept {
   first_of_patch.fill(0);
-  for (std::size_t i = 0; i < piece_count; ++i) {
+  for (std::size_t i = 0; i < piece_count && !watch.late_in_small_steps(i); ++i) {
     if (pieces[i].component < count) ++first_of_patch[pieces[i].component + 1];
   }
   for (std::size_t p = 1; p < first_of_patch.size(); ++p) first_of_patch[p] += first_of_patch[p - 1];
   std::array<std::uint32_t, patch::Components::most + 1> next = first_of_patch;
-  for (std::uint32_t i = 0; i < piece_count; ++i) {
+  for (std::uint32_t i = 0; i < piece_count && !watch.late_in_small_steps(i); ++i) {
     if (pieces[i].component < count) by_patch[next[pieces[i].component]++] = i;
   }
 }
@@ -189,7 +109,8 @@ bool PatchBuilder::Scratch::make_patches(const PatchInput& input, Watch& watch) 
   if (watch.late()) return false;
   const std::span<const patch::RimSums> sums = components.group(rim, input.solid_a, input.solid_b, watch);
   if (watch.late()) return false;
-  sort_by_patch(sums.size());
+  sort_by_patch(sums.size(), watch);
+  if (watch.late()) return false;
   for (std::size_t i = 0; i < sums.size(); ++i) {
     const Indices indices = pieces_of(i);
     if (indices.empty()) continue;
@@ -241,35 +162,11 @@ void PatchBuilder::Scratch::straighten(const PatchInput& input, std::span<const 
   }
 }
 
-/// One patch of what there is of the rim. The pieces were made in an order that is spread over all hits, so that some
-/// of them span, within the scatter of a sample, a share of the vector area that all of them do.
-void PatchBuilder::Scratch::make_hasty_patch(const PatchInput& input) noexcept {
-  const Deadline never;
-  Watch without_clock(never);
-  PatchInput blind = input;
-  blind.probe_a = blind.probe_b = {};
-  if (piece_count < least_pairs) make_rim(blind, least_pairs, without_clock);
-  patch_count = 0;
-  const std::size_t stride = (piece_count + hasty_pieces - 1) / hasty_pieces;
-  std::size_t count = 0;
-  patch::RimSums sums;
-  for (std::size_t i = 0; i < piece_count; i += stride) {
-    by_patch[count++] = static_cast<std::uint32_t>(i);
-    sums.add(pieces[i], pairs[pieces[i].pair], rim.origin);
-  }
-  if (count == 0) return;
-  sums.loose_ends = 1;
-  const Indices indices{by_patch.data(), count};
-  patches[patch_count++] = input.known_normal != nullptr
-                               ? patch_along(*input.known_normal, blind, sums, indices, hasty, without_clock)
-                               : make_patch(blind, sums, indices, hasty, without_clock);
-}
-
 /// Fills `witnesses` with the overlap's corners of the pairs of the pieces; at least one.
 void PatchBuilder::Scratch::find_witnesses(Indices indices, const patch::Frame& frame, Watch& watch) noexcept {
   witness_count = 0;
   std::uint32_t last_pair = no_feature;
-  for (std::size_t i = 0; i < indices.size() && !(watch.late(i) && i >= least_pairs); ++i) {
+  for (std::size_t i = 0; i < indices.size() && !watch.late_in_large_steps(i); ++i) {
     const std::uint32_t pair = pieces[indices[i]].pair;
     if (pair == last_pair) continue;  // the pieces of one pair follow each other
     last_pair = pair;
@@ -331,12 +228,19 @@ std::size_t PatchBuilder::Scratch::probe(const PatchInput& input, const Vec3& ce
 Patch PatchBuilder::Scratch::make_patch(const PatchInput& input, const patch::RimSums& sums, Indices indices,
                                         const Effort& effort, Watch& watch) noexcept {
   const patch::PatchView view{input, rim, sums, indices, effort.sample};
-  Patch made = patch_along(patch::patch_normal(view, watch), input, sums, indices, effort, watch);
+  return shorter_way_out(patch_along(patch::patch_normal(view, watch), input, sums, indices, effort, watch), view,
+                         effort, watch);
+}
+
+/// The patch, or another way out of it that is shorter.
+Patch PatchBuilder::Scratch::shorter_way_out(const Patch& made, const patch::PatchView& view, const Effort& effort,
+                                             Watch& watch) noexcept {
+  const patch::RimSums& sums = view.sums;
   // A lump at the corner of two faces that nearly coincide has an area of its own, along which the bodies overlap from
   // end to end. Where pieces of a rim are missing, what is left of it may be such a lump whatever its size.
   const double wide = (patch::is_part_of_a_rim(view) ? 1.0 : tolerances::lump_depth) * sums.diagonal();
-  if (!(made.depth > wide) || sums.length == 0.0) return made;
-  const Patch other = patch_along(patch::shortest_way_out(view, watch), input, sums, indices, effort, watch);
+  if (!(made.depth > wide) || sums.length == 0.0 || watch.late()) return made;
+  const Patch other = patch_along(patch::shortest_way_out(view, watch), view.input, sums, view.pieces, effort, watch);
   return other.depth < made.depth ? other : made;
 }
 
@@ -347,16 +251,19 @@ Patch PatchBuilder::Scratch::patch_along(const Vec3& normal, const PatchInput& i
   made.upper = sums.upper;
   made.normal = normal;
   made.length = sums.length;
+  if (watch.late()) return made;  // here and below: what is not finished then is not used
   const patch::Frame frame(made.normal);
-  const Vec3 centre = span_centre(rim, indices, sums.centre(rim.origin), made.normal);
-  find_witnesses(effort.ends_only ? telling.ends_of(rim.pieces, indices, frame, fan, centre)
-                                  : telling.of(rim.pieces, rim.pairs, indices, frame, fan, centre),
+  const Vec3 centre = span_centre(rim, indices, sums.centre(rim.origin), made.normal, watch);
+  find_witnesses(effort.ends_only ? telling.ends_of(rim.pieces, indices, frame, fan, centre, watch)
+                                  : telling.of(rim.pieces, rim.pairs, indices, frame, fan, centre, watch),
                  frame, watch);
+  if (watch.late()) return made;
   const double radius = 0.5 * sums.diagonal();
   const Witness deepest = patch::deepest_of({witnesses.data(), witness_count}, frame, centre, radius);
   patch::Extremes extremes(frame, fan, centre, deepest);
-  for (std::size_t i = 0; i < witness_count && !(watch.late(i) && i >= least_pairs); ++i) extremes.add(witnesses[i]);
+  for (std::size_t i = 0; i < witness_count && !watch.late(i); ++i) extremes.add(witnesses[i]);
 
+  if (watch.late()) return made;
   made.centre = centre;
   const double lever = (input.reference_a - centre).norm();
   made.depth = deepest.depth;
@@ -366,6 +273,7 @@ Patch PatchBuilder::Scratch::patch_along(const Vec3& normal, const PatchInput& i
   if (input.probe_a && input.probe_b && sums.length > 0.0 && !watch.late()) {
     const double reach = 2.0 * (sums.diagonal() + made.depth);
     count = probe(input, centre, reach, frame, made.chosen, measured, watch);
+    if (watch.late()) return made;
     for (std::size_t i = 0; i < count; ++i) made.depth = std::max(made.depth, measured[i].depth);
   } else {
     for (std::size_t i = 0; i < count; ++i) measured[i] = patch::pulled_in(made.chosen.witnesses[i], deepest);
@@ -373,13 +281,30 @@ Patch PatchBuilder::Scratch::patch_along(const Vec3& normal, const PatchInput& i
   made.chosen = patch::choose({measured.data(), count}, frame, most_contacts, spacing(made.depth, lever));
   made.low = std::numeric_limits<double>::infinity();
   made.high = -made.low;
-  for (const std::uint32_t index : indices) {
-    const double height = made.normal.dot(pieces[index].middle() - rim.origin);
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    static_cast<void>(watch.late_in_small_steps(i));
+    const double height = made.normal.dot(pieces[indices[i]].middle() - rim.origin);
     made.low = std::min(made.low, height);
     made.high = std::max(made.high, height);
   }
   made.low = std::min(made.low, made.high - made.depth);
   return made;
+}
+
+/// Faces that are flush to within rounding leave crumbs of a rim between them, closed ones too, whose normals are those
+/// of the faces. Beside a patch that bears they are left out.
+void PatchBuilder::Scratch::drop_crumbs() noexcept {
+  double deepest = 0.0;
+  Vec3 lower = Vec3::Constant(std::numeric_limits<double>::infinity());
+  Vec3 upper = -lower;
+  for (std::size_t i = 0; i < patch_count; ++i) {
+    deepest = std::max(deepest, patches[i].depth);
+    lower = lower.cwiseMin(patches[i].lower);
+    upper = upper.cwiseMax(patches[i].upper);
+  }
+  const double limit =
+      std::min(tolerances::shallow_patch * deepest, tolerances::bears_nothing * (upper - lower).maxCoeff());
+  for (std::size_t i = 0; i < patch_count; ++i) patches[i].dropped = patches[i].depth < limit;
 }
 
 /// Two patches that push against each other through the same stuff (a rod that has run through a plate) cannot both be
@@ -419,7 +344,7 @@ void PatchBuilder::Scratch::write(const PatchInput& input) noexcept {
   };
   std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count),
             [&rank](const Patch* p, const Patch* q) { return rank(p) != rank(q) ? rank(p) > rank(q) : p < q; });
-  const auto wanted = static_cast<std::size_t>(std::clamp(input.max_contacts, 1, most_contacts));
+  const std::size_t wanted = most_wanted;
   if (count >= wanted) {
     count = wanted;  // one contact a patch: at its middle, so that it bears without tipping
     for (std::size_t i = 0; i < count; ++i) {
@@ -444,15 +369,22 @@ PatchBuilder::~PatchBuilder() = default;
 PatchBuilder::PatchBuilder(PatchBuilder&&) noexcept = default;
 PatchBuilder& PatchBuilder::operator=(PatchBuilder&&) noexcept = default;
 
-std::span<const Contact> PatchBuilder::build(const PatchInput& input, const Deadline& deadline) noexcept {
+std::span<const Contact> PatchBuilder::build(const PatchInput& input, const Deadline& deadline,
+                                             const Deadline& last) noexcept {
   Scratch& s = *scratch_;
   Watch watch(deadline);
   s.place_pairs(input, watch);
   s.piece_count = 0;
   s.finished = s.make_patches(input, watch);
-  if (!s.finished) s.make_hasty_patch(input);
-  s.drop_opposed(input.previous_normal);
-  s.write(input);
+  s.most_wanted = static_cast<std::size_t>(std::clamp(input.max_contacts, 1, most_contacts));
+  s.contact_count = 0;
+  if (!s.finished) {
+    s.make_hasty_contacts(input, last);
+  } else {
+    s.drop_crumbs();
+    s.drop_opposed(input.previous_normal);
+    s.write(input);
+  }
   return {s.contacts.data(), s.contact_count};
 }
 

@@ -6,30 +6,51 @@
 
 namespace odds::query {
 
-/// Odds and place of an answer without a proof take 0.2 to 1 us, by the processor and by what its caches hold. So a
-/// pair watches its own queries: an ending that took longer than the reserve adds to it, a shorter one takes a little
-/// away, in such a proportion that about one in ten is longer, and then by little. Changes no answer within work units.
+/// What follows the moment that a piece of a query hears that its time is up takes from 0.2 us (odds and place of an
+/// answer without a proof) to 5 us (a patch made hastily), three times that where caches are cold. So a pair
+/// watches its own queries: an ending that took longer than the reserve adds to it, a shorter one takes a little away.
+/// The share of endings that are longer settles where both balance. Changes no answer within work units.
 class EndingReserve {
  public:
+  struct Range {
+    std::int64_t first_ns;  ///< where it starts, which is more than most endings need; then it comes down soon
+    std::int64_t least_ns;
+    std::int64_t most_ns;
+    std::int64_t most_rise_ns;  ///< by one ending; of an excess below 400 ns that part of 400 ns
+    std::int64_t fall_ns;       ///< by an ending that was shorter
+  };
+
+  explicit constexpr EndingReserve(const Range& range) noexcept : range_(range), ns_(range.first_ns) {}
+
   [[nodiscard]] std::int64_t ns() const noexcept { return ns_; }
 
-  /// `took_ns`: from the moment that a search heard that its time was up to the query's end.
+  /// `took_ns`: from the moment that the piece heard, or should have heard, that its time was up to the query's end.
   void note(std::int64_t took_ns) noexcept {
+    const std::int64_t fall_ns = notes_ < first_notes ? (ns_ - took_ns) / 16 : range_.fall_ns;
+    notes_ = std::min(notes_ + 1, first_notes);
     // A stall must not cost more than it did.
-    ns_ += took_ns > ns_ ? std::clamp((took_ns - ns_) / 4, least_rise_ns, most_rise_ns) : -fall_ns;
-    ns_ = std::clamp(ns_, least_ns, most_ns);
+    const std::int64_t rise_ns = std::min<std::int64_t>(took_ns - ns_, 400) * range_.most_rise_ns / 400;
+    ns_ += took_ns > ns_ ? std::max(rise_ns, least_rise_ns) : -fall_ns;
+    ns_ = std::clamp(ns_, range_.least_ns, range_.most_ns);
   }
 
-  static constexpr std::int64_t least_ns = 200;
-  static constexpr std::int64_t most_ns = 2000;
-
  private:
-  static constexpr std::int64_t first_ns = 600;
-  static constexpr std::int64_t fall_ns = 4;
+  static constexpr int first_notes = 32;
   static constexpr std::int64_t least_rise_ns = 32;
-  static constexpr std::int64_t most_rise_ns = 100;
 
-  std::int64_t ns_ = first_ns;
+  Range range_;
+  std::int64_t ns_;
+  int notes_ = 0;
+};
+
+/// The endings that a pair watches. One in ten searches ends later than its reserve, and then by little; of contacts,
+/// one ending in some hundreds.
+struct EndingReserves {
+  EndingReserve search{{600, 200, 2000, 100, 4}};     ///< odds and place of what was left undecided
+  EndingReserve patch{{12000, 1000, 16000, 400, 1}};  ///< of a patch made hastily: witnesses, choice, writing
+  EndingReserve single{{4000, 600, 10000, 400, 1}};   ///< the same of a single contact
+  EndingReserve rough{{4000, 600, 8000, 400, 1}};     ///< one more rough contact, and writing the answer
+  EndingReserve ray{{2000, 600, 6000, 400, 1}};       ///< one ray, and writing the answer
 };
 
 }  // namespace odds::query

@@ -16,10 +16,11 @@ namespace odds::query {
 /// small it is; the normal also by how flat both patches are and, of solids, how much they face each other, for at an
 /// edge those beside the ones that meet are as near. Two patches that nobody has looked into cannot be told to overlap
 /// deeper than the thinner of them is thick, and they may not meet at all: the depth is the expected one, for
-/// `probability` of a hit, so that a force made of it grows with what is known. Precondition: the list is not empty.
-template <class Met>
-[[nodiscard]] Contact likeliest_place(const Met& met, const Shortlist& list, double probability,
-                                      const Vec3* solids_apart) noexcept {
+/// `probability` of a hit, so that a force made of it grows with what is known. `apart()`: the way that solids come
+/// apart where no patch faces another, into A. Precondition: the list is not empty.
+template <class Met, class Apart>
+[[nodiscard]] Contact likeliest_place(const Met& met, const Shortlist& list, double probability, bool both_solid,
+                                      const Apart& apart) noexcept {
   constexpr double unopposed = 0.01;         // of what is flat: less, and all that is known lies beside what meets
   constexpr double least_opposition = 0.01;  // so that patches of which none faces another have a direction, too
   std::array<MetPlace, Shortlist::capacity> places;
@@ -38,12 +39,12 @@ template <class Met>
         static_cast<double>(math::rough_exp2(std::clamp(pair.rank, -20.0F, 4.0F))) * place.inverse_size;
     weights[count++] = weight;
     position += weight * place.position;
-    facing += weight * (solids_apart != nullptr ? least_opposition + place.opposition : 1.0) * place.facing;
+    facing += weight * (both_solid ? least_opposition + place.opposition : 1.0) * place.facing;
     sum += weight;
     opposed += weight * place.opposition;
     flat += weight * place.flatness;
   }
-  if (solids_apart != nullptr && opposed < unopposed * flat) facing = *solids_apart;
+  if (both_solid && opposed < unopposed * flat) facing = apart();
   const double length = facing.norm();
   if (!(sum > 0.0) || !std::isfinite(sum) || !(length > 0.0) || !std::isfinite(length)) return mean;
   mean.position = position / sum;

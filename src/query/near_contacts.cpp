@@ -10,8 +10,6 @@
 namespace odds::query {
 namespace {
 
-constexpr std::int64_t ray_finish_ns = 2000;  ///< of one ray, and writing the answer
-
 struct Gap {
   double length;
   std::uint32_t triangle;
@@ -73,7 +71,7 @@ void add_near_contacts(const math::Pose& pose_b_in_a, const Request& request, Pa
              other.normal.dot(contact.normal) > tolerances::same_contact_side;
     });
   };
-  spending.reserve_for_contacts(ray_finish_ns);
+  spending.reserve_for_contacts(pair.endings.ray);
   for (const HeldContact& touched : pair.near.last()) {
     if (count >= room) break;
     if (touched.parted(pose_b_in_a).slip > near || known(touched.at(pose_b_in_a))) continue;

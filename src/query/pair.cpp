@@ -14,6 +14,7 @@
 #include "query/pair_within.hpp"
 #include "query/search.hpp"
 #include "query/shape_data.hpp"
+#include "query/way_apart.hpp"
 
 namespace odds::query {
 
@@ -139,7 +140,7 @@ wide::Encounter encounter_of(const tree::WideTree& a, const tree::WideTree& b, c
 
 /// Verdict, probability and place from what the search left undecided, if it did.
 template <class Met>
-void forecast(const Met& met, const PosedMeshes& meshes, const SearchResult& result, const Request& request,
+void forecast(const Met& met, const math::Pose& pose_b_in_a, const SearchResult& result, const Request& request,
               const Spending& spending, Pair::Implementation& pair) noexcept {
   Answer& answer = pair.answer;
   for (const NodePair& open : result.shortlist) met.prefetch(open);
@@ -155,9 +156,12 @@ void forecast(const Met& met, const PosedMeshes& meshes, const SearchResult& res
   judge(result, undecided, request, !pair.hits.empty(), answer);
   if (answer.basis == Basis::proved || result.shortlist.empty()) return;
   answer.has_cell_pair = true;
-  const Vec3 apart = pair.previous_normal.isZero() ? Vec3(-meshes.pose().translation) : pair.previous_normal;
+  const auto apart = [&]() noexcept {
+    return pair.previous_normal.isZero() ? way_apart(pair.a->mesh(), pair.b->mesh(), pose_b_in_a)
+                                         : pair.previous_normal;
+  };
   const bool both_solid = pair.a->is_solid() && pair.b->is_solid();
-  answer.cell_pair = likeliest_place(met, result.shortlist, answer.probability, both_solid ? &apart : nullptr);
+  answer.cell_pair = likeliest_place(met, result.shortlist, answer.probability, both_solid, apart);
   answer.cell_pair.position += met.a().origin();
   answer.cell_pair_probability = static_cast<double>(cell_probability);
 }
@@ -217,7 +221,7 @@ void search_and_answer(const Tree& a, const Tree& b, const PosedMeshes& meshes, 
   } else {
     const auto encounter = encounter_of(a, b, meshes, request);
     result = search(encounter, meshes, request, scratch->queue, pair, spending);
-    forecast(encounter, meshes, result, request, spending, pair);
+    forecast(encounter, pose_b_in_a, result, request, spending, pair);
   }
   pair.within_is_of_front = false;
   if (!pair.hits.empty()) pair.within = Within::neither;
@@ -237,7 +241,8 @@ void search_and_answer(const Tree& a, const Tree& b, const PosedMeshes& meshes, 
 template <class Tree>
 void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const Request& request,
             Pair::Implementation& pair) noexcept {
-  Spending spending(request.budget, pair.ending.ns());
+  Spending spending(request.budget, pair.endings.search.ns(),
+                    (request.max_contacts > 1 ? pair.endings.rough : pair.endings.single).ns());
   Answer& answer = pair.answer;
   answer = {};
   pair.hits.clear();
@@ -250,7 +255,7 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
     pair.near.forget();
   }
   answer.cost = spending.close();
-  if (spending.ending_ns() > 0 && pair.hits.empty()) pair.ending.note(spending.ending_ns());
+  if (spending.ending_ns() > 0 && pair.hits.empty()) pair.endings.search.note(spending.ending_ns());
 }
 
 bool usable(const math::Pose& pose, const Request& request) noexcept {

@@ -19,12 +19,10 @@ constexpr double patch_base_us = 25.0;
 // Fewer may leave a gap in the rim of even two boxes, and the direction of a patch needs all of its rim.
 constexpr double least_hits = 64.0;
 constexpr double most_hits = 65536.0;
+// For a direction that is looked for in haste, before what is there is written.
+constexpr std::int64_t hasty_ns = 2500;
+constexpr std::int64_t hasty_single_ns = 1000;
 constexpr std::uint32_t pairs_of_a_depth = 12;  ///< a patch of fewer may show anything less than how deep bodies are
-// What a patch takes from hearing of the deadline to its end: a ray or two, and one made hastily of what there is.
-constexpr std::int64_t patch_finish_ns = 6500;
-constexpr std::int64_t hasty_finish_ns = 6500;   ///< of one that is hasty from the start
-constexpr std::int64_t single_finish_ns = 3000;  ///< of a single contact
-constexpr std::int64_t rough_finish_ns = 1500;   ///< of one more rough contact, their direction, and writing the answer
 
 /// Pairs of triangles that a patch has time for.
 std::uint32_t hits_in(double microseconds, double per_microsecond) noexcept {
@@ -119,7 +117,7 @@ void make_rough_contacts(const PosedMeshes& meshes, const Vec3* known_normal, bo
   const Vec3 by_place = (meshes.origin_a() - centre_b).stableNormalized();
   const Vec3 towards_a =
       pair.previous_normal.isZero() ? Vec3(by_place + tolerances::came_side * pair.came) : pair.previous_normal;
-  spending.reserve_for_contacts(rough_finish_ns);
+  spending.reserve_for_contacts(pair.endings.rough);
   const auto room =
       std::span(pair.contacts).first(std::min(static_cast<std::size_t>(request.max_contacts), pair.contacts.size()));
   const std::size_t count = rough_contacts(meshes, pair.hits.pairs(), pair.a->is_solid() && pair.b->is_solid(),
@@ -154,16 +152,17 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
                    Spending& spending) noexcept {
   const Progressed ended = searched.ended;
   const Vec3 centre_b = meshes.pose().translation + meshes.origin_a();
-  spending.reserve_for_contacts(request.max_contacts > 1 ? hasty_finish_ns : single_finish_ns);
+  const bool single = request.max_contacts <= 1;
+  spending.reserve_for_contacts(single ? pair.endings.single : pair.endings.patch, single ? hasty_single_ns : hasty_ns);
   const double smaller = std::min(pair.a->mesh().size(), pair.b->mesh().size());
   const Vec3* known_normal = pair.known_direction.at(pose_b_in_a, smaller);
   const bool moved_little = most_depth - pair.known_depth.depth() <= tolerances::coherent_motion * smaller;
   note_side(meshes, pair);
   if (!spending.may_make_contacts()) {
+    (single ? pair.endings.single : pair.endings.patch).note(0);  // or it would never be tried again
     make_rough_contacts(meshes, known_normal, moved_little, request, pair, spending);
     return;
   }
-  if (request.max_contacts > 1) spending.reserve_for_contacts(patch_finish_ns);
   PatchInput input;
   input.hits = pair.hits.pairs();
   input.vertices_a = pair.a->mesh().vertices();
@@ -199,7 +198,9 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   if (!all) input.believed_depth = believed_depth(meshes, pose_b_in_a, known_normal, pair);
   const Deadline deadline{[](void* state) noexcept { return !static_cast<Spending*>(state)->may_make_contacts(); },
                           &spending};
-  keep(patches.build(input, deadline), pair);
+  const Deadline last{[](void* state) noexcept { return !static_cast<Spending*>(state)->may_finish_contacts(); },
+                      &spending};
+  keep(patches.build(input, deadline, last), pair);
   if (pair.answer.contacts.empty()) return;
   pair.answer.contact_pairs = patches.pairs_used();
   pair.answer.contacts_complete = patches.finished() && all;

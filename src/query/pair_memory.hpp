@@ -69,7 +69,7 @@ struct Pair::Implementation {
   KnownDirection known_direction;
   CarriedContacts carried;
   NearContacts near;
-  EndingReserve ending;
+  EndingReserves endings;
   std::array<Contact, most_contacts> contacts;  ///< the answer's
   Answer answer;
 };

@@ -9,7 +9,6 @@
 namespace odds::query {
 namespace {
 
-constexpr std::int64_t ray_finish_ns = 2000;  ///< of one ray, and writing the answer
 /// What is believed of a shape within another, or without, that there is no time to look at: few pass through a surface
 /// from one run to the next.
 constexpr double stays_within = 0.9;
@@ -62,7 +61,7 @@ bool answer_within(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   pair.within_is_of_front = request.method == Method::incremental;
   if (!may_be) return false;
   Answer& answer = pair.answer;
-  spending.reserve_for_contacts(ray_finish_ns);
+  spending.reserve_for_contacts(pair.endings.ray);
   const Within now = same ? pair.within : within(*pair.a, *pair.b, pose_b_in_a, spending);
   if (now == Within::unknown) {
     pair.within_is_of_front = false;

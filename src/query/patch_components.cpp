@@ -78,7 +78,8 @@ Components::Components(std::size_t most_pieces, std::size_t most_pairs)
 
 std::span<const RimSums> Components::group(const Rim& rim, bool solid_a, bool solid_b, Watch& watch) noexcept {
   if (rim.pieces.empty()) return {};
-  prepare(rim);
+  prepare(rim, watch);
+  if (watch.late()) return {};
   connect(rim, watch);
   if (watch.late()) return {};
   sum_up(rim, watch);
@@ -86,9 +87,12 @@ std::span<const RimSums> Components::group(const Rim& rim, bool solid_a, bool so
   keep_the_longest();
   join_open_curves(rim, watch);
   if (watch.late()) return {};
-  join_holes(rim, solid_a, solid_b);
-  join_neighbours(rim);
-  settle(rim);
+  join_holes(rim, solid_a, solid_b, watch);
+  if (watch.late()) return {};
+  join_neighbours(rim, watch);
+  if (watch.late()) return {};
+  settle(rim, watch);
+  if (watch.late()) return {};
   return {patches_.data(), kept_};
 }
 
@@ -154,10 +158,11 @@ bool Components::is_copy(std::uint32_t from, std::uint32_t to) noexcept {
   return false;
 }
 
-void Components::prepare(const Rim& rim) noexcept {
+void Components::prepare(const Rim& rim, Watch& watch) noexcept {
   double extent = 0.0;
   double reach = 0.0;
-  for (const RimPiece& piece : rim.pieces) {
+  for (std::size_t i = 0; i < rim.pieces.size() && !watch.late_in_small_steps(i); ++i) {
+    const RimPiece& piece = rim.pieces[i];
     extent = std::max(extent, (piece.from - rim.origin).cwiseAbs().maxCoeff());
     extent = std::max(extent, (piece.to - rim.origin).cwiseAbs().maxCoeff());
     reach = std::max(reach, piece.from.cwiseAbs().maxCoeff());
@@ -209,7 +214,7 @@ void Components::sum_up(const Rim& rim, Watch& watch) noexcept {
       curve.upper = curve.upper.cwiseMax(piece.from);
     }
   }
-  for (std::size_t j = 0; j < joint_count_; ++j) {
+  for (std::size_t j = 0; j < joint_count_ && !watch.late_in_small_steps(j); ++j) {
     if (joints_[j].balance != 0) ++curves_[rim.pieces[joints_[j].first_piece].component].loose_ends;
   }
 }
@@ -275,10 +280,11 @@ void Components::join_open_curves(const Rim& rim, Watch& watch) noexcept {
 
 /// The inner rim of a ring (a pipe's end on a plane) runs the other way round: its vector area points against the
 /// normals along it. It belongs to the smallest curve around it.
-void Components::join_holes(const Rim& rim, bool solid_a, bool solid_b) noexcept {
+void Components::join_holes(const Rim& rim, bool solid_a, bool solid_b, Watch& watch) noexcept {
   if (!solid_a && !solid_b) return;
   const std::span<const std::uint32_t> all = roots();
   for (const std::uint32_t hole : all) {
+    if (watch.late()) return;
     const RimSums& inner = curves_[hole];
     if (curve_parents_[hole] != hole || !inner.closed() || inner.length == 0.0) continue;
     // Turning a sheet around turns its normals and the rim: only the comparison with its own normals stays.
@@ -298,9 +304,9 @@ void Components::join_holes(const Rim& rim, bool solid_a, bool solid_b) noexcept
 }
 
 /// Two curves of nearly the same normal that overlap are one contact (faces that are flush, rims that are doubled).
-void Components::join_neighbours(const Rim& rim) noexcept {
+void Components::join_neighbours(const Rim& rim, Watch& watch) noexcept {
   const std::span<const std::uint32_t> all = roots();
-  for (std::size_t k = 0; k < all.size(); ++k) {
+  for (std::size_t k = 0; k < all.size() && !watch.late(); ++k) {
     for (std::size_t m = k + 1; m < all.size(); ++m) {
       const std::uint32_t i = root(curve_parents_, all[k]);
       const std::uint32_t j = root(curve_parents_, all[m]);
@@ -317,14 +323,17 @@ void Components::join_neighbours(const Rim& rim) noexcept {
   }
 }
 
-void Components::settle(const Rim& rim) noexcept {
+void Components::settle(const Rim& rim, Watch& watch) noexcept {
   std::fill_n(patch_of_curve_.begin(), curve_count_, left_out);
   std::uint32_t patches = 0;
   for (const std::uint32_t curve : roots()) {
     patches_[patches] = curves_[curve];
     patch_of_curve_[curve] = patches++;
   }
-  for (RimPiece& piece : rim.pieces) piece.component = patch_of_curve_[root(curve_parents_, piece.component)];
+  for (std::size_t i = 0; i < rim.pieces.size() && !watch.late_in_small_steps(i); ++i) {
+    RimPiece& piece = rim.pieces[i];
+    piece.component = patch_of_curve_[root(curve_parents_, piece.component)];
+  }
   kept_ = patches;
 }
 

@@ -66,17 +66,17 @@ class Components {
   };
 
   std::uint32_t joint_at(const Vec3& point, std::uint32_t piece) noexcept;
-  void prepare(const Rim& rim) noexcept;
+  void prepare(const Rim& rim, Watch& watch) noexcept;
   void connect(const Rim& rim, Watch& watch) noexcept;
   bool is_copy(std::uint32_t from, std::uint32_t to) noexcept;
   void sum_up(const Rim& rim, Watch& watch) noexcept;
   void keep_the_longest() noexcept;
   std::span<const std::uint32_t> roots() noexcept;
   void join_open_curves(const Rim& rim, Watch& watch) noexcept;
-  void join_holes(const Rim& rim, bool solid_a, bool solid_b) noexcept;
-  void join_neighbours(const Rim& rim) noexcept;
+  void join_holes(const Rim& rim, bool solid_a, bool solid_b, Watch& watch) noexcept;
+  void join_neighbours(const Rim& rim, Watch& watch) noexcept;
   void join(std::uint32_t i, std::uint32_t j) noexcept;
-  void settle(const Rim& rim) noexcept;
+  void settle(const Rim& rim, Watch& watch) noexcept;
   std::uint32_t root(std::vector<std::uint32_t>& parents, std::uint32_t i) const noexcept;
 
   std::vector<Joint> joints_;

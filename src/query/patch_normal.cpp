@@ -134,7 +134,7 @@ class LeastOverlap {
     }
     shift_ = -tolerances::pressing_share * size * pressing;
     spread_ = view.sums.length > 0.0;
-    if (spread_) find_places(Frame(pressing == Vec3::Zero() ? Vec3(Vec3::UnitZ()) : pressing));
+    if (spread_ && has_probes()) find_places(Frame(pressing == Vec3::Zero() ? Vec3(Vec3::UnitZ()) : pressing));
   }
 
   void offer(const Vec3& direction, double factor) noexcept {
@@ -145,9 +145,10 @@ class LeastOverlap {
     if (facing < -tolerances::weak_side) return;  // towards the wrong side of a sheet
     const Vec3* previous = view_.input.previous_normal;
     if (previous != nullptr && previous->dot(unit) > tolerances::same_as_before) factor *= tolerances::hysteresis;
-    const double of_pairs = overlap_of_pairs(unit, shift_);
+    const double of_pairs = overlap_of_pairs(unit, shift_, factor);
     if (found_ && !(factor * of_pairs < least_)) return;
     const double through = overlap_through(unit, factor);
+    if (found_ && watch_.late()) return;  // it was not measured to its end
     const double overlap = factor * std::max(of_pairs, through);
     const bool equal = overlap == least_ && factor * of_pairs < least_of_pairs_;
     if (found_ && !(overlap < least_ || equal)) return;
@@ -170,16 +171,21 @@ class LeastOverlap {
   }
 
  private:
+  [[nodiscard]] bool has_probes() const noexcept { return view_.input.probe_a && view_.input.probe_b; }
   [[nodiscard]] std::size_t stride() const noexcept {
     return std::max<std::size_t>(1, (view_.pieces.size() + view_.sample - 1) / view_.sample);
   }
   [[nodiscard]] const PlacedPair& pair_at(std::size_t i) const noexcept {
     return view_.rim.pairs[view_.rim.pieces[view_.pieces[i]].pair];
   }
-  [[nodiscard]] double overlap_of_pairs(const Vec3& direction, const Vec3& shift) const noexcept {
+  /// The largest of the sample's depths, or of some of them, if times `factor` it is no less than the best direction's.
+  [[nodiscard]] double overlap_of_pairs(const Vec3& direction, const Vec3& shift, double factor = 0.0) const noexcept {
     const Frame frame(direction);
+    const double enough = found_ && factor > 0.0 ? least_ : std::numeric_limits<double>::infinity();
     double deepest = 0.0;
-    for (std::size_t i = 0; i < view_.pieces.size(); i += stride()) {
+    std::size_t step = 0;
+    for (std::size_t i = 0; i < view_.pieces.size() && factor * deepest < enough; i += stride()) {
+      if (watch_.late_in_large_steps(step++)) break;
       deepest = std::max(deepest, pair_depth(pair_at(i), frame, shift));
     }
     return deepest;
@@ -203,7 +209,8 @@ class LeastOverlap {
     std::size_t deepest = 0;
     double depth = -1.0;
     Vec3 into_all = Vec3::Zero();  // from a crumb at a corner, one face's side is not inside of the others
-    for (std::size_t i = 0; i < view_.pieces.size(); i += stride()) {
+    std::size_t step = 0;
+    for (std::size_t i = 0; i < view_.pieces.size() && !watch_.late_in_large_steps(step++); i += stride()) {
       into_all -= pair_at(i).normal_a + pair_at(i).normal_b;
       const double here = pair_depth(pair_at(i), pressing, shift_);
       if (here > depth) deepest = i;
@@ -225,7 +232,7 @@ class LeastOverlap {
     if (!spread_) return 0.0;
     const double reach = 4.0 * view_.sums.diagonal();
     double deepest = -1.0;
-    bool seen = !view_.input.probe_a || !view_.input.probe_b || !view_.input.solid_a || !view_.input.solid_b;
+    bool seen = !has_probes() || !view_.input.solid_a || !view_.input.solid_b;
     for (std::size_t i = 0; i < place_count_ && !(found_ && factor * deepest >= least_); ++i) {
       Witness through;
       switch (probe_line(view_.input, places_[i], direction, reach, watch_, through)) {
@@ -312,7 +319,7 @@ Vec3 least_overlap(const PatchView& view, const Vec3& area, Watch& watch) noexce
   }
   offer(view.sums.normals_b - view.sums.normals_a, 1.0);
   if (view.input.previous_normal != nullptr) search.offer(*view.input.previous_normal, 1.0);
-  if ((is_part_of_a_rim(view) || view.sums.length == 0.0) && search.is_a_long_way()) {
+  if ((is_part_of_a_rim(view) || view.sums.length == 0.0) && !watch.late() && search.is_a_long_way()) {
     const Directions ways = ways_along_walls(view, watch);
     for (std::size_t i = 0; i < ways.count; ++i) search.offer_both(ways.ones[i].first, 1.0);
   }

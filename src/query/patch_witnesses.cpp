@@ -8,15 +8,17 @@
 namespace odds::query::patch {
 namespace {
 
+constexpr std::size_t least_looked_at = 16;  ///< however late it is
+
 /// Where a patch ends in the directions of the fan: positions in `indices`. A direction and its opposite share a pass.
 using Ends = std::array<std::size_t, Fan::size>;
 
 Ends find_ends(std::span<const RimPiece> pieces, std::span<const std::uint32_t> indices, const Frame& frame,
-               const Fan& fan, const Vec3& centre) noexcept {
+               const Fan& fan, const Vec3& centre, Watch& watch) noexcept {
   Ends ends{};
   std::array<double, Fan::size> farthest;
   farthest.fill(-std::numeric_limits<double>::infinity());
-  for (std::size_t i = 0; i < indices.size(); ++i) {
+  for (std::size_t i = 0; i < indices.size() && !(watch.late_in_small_steps(i) && i >= least_looked_at); ++i) {
     // The middle: both ends of a piece belong to its neighbours too.
     const Vec3 out = pieces[indices[i]].middle() - centre;
     const double u = frame.u.dot(out);
@@ -36,13 +38,13 @@ Ends find_ends(std::span<const RimPiece> pieces, std::span<const std::uint32_t> 
 
 std::span<const std::uint32_t> Telling::of(std::span<const RimPiece> pieces, std::span<const PlacedPair> pairs,
                                            std::span<const std::uint32_t> indices, const Frame& frame, const Fan& fan,
-                                           const Vec3& centre) noexcept {
+                                           const Vec3& centre, Watch& watch) noexcept {
   if (indices.size() <= few) return indices;
-  const Ends ends = find_ends(pieces, indices, frame, fan, centre);
+  const Ends ends = find_ends(pieces, indices, frame, fan, centre, watch);
   const std::uint64_t share = std::numeric_limits<std::uint64_t>::max() / indices.size() * sampled;
   std::size_t count = 0;
   std::size_t next_end = 0;
-  for (std::size_t i = 0; i < indices.size(); ++i) {
+  for (std::size_t i = 0; i < indices.size() && !(watch.late_in_small_steps(i) && count > 0); ++i) {
     bool tells = false;
     for (; next_end < ends.size() && ends[next_end] == i; ++next_end) tells = true;
     if (!tells) {
@@ -56,8 +58,8 @@ std::span<const std::uint32_t> Telling::of(std::span<const RimPiece> pieces, std
 
 std::span<const std::uint32_t> Telling::ends_of(std::span<const RimPiece> pieces,
                                                 std::span<const std::uint32_t> indices, const Frame& frame,
-                                                const Fan& fan, const Vec3& centre) noexcept {
-  const Ends ends = find_ends(pieces, indices, frame, fan, centre);
+                                                const Fan& fan, const Vec3& centre, Watch& watch) noexcept {
+  const Ends ends = find_ends(pieces, indices, frame, fan, centre, watch);
   std::size_t count = 0;
   for (std::size_t i = 0; i < ends.size(); ++i) {
     if (i == 0 || ends[i] != ends[i - 1]) chosen_[count++] = indices[ends[i]];

@@ -9,6 +9,7 @@
 
 #include "query/patch_rim.hpp"
 #include "query/patch_select.hpp"
+#include "query/patch_watch.hpp"
 
 namespace odds::query::patch {
 
@@ -23,16 +24,16 @@ class Telling {
 
   explicit Telling(std::size_t most_pieces) : chosen_(most_pieces) {}
 
-  /// Pieces of the patch whose pairs are to be asked, in the order of `indices`; valid until the next call. `centre`:
-  /// of the patch.
+  /// Pieces of the patch whose pairs are to be asked, in the order of `indices`; valid until the next call; fewer if
+  /// it is late. `centre`: of the patch.
   [[nodiscard]] std::span<const std::uint32_t> of(std::span<const RimPiece> pieces, std::span<const PlacedPair> pairs,
                                                   std::span<const std::uint32_t> indices, const Frame& frame,
-                                                  const Fan& fan, const Vec3& centre) noexcept;
+                                                  const Fan& fan, const Vec3& centre, Watch& watch) noexcept;
 
   /// Only those at the extremes, at least one. Precondition: `indices` is not empty.
   [[nodiscard]] std::span<const std::uint32_t> ends_of(std::span<const RimPiece> pieces,
                                                        std::span<const std::uint32_t> indices, const Frame& frame,
-                                                       const Fan& fan, const Vec3& centre) noexcept;
+                                                       const Fan& fan, const Vec3& centre, Watch& watch) noexcept;
 
  private:
   std::vector<std::uint32_t> chosen_;

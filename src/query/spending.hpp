@@ -18,16 +18,19 @@ namespace odds::query {
 class Spending {
  public:
   /// `ending_ns`: what of the time is kept for the answer that follows a search without a proof.
-  explicit Spending(const Budget& budget, std::int64_t ending_ns = EndingReserve{}.ns()) noexcept
+  /// `contacts_ns`: the same for contacts, once there is a hit to make them from.
+  explicit Spending(const Budget& budget, std::int64_t ending_ns = EndingReserves{}.search.ns(),
+                    std::int64_t contacts_ns = 0) noexcept
       : clock_(budget.clock.now_ns != nullptr ? budget.clock : realtime::fastest_clock()),
         start_ns_(clock_()),
         ledger_(start_ns_),
+        contacts_ns_(contacts_ns),
         units_left_(budget.work_units) {
     if (std::isfinite(budget.microseconds)) {
       timed_ = true;
       const double ns = std::clamp(budget.microseconds * 1e3, 0.0, 1e15);
       deadline_ns_ = start_ns_ + static_cast<std::int64_t>(ns);
-      search_deadline_ns_ = deadline_ns_ - ending_ns;
+      search_deadline_ns_ = last_moment_ns_ = deadline_ns_ - ending_ns;
     }
   }
 
@@ -52,7 +55,7 @@ class Spending {
   void keep_time_for_contacts() noexcept {
     if (!timed_) return;
     const auto share_ns = static_cast<std::int64_t>(search_share * static_cast<double>(allowance_ns()));
-    search_deadline_ns_ = std::min(search_deadline_ns_, start_ns_ + share_ns);
+    search_deadline_ns_ = std::min({search_deadline_ns_, start_ns_ + share_ns, deadline_ns_ - contacts_ns_});
   }
 
   /// Polls the clock if there is a deadline. False once the search should stop.
@@ -80,12 +83,18 @@ class Spending {
     if (units_left_ <= start_units_end_) return false;
     return unpolled_units_ < units || poll() < start_deadline_ns_;
   }
-  /// Contacts take up to `finishing_ns` from the moment that they hear that the time is up: `may_make_contacts` says
-  /// when that is.
-  void reserve_for_contacts(std::int64_t finishing_ns) noexcept {
-    if (timed_) contacts_deadline_ns_ = deadline_ns_ - finishing_ns;
+  /// From now on contacts are finished as `reserve` expects, which must outlive this and learns how long it took:
+  /// `may_finish_contacts` says when that begins. `hasty_ns` before it they are made hastily: `may_make_contacts` says
+  /// when to begin with that.
+  void reserve_for_contacts(EndingReserve& reserve, std::int64_t hasty_ns = 0) noexcept {
+    if (!timed_) return;
+    if (contacts_ended_) note_contacts_ending(poll());
+    contacts_reserve_ = &reserve;
+    last_moment_ns_ = deadline_ns_ - reserve.ns();
+    contacts_deadline_ns_ = last_moment_ns_ - hasty_ns;
   }
-  [[nodiscard]] bool may_make_contacts() noexcept { return poll() < contacts_deadline_ns_; }
+  [[nodiscard]] bool may_make_contacts() noexcept { return may_go_on_with_contacts(contacts_deadline_ns_); }
+  [[nodiscard]] bool may_finish_contacts() noexcept { return may_go_on_with_contacts(last_moment_ns_); }
   /// Microseconds until the deadline, which may be past; infinite without one.
   [[nodiscard]] double left_us() noexcept {
     if (!timed_) return std::numeric_limits<double>::infinity();
@@ -98,18 +107,16 @@ class Spending {
   /// Closes the accounts; the last thing a query does.
   [[nodiscard]] Cost close() noexcept {
     const std::int64_t now = clock_();
-    ledger_.poll(now);
+    note_time(now);
     cost_.longest_unpolled_units = std::max(cost_.longest_unpolled_units, unpolled_units_);
     if (search_end_ns_ != 0) ending_ns_ = now - search_end_ns_;
+    note_contacts_ending(now);
     cost_.gross_us = static_cast<double>(ledger_.gross_ns()) * 1e-3;
     // Without polls a long gap is the query's own work, not a stall.
     cost_.stall_us = timed_ ? static_cast<double>(ledger_.stall_ns()) * 1e-3 : 0.0;
     if (timed_ && now > deadline_ns_) {
       cost_.overshoot_us = static_cast<double>(now - deadline_ns_) * 1e-3;
-      // Only stalls that reach beyond the deadline excuse: an earlier one was time that the search could still react
-      // to.
-      const std::int64_t stalled = ledger_.stall_ns() - stall_before_deadline_ns_;
-      cost_.net_overshoot_us = static_cast<double>(std::max<std::int64_t>(now - deadline_ns_ - stalled, 0)) * 1e-3;
+      cost_.net_overshoot_us = static_cast<double>(std::max<std::int64_t>(now - deadline_ns_ - excused_ns_, 0)) * 1e-3;
     }
     return cost_;
   }
@@ -129,9 +136,30 @@ class Spending {
     unpolled_units_ = 0;
     if (!timed_) return 0;
     const std::int64_t now = clock_();
-    ledger_.poll(now);
-    if (now <= deadline_ns_) stall_before_deadline_ns_ = ledger_.stall_ns();
+    note_time(now);
     return now;
+  }
+
+  /// Of a stall only what lies beyond the moment when the query had to end excuses it: what was before that was time
+  /// that it could still react to.
+  void note_time(std::int64_t now) noexcept {
+    const std::int64_t stalled_before = ledger_.stall_ns();
+    ledger_.poll(now);
+    const std::int64_t stalled = ledger_.stall_ns() - stalled_before;
+    if (stalled > 0 && now > last_moment_ns_) excused_ns_ += std::min(stalled, now - last_moment_ns_);
+  }
+
+  [[nodiscard]] bool may_go_on_with_contacts(std::int64_t deadline_ns) noexcept {
+    const std::int64_t now = poll();
+    contacts_ended_ = contacts_ended_ || (contacts_reserve_ != nullptr && now >= last_moment_ns_);
+    return now < deadline_ns;
+  }
+
+  /// After a stall, caches are another's: such an ending says nothing of the next.
+  void note_contacts_ending(std::int64_t now) noexcept {
+    if (contacts_ended_ && ledger_.stalls() == 0)
+      contacts_reserve_->note(std::max<std::int64_t>(now - last_moment_ns_, 0));
+    contacts_ended_ = false;
   }
 
   void note(std::uint32_t units) noexcept {
@@ -146,10 +174,14 @@ class Spending {
   std::int64_t start_deadline_ns_ = std::numeric_limits<std::int64_t>::max();
   std::uint64_t start_units_end_ = 0;
   std::int64_t contacts_deadline_ns_ = std::numeric_limits<std::int64_t>::max();
+  std::int64_t last_moment_ns_ = std::numeric_limits<std::int64_t>::max();  ///< to begin to end in
+  EndingReserve* contacts_reserve_ = nullptr;
+  bool contacts_ended_ = false;  ///< they were told to be finished
+  std::int64_t excused_ns_ = 0;
   realtime::StallLedger ledger_;
+  std::int64_t contacts_ns_;
   std::uint64_t units_left_;
   std::uint32_t unpolled_units_ = 0;
-  std::int64_t stall_before_deadline_ns_ = 0;
   bool timed_ = false;
   bool nears_end_ = false;
   std::int64_t search_end_ns_ = 0;  ///< 0: not told to stop

@@ -60,8 +60,9 @@ bool read(int argc, char** argv, Options& options) {
     } else if (argument == "--only" && i + 1 < argc) {
       options.only = argv[++i];
     } else if (argument == "--seconds" && i + 1 < argc) {
-      seconds = std::atof(argv[++i]);
-      if (!(seconds > 0.0)) return false;
+      std::vector<double> one;
+      if (!read_list(argv[++i], one, 1e-3) || one.size() != 1) return false;
+      seconds = one.front();
     } else if (argument == "--quick") {
       options.plan.seconds = 10.0;
       options.plan.gaps_mm = {0.1};

@@ -107,5 +107,18 @@ TEST(FlushBricks, ThatTouchWithinRoundingAreNotPushedFromEndToEnd) {
   }
 }
 
+// As a stack at rest does: the sides are flush to within the rounding of a simulation, and what crosses there is
+// closed.
+TEST(FlushBricks, ThatStandExactlyOnEachOtherPushUpwards) {
+  for (const std::uint64_t units : {900U, 2000U, 1000000U}) {
+    for (const double offset : {-7.0, -9.0, -11.0}) {
+      const Found found = over_stands(11, 11, 500, {-9.0, offset, -4.0, 1.5}, Budget::work(units), 6e-5);
+      EXPECT_GT(found.contacts, 500);
+      EXPECT_EQ(found.sideways, 0) << units << " units, offsets of 1e" << offset << " m";
+      EXPECT_EQ(found.deep, 0) << units << " units, offsets of 1e" << offset << " m";
+    }
+  }
+}
+
 }  // namespace
 }  // namespace odds::query

@@ -31,8 +31,8 @@ math::Pose random_pose(math::Random& random, double size) {
 }
 
 TEST(Budget, EndsAtAnInjectedDeadlineWhateverIsAsked) {
-  // Each reading of this clock moves it by 0.5 us, as if every piece of work between two polls took that long.
-  constexpr std::int64_t step_ns = 500;
+  // Each reading of this clock moves it by 0.1 us, as if every piece of work between two polls took that long.
+  constexpr std::int64_t step_ns = 100;
   for (const volume::Kind kind : kinds) {
     const auto shape = car(4000, kind);
     auto pair = std::move(Pair::make(shape, shape)).value();
@@ -48,9 +48,9 @@ TEST(Budget, EndsAtAnInjectedDeadlineWhateverIsAsked) {
           request.budget = Budget::time(1.0 + i % 60);
           request.budget.clock = clock.clock();
           const Answer& answer = pair.run(pose, request);
-          // One piece of work may be under way when the time ends, and closing reads the clock once more; contacts
-          // twice.
-          const double allowed = (contacts > 0 ? 4.0 : 2.0) * step_ns * 1e-3;
+          // One piece of work may be under way when the time ends, and closing reads the clock once more. What contacts
+          // need to end is learnt from the queries before.
+          const double allowed = (contacts > 0 ? 10.0 : 2.0) * step_ns * 1e-3;
           EXPECT_LE(answer.cost.overshoot_us, allowed) << volume::name(kind) << " method " << static_cast<int>(method);
           // The wide engine tests 8 boxes or up to 64 pairs of triangles at once, each in a tenth of the time.
           const std::uint32_t most = kind == volume::Kind::wide ? 112 : 4;
@@ -112,6 +112,8 @@ TEST(Budget, HoldsInA1kHzLoopNetOfStalls) {
   std::uint64_t answered = 0;
   double stalls_us = 0.0;
   double gross_us = 0.0;
+  std::vector<double> undisturbed(ticks);  // after a stall the caches are another's
+  undisturbed.clear();
   math::Random random(3);
   const Request request = {.budget = Budget::time(budget_us), .max_contacts = 8};
   static_cast<void>(pair.run(random_pose(random, shape->mesh().size()), request));  // pages and caches
@@ -121,6 +123,7 @@ TEST(Budget, HoldsInA1kHzLoopNetOfStalls) {
         const Answer& answer = pair.run(random_pose(random, shape->mesh().size()), request);
         answered += answer.probability >= 0.0 && answer.probability <= 1.0 ? 1 : 0;
         net.push_back(answer.cost.net_us());
+        if (!(answer.cost.stall_us > 0.0)) undisturbed.push_back(answer.cost.gross_us);
         stalls_us += answer.cost.stall_us;
         gross_us += answer.cost.gross_us;
       });
@@ -130,14 +133,17 @@ TEST(Budget, HoldsInA1kHzLoopNetOfStalls) {
   RecordProperty("net_p999_us", std::to_string(p999));
   std::cout << "net query time p50 " << quantile(net, 0.5) << ", p99 " << quantile(net, 0.99) << ", p99.9 " << p999
             << ", max " << quantile(net, 1.0) << " us of " << net.size() << " ticks; skipped " << loop.skipped
-            << "; stalls " << 100.0 * stalls_us / gross_us << " % of the time\n";
+            << ", p99.9 " << quantile(undisturbed, 0.999) << " of " << undisturbed.size() << " without a stall; stalls "
+            << 100.0 * stalls_us / gross_us << " % of the time\n";
   if (stalls_us > 0.02 * gross_us)
     GTEST_SKIP() << "INCONCLUSIVE: " << 100.0 * stalls_us / gross_us << " % of the time was stalls";
   // Others may have come while it ran: they slow down even what is not stalled.
   const auto fitness_after = realtime::probe_fitness();
   if (!fitness_after.fit) GTEST_SKIP() << "INCONCLUSIVE: after the run " << fitness_after.reason;
   EXPECT_EQ(faults.minor_faults + faults.major_faults, 0u) << "a page fault would hide among the stalls";
-  EXPECT_LE(p999, budget_us + 1.0);
+  EXPECT_GE(undisturbed.size(), net.size() * 9 / 10) << "too many: own work without a look at the clock is no stall";
+  EXPECT_LE(quantile(undisturbed, 0.99), budget_us + 1.0);
+  EXPECT_LE(quantile(undisturbed, 0.999), budget_us + 5.0) << "two ticks; odds_bench_overshoot has more";
 }
 
 }  // namespace

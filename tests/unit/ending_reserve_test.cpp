@@ -12,7 +12,7 @@ namespace {
 
 TEST(EndingReserve, SettlesWhereFewEndingsAreLate) {
   // Endings that take 0.5 to 1.5 us.
-  EndingReserve reserve;
+  EndingReserve reserve = EndingReserves{}.search;
   math::Random random(3);
   int late = 0;
   for (int i = 0; i < 20000; ++i) {
@@ -25,11 +25,12 @@ TEST(EndingReserve, SettlesWhereFewEndingsAreLate) {
 }
 
 TEST(EndingReserve, StaysWithinBoundsWhateverHappens) {
-  EndingReserve reserve;
+  constexpr EndingReserve::Range range{600, 200, 2000, 100, 4};
+  EndingReserve reserve(range);
   for (int i = 0; i < 100; ++i) reserve.note(1'000'000'000);
-  EXPECT_EQ(reserve.ns(), EndingReserve::most_ns);
+  EXPECT_EQ(reserve.ns(), range.most_ns);
   for (int i = 0; i < 1000; ++i) reserve.note(1);
-  EXPECT_EQ(reserve.ns(), EndingReserve::least_ns);
+  EXPECT_EQ(reserve.ns(), range.least_ns);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "odds/mesh/made/by_name.hpp"
 #include "odds/query/pair.hpp"
+#include "query/way_apart.hpp"
 
 namespace odds::query {
 namespace {
@@ -33,6 +34,46 @@ TEST(LikeliestPlace, OfABrickOnABrickPushesStraight) {
     }
   }
   EXPECT_GT(guessed, 10);
+}
+
+/// From centre to centre, a brick on the end of a slab lies aside.
+TEST(LikeliestPlace, OfABrickOnTheEndOfASlabPushesStraight) {
+  int guessed = 0;
+  int sideways = 0;
+  for (const char* const name :
+       {"box:x=4,y=1,z=0.1,cells=2", "box:x=1,y=0.4,z=0.05,cells=8", "box:x=1,y=0.4,z=0.05,cells=32"}) {
+    const auto slab = made(name);
+    const Vec3 corner = slab->mesh().upper();
+    for (const int cells : {8, 11}) {
+      const auto brick = made("box:x=0.2,y=0.1,z=0.057,cells=" + std::to_string(cells));
+      for (const double apart : {1e-16, 1e-12}) {
+        for (const std::uint64_t units : {20, 100, 400, 1000, 2000}) {
+          for (const double aside : {0.0, 1.0}) {
+            auto pair = std::move(Pair::make(slab, brick)).value();
+            const Vec3 place(corner.x() - 0.1, aside * (corner.y() - 0.05), corner.z() + 0.0285 + apart);
+            const Answer& answer =
+                pair.run({Mat3::Identity(), place},
+                         {.method = Method::incremental, .budget = Budget::work(units), .max_contacts = 8});
+            if (answer.basis == Basis::proved || answer.verdict == Verdict::clear || !answer.has_cell_pair) continue;
+            ++guessed;
+            sideways += answer.cell_pair.normal.z() > -0.9 ? 1 : 0;
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GE(guessed, 10);
+  EXPECT_EQ(sideways, 0) << "of " << guessed;
+}
+
+TEST(WayApart, IsAlongTheSideOfLeastOverlap) {
+  const auto slab = made("box:x=4,y=1,z=0.1,cells=1");
+  const auto brick = made("box:x=0.2,y=0.1,z=0.057,cells=1");
+  const Mat3 turned = Eigen::AngleAxisd(0.5, Vec3::UnitX()).toRotationMatrix();
+  EXPECT_EQ(way_apart(slab->mesh(), brick->mesh(), {Mat3::Identity(), Vec3(1.9, 0.4, 0.07)}), -Vec3::UnitZ());
+  EXPECT_EQ(way_apart(slab->mesh(), brick->mesh(), {Mat3::Identity(), Vec3(1.9, 0.4, -0.07)}), Vec3::UnitZ());
+  EXPECT_EQ(way_apart(brick->mesh(), slab->mesh(), {turned, turned * Vec3(1.9, 0.4, 0.07)}), -turned.col(2));
+  EXPECT_TRUE(way_apart(slab->mesh(), slab->mesh(), {}).allFinite()) << "of bodies in each other";
 }
 
 }  // namespace

@@ -87,6 +87,10 @@ inline constexpr double shallow_share = 0.2;
 inline constexpr double round_overlap = 0.12;
 /// Cosine below which two patches push against each other. Test: ContactPatch.CrossedPlatesPartTheShortWay.
 inline constexpr double opposed = -0.3;
+/// A patch whose depth is below this part of the rim's extent, and below that part of the deepest patch's, bears
+/// nothing: rounding has left it between faces that are flush. Test: FlushBricks.ThatStandExactlyOnEachOtherPushUpwards.
+inline constexpr double bears_nothing = 1e-8;
+inline constexpr double shallow_patch = 1e-3;  ///< see bears_nothing
 /// By how much the patch with the last run's normal is preferred as the first, so that the order does not flicker.
 inline constexpr double keep_first = 1.05;
 /// An overlap that is this many times deeper than its rim is wide, more than any needle, is looked at in other

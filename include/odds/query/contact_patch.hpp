@@ -94,9 +94,10 @@ class PatchBuilder {
   PatchBuilder& operator=(PatchBuilder&&) noexcept;
 
   /// Contacts in A's mesh frame, valid until the next call. Empty only if no hit has indices in range; every number
-  /// finite. After the deadline has expired it makes one patch of what it has of the rim, within about eight
-  /// microseconds.
-  [[nodiscard]] std::span<const Contact> build(const PatchInput& input, const Deadline& deadline = {}) noexcept;
+  /// finite. After `deadline` has expired it makes one patch of what it has of the rim, hastily: some 20 microseconds
+  /// if it is let, and after `last` has expired, too, the best of what it knows by then, within about four.
+  [[nodiscard]] std::span<const Contact> build(const PatchInput& input, const Deadline& deadline = {},
+                                               const Deadline& last = {}) noexcept;
   /// Whether the last `build` was done before its deadline.
   [[nodiscard]] bool finished() const noexcept;
   /// How many pairs of triangles its contacts were made from.

@@ -1,0 +1,113 @@
+// A query's accounts under a clock that the test sets: what ends when, and what a stall excuses.
+#include "query/spending.hpp"
+
+#include <gtest/gtest.h>
+
+namespace odds::query {
+namespace {
+
+struct Query {
+  explicit Query(double budget_us) : spending(budget(budget_us), 600) {}
+  Budget budget(double us) {
+    Budget made = Budget::time(us);
+    made.clock = clock.clock();
+    return made;
+  }
+  /// Own work in pieces of half a microsecond, with a look at the clock after each.
+  void work(std::int64_t ns) {
+    for (; ns > 0; ns -= 500) {
+      clock.advance(std::min<std::int64_t>(ns, 500));
+      static_cast<void>(spending.may_make_contacts());
+    }
+  }
+  realtime::ManualClock clock;
+  Spending spending;
+};
+
+TEST(Spending, ContactsAreMadeInHasteBeforeTheyAreFinished) {
+  EndingReserve reserve({2000, 600, 4000, 400, 1});
+  Query query(20.0);
+  query.spending.reserve_for_contacts(reserve, 3000);
+  query.work(14'500);
+  EXPECT_TRUE(query.spending.may_make_contacts());
+  query.work(500);
+  EXPECT_FALSE(query.spending.may_make_contacts());
+  EXPECT_TRUE(query.spending.may_finish_contacts());
+  query.work(3'000);
+  EXPECT_FALSE(query.spending.may_finish_contacts());
+}
+
+TEST(Spending, AReserveLearnsHowLongContactsTakeToEnd) {
+  EndingReserve reserve({2000, 600, 6000, 400, 1});
+  for (int i = 0; i < 200; ++i) {
+    Query query(20.0);
+    query.spending.reserve_for_contacts(reserve);
+    while (query.spending.may_finish_contacts()) query.work(500);
+    query.work(3'000);
+    static_cast<void>(query.spending.close());
+  }
+  EXPECT_GE(reserve.ns(), 3'000);
+  EXPECT_LE(reserve.ns(), 4'000);
+}
+
+TEST(Spending, WhatIsHeardLateIsLearntToo) {
+  // A piece of 2 us without a look at the clock is under way when the time is up.
+  EndingReserve reserve({600, 600, 6000, 400, 1});
+  for (int i = 0; i < 400; ++i) {
+    Query query(20.0);
+    query.spending.reserve_for_contacts(reserve);
+    while (query.spending.may_finish_contacts()) query.clock.advance(2'000);
+    query.work(500);
+    static_cast<void>(query.spending.close());
+  }
+  EXPECT_GE(reserve.ns(), 1'500);
+}
+
+TEST(Spending, OwnWorkBeyondTheBudgetIsNeverExcused) {
+  Query query(20.0);
+  query.work(23'000);
+  const Cost cost = query.spending.close();
+  EXPECT_EQ(cost.stall_us, 0.0);
+  EXPECT_DOUBLE_EQ(cost.overshoot_us, 3.0);
+  EXPECT_DOUBLE_EQ(cost.net_overshoot_us, 3.0);
+}
+
+TEST(Spending, AStallExcusesFromTheMomentThatTheQueryHadToEnd) {
+  // 10 us of work, then 30 us away: of those 20.6 lie beyond the last moment, 600 ns before the deadline.
+  Query query(20.0);
+  query.work(10'000);
+  query.clock.advance(30'000);
+  static_cast<void>(query.spending.may_go_on());
+  query.work(1'500);
+  const Cost cost = query.spending.close();
+  EXPECT_DOUBLE_EQ(cost.overshoot_us, 21.5);
+  EXPECT_DOUBLE_EQ(cost.net_overshoot_us, 0.9) << "1.5 us of work, for which 0.6 were kept";
+}
+
+TEST(Spending, AnEarlyStallExcusesNothing) {
+  Query query(50.0);
+  query.work(10'000);
+  query.clock.advance(30'000);
+  query.work(12'000);
+  const Cost cost = query.spending.close();
+  EXPECT_DOUBLE_EQ(cost.stall_us, 30.5);
+  EXPECT_DOUBLE_EQ(cost.net_overshoot_us, 2.0) << "there was time to react to it";
+}
+
+TEST(Spending, WithinWorkUnitsNothingIsLearntAndTheClockIsNotAsked) {
+  EndingReserve reserve({2000, 600, 4000, 400, 1});
+  realtime::ManualClock clock;
+  Budget budget = Budget::work(100);
+  budget.clock = clock.clock();
+  Spending spending(budget);
+  const auto readings = clock.readings();
+  spending.reserve_for_contacts(reserve, 3000);
+  EXPECT_TRUE(spending.may_make_contacts());
+  EXPECT_TRUE(spending.may_finish_contacts());
+  EXPECT_EQ(clock.readings(), readings);
+  static_cast<void>(spending.close());
+  EXPECT_EQ(reserve.ns(), 2000);
+}
+
+}  // namespace
+}  // namespace odds::query
