@@ -228,7 +228,7 @@ int answer_pair(PairEntry& entry, std::uint64_t asked_in, dGeomID o1, dGeomID o2
 
 // A pair that nobody prepared: made now, inside the loop, and counted; a pair that cannot be made is said once.
 PairEntry* prepare_late(dGeomID o1, dGeomID o2) noexcept {
-  const PairTable::Made made = pair_table().prepare(own_data(o1), own_data(o2));
+  const PairTable::Made made = pair_table().prepare(own_data(o1), own_data(o2), false);
   if (made.inserted) {
     made.entry->asked_in.store(current_broad_phase, std::memory_order_relaxed);  // there was no entry to note it in
     count(statistics().lazy_pairs);

@@ -13,7 +13,8 @@
 namespace odds::ode {
 namespace {
 
-// Touches the workspace's memory: a short query in full overlap fills queue and hit lists as far as they go.
+// A short query in full overlap goes through the code and fills queue and hit lists as far as they go: a millisecond or
+// four, which a pair whose first query follows at once does better without.
 void warm(query::Pair& pair) noexcept {
   query::Request request;
   request.budget = query::Budget::work(2000);
@@ -25,14 +26,14 @@ void warm(query::Pair& pair) noexcept {
   pair.reset();
 }
 
-std::unique_ptr<PairEntry> make_entry(GeomData& a, GeomData& b) {
+std::unique_ptr<PairEntry> make_entry(GeomData& a, GeomData& b, bool warmed) {
   auto entry = std::make_unique<PairEntry>();
   entry->a = &a;
   entry->b = &b;
   auto pair = query::Pair::make(a.mesh->shape, b.mesh->shape);
   if (pair.ok()) {
     entry->pair.emplace(std::move(pair).value());
-    warm(*entry->pair);
+    if (warmed) warm(*entry->pair);
   } else {
     set_last_error(pair.error());
   }
@@ -90,7 +91,7 @@ PairEntry* PairTable::find(const GeomData& x, const GeomData& y) const noexcept 
   return entry;
 }
 
-PairTable::Made PairTable::prepare(GeomData& x, GeomData& y) noexcept {
+PairTable::Made PairTable::prepare(GeomData& x, GeomData& y, bool warmed) noexcept {
   try {
     const std::lock_guard lock(writers_);
     if (PairEntry* found = find(x, y)) {
@@ -100,7 +101,7 @@ PairTable::Made PairTable::prepare(GeomData& x, GeomData& y) noexcept {
     }
     GeomData& a = x.number < y.number ? x : y;
     GeomData& b = x.number < y.number ? y : x;
-    std::unique_ptr<PairEntry> entry = make_entry(a, b);
+    std::unique_ptr<PairEntry> entry = make_entry(a, b, warmed);
     a.pairs.reserve(a.pairs.size() + 1);
     b.pairs.reserve(b.pairs.size() + 1);
     a.pairs.push_back(entry.get());
@@ -180,7 +181,7 @@ int oddsPreparePair(dGeomID g1, dGeomID g2) noexcept {
   const bool failed = (is_mesh(g1) && first == nullptr) || (is_mesh(g2) && second == nullptr);
   if (failed) return 0;
   if (first == nullptr || second == nullptr) return 1;
-  const PairTable::Made made = pair_table().prepare(*first, *second);
+  const PairTable::Made made = pair_table().prepare(*first, *second, true);
   return made.entry != nullptr && made.entry->pair ? 1 : 0;
 }
 

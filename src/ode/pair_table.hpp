@@ -40,9 +40,9 @@ class PairTable {
     PairEntry* entry = nullptr;  ///< null: no memory even for the entry (last error set)
     bool inserted = false;       ///< false: was there before
   };
-  /// Finds or makes the entry and its query::Pair, and runs it once so that its memory is touched. If the pair cannot
-  /// be made the entry stays without it and the last error says why.
-  Made prepare(GeomData& x, GeomData& y) noexcept;
+  /// Finds or makes the entry and its query::Pair. `warmed`: and runs a new one as far as its memory goes. If the pair
+  /// cannot be made the entry stays without it and the last error says why.
+  Made prepare(GeomData& x, GeomData& y, bool warmed) noexcept;
 
   /// Frees every entry of this geom.
   void forget(GeomData& geom) noexcept;
