@@ -16,7 +16,8 @@ class EndingReserve {
     std::int64_t first_ns;  ///< where it starts, which is more than most endings need; then it comes down soon
     std::int64_t least_ns;
     std::int64_t most_ns;
-    std::int64_t most_rise_ns;  ///< by one ending; of an excess below 400 ns that part of 400 ns
+    std::int64_t rise_percent;  ///< by one ending: of what it took more
+    std::int64_t most_rise_ns;  ///< and no more than this
     std::int64_t fall_ns;       ///< by an ending that was shorter
   };
 
@@ -28,8 +29,7 @@ class EndingReserve {
   void note(std::int64_t took_ns) noexcept {
     const std::int64_t fall_ns = notes_ < first_notes ? (ns_ - took_ns) / 16 : range_.fall_ns;
     notes_ = std::min(notes_ + 1, first_notes);
-    // A stall must not cost more than it did.
-    const std::int64_t rise_ns = std::min<std::int64_t>(took_ns - ns_, 400) * range_.most_rise_ns / 400;
+    const std::int64_t rise_ns = std::min((took_ns - ns_) * range_.rise_percent / 100, range_.most_rise_ns);
     ns_ += took_ns > ns_ ? std::max(rise_ns, least_rise_ns) : -fall_ns;
     ns_ = std::clamp(ns_, range_.least_ns, range_.most_ns);
   }
@@ -43,14 +43,14 @@ class EndingReserve {
   int notes_ = 0;
 };
 
-/// The endings that a pair watches. One in ten searches ends later than its reserve, and then by little; of contacts,
-/// one ending in some hundreds.
+/// The endings that a pair watches. One ending in some hundreds is late; one that was late by microseconds, as of a
+/// patch that did not fit, stays away for thousands.
 struct EndingReserves {
-  EndingReserve search{{600, 200, 2000, 100, 4}};     ///< odds and place of what was left undecided
-  EndingReserve patch{{12000, 1000, 16000, 400, 1}};  ///< of a patch made hastily: witnesses, choice, writing
-  EndingReserve single{{4000, 600, 10000, 400, 1}};   ///< the same of a single contact
-  EndingReserve rough{{4000, 600, 8000, 400, 1}};     ///< one more rough contact, and writing the answer
-  EndingReserve ray{{2000, 600, 6000, 400, 1}};       ///< one ray, and writing the answer
+  EndingReserve search{{2000, 200, 5000, 50, 300, 2}};      ///< odds and place of what was left undecided
+  EndingReserve patch{{12000, 1000, 16000, 150, 3000, 1}};  ///< of a patch made hastily: witnesses, choice, writing
+  EndingReserve single{{4000, 600, 10000, 150, 3000, 1}};   ///< the same of a single contact
+  EndingReserve rough{{4000, 600, 8000, 150, 3000, 1}};     ///< one more rough contact, and writing the answer
+  EndingReserve ray{{2000, 600, 6000, 150, 3000, 1}};       ///< one ray, and writing the answer
 };
 
 }  // namespace odds::query

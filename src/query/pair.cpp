@@ -241,7 +241,10 @@ void search_and_answer(const Tree& a, const Tree& b, const PosedMeshes& meshes, 
 template <class Tree>
 void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const Request& request,
             Pair::Implementation& pair) noexcept {
-  Spending spending(request.budget, pair.endings.search.ns(),
+  // A hit that the search finds last still wants its contact, a rough one; of pages and triangles that its reserve pays
+  // for, the search has just touched some.
+  const std::int64_t last_contact_ns = request.max_contacts > 0 ? pair.endings.rough.ns() * 2 / 3 : 0;
+  Spending spending(request.budget, std::max(pair.endings.search.ns(), last_contact_ns),
                     (request.max_contacts > 1 ? pair.endings.rough : pair.endings.single).ns());
   Answer& answer = pair.answer;
   answer = {};

@@ -17,7 +17,8 @@ namespace odds::query {
 /// is asked after every piece of work that `pair` bounds (a node pair's children, one row of a leaf pair).
 class Spending {
  public:
-  /// `ending_ns`: what of the time is kept for the answer that follows a search without a proof.
+  /// `ending_ns`: what of the time is kept for the answer that follows a search without a proof, or with one that came
+  /// last; of a short time only three tenths, but `least_ending_ns`.
   /// `contacts_ns`: the same for contacts, once there is a hit to make them from.
   explicit Spending(const Budget& budget, std::int64_t ending_ns = EndingReserves{}.search.ns(),
                     std::int64_t contacts_ns = 0) noexcept
@@ -30,7 +31,8 @@ class Spending {
       timed_ = true;
       const double ns = std::clamp(budget.microseconds * 1e3, 0.0, 1e15);
       deadline_ns_ = start_ns_ + static_cast<std::int64_t>(ns);
-      search_deadline_ns_ = last_moment_ns_ = deadline_ns_ - ending_ns;
+      search_ending_ns_ = std::min(ending_ns, std::max(least_ending_ns, allowance_ns() * 3 / 10));
+      search_deadline_ns_ = last_moment_ns_ = deadline_ns_ - search_ending_ns_;
     }
   }
 
@@ -55,7 +57,8 @@ class Spending {
   void keep_time_for_contacts() noexcept {
     if (!timed_) return;
     const auto share_ns = static_cast<std::int64_t>(search_share * static_cast<double>(allowance_ns()));
-    search_deadline_ns_ = std::min({search_deadline_ns_, start_ns_ + share_ns, deadline_ns_ - contacts_ns_});
+    last_moment_ns_ = std::min(last_moment_ns_, deadline_ns_ - (caches_are_cold() ? 2 : 1) * contacts_ns_);
+    search_deadline_ns_ = std::min({search_deadline_ns_, start_ns_ + share_ns, last_moment_ns_});
   }
 
   /// Polls the clock if there is a deadline. False once the search should stop.
@@ -90,7 +93,7 @@ class Spending {
     if (!timed_) return;
     if (contacts_ended_) note_contacts_ending(poll());
     contacts_reserve_ = &reserve;
-    last_moment_ns_ = deadline_ns_ - reserve.ns();
+    last_moment_ns_ = deadline_ns_ - (caches_are_cold() ? 2 : 1) * reserve.ns();
     contacts_deadline_ns_ = last_moment_ns_ - hasty_ns;
   }
   [[nodiscard]] bool may_make_contacts() noexcept { return may_go_on_with_contacts(contacts_deadline_ns_); }
@@ -121,6 +124,8 @@ class Spending {
     return cost_;
   }
 
+  static constexpr std::int64_t least_ending_ns = 600;
+
   /// Of the time, for the search, once a hit was found and contacts are wanted.
   static constexpr double search_share = 0.5;
 
@@ -140,13 +145,26 @@ class Spending {
     return now;
   }
 
+  /// Whoever had the processor had its caches too: what is still to come takes up to twice as long.
+  [[nodiscard]] bool caches_are_cold() const noexcept { return ledger_.stalls() > 0; }
+
+  void end_earlier() noexcept {
+    search_deadline_ns_ -= search_ending_ns_;
+    if (contacts_ended_) return;
+    const std::int64_t earlier_ns = contacts_reserve_ != nullptr ? contacts_reserve_->ns() : search_ending_ns_;
+    last_moment_ns_ -= earlier_ns;
+    contacts_deadline_ns_ -= earlier_ns;
+  }
+
   /// Of a stall only what lies beyond the moment when the query had to end excuses it: what was before that was time
   /// that it could still react to.
   void note_time(std::int64_t now) noexcept {
     const std::int64_t stalled_before = ledger_.stall_ns();
     ledger_.poll(now);
     const std::int64_t stalled = ledger_.stall_ns() - stalled_before;
-    if (stalled > 0 && now > last_moment_ns_) excused_ns_ += std::min(stalled, now - last_moment_ns_);
+    if (stalled == 0) return;
+    if (now > last_moment_ns_) excused_ns_ += std::min(stalled, now - last_moment_ns_);
+    if (timed_ && ledger_.stalls() == 1) end_earlier();
   }
 
   [[nodiscard]] bool may_go_on_with_contacts(std::int64_t deadline_ns) noexcept {
@@ -179,6 +197,7 @@ class Spending {
   bool contacts_ended_ = false;  ///< they were told to be finished
   std::int64_t excused_ns_ = 0;
   realtime::StallLedger ledger_;
+  std::int64_t search_ending_ns_ = 0;  ///< kept for the answer that follows a search
   std::int64_t contacts_ns_;
   std::uint64_t units_left_;
   std::uint32_t unpolled_units_ = 0;

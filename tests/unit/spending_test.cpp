@@ -25,7 +25,7 @@ struct Query {
 };
 
 TEST(Spending, ContactsAreMadeInHasteBeforeTheyAreFinished) {
-  EndingReserve reserve({2000, 600, 4000, 400, 1});
+  EndingReserve reserve({2000, 600, 4000, 100, 400, 1});
   Query query(20.0);
   query.spending.reserve_for_contacts(reserve, 3000);
   query.work(14'500);
@@ -38,7 +38,7 @@ TEST(Spending, ContactsAreMadeInHasteBeforeTheyAreFinished) {
 }
 
 TEST(Spending, AReserveLearnsHowLongContactsTakeToEnd) {
-  EndingReserve reserve({2000, 600, 6000, 400, 1});
+  EndingReserve reserve({2000, 600, 6000, 100, 400, 1});
   for (int i = 0; i < 200; ++i) {
     Query query(20.0);
     query.spending.reserve_for_contacts(reserve);
@@ -52,7 +52,7 @@ TEST(Spending, AReserveLearnsHowLongContactsTakeToEnd) {
 
 TEST(Spending, WhatIsHeardLateIsLearntToo) {
   // A piece of 2 us without a look at the clock is under way when the time is up.
-  EndingReserve reserve({600, 600, 6000, 400, 1});
+  EndingReserve reserve({600, 600, 6000, 100, 400, 1});
   for (int i = 0; i < 400; ++i) {
     Query query(20.0);
     query.spending.reserve_for_contacts(reserve);
@@ -94,8 +94,44 @@ TEST(Spending, AnEarlyStallExcusesNothing) {
   EXPECT_DOUBLE_EQ(cost.net_overshoot_us, 2.0) << "there was time to react to it";
 }
 
+TEST(Spending, AfterAStallTwiceTheTimeIsKeptForCachesAreCold) {
+  EndingReserve reserve({2000, 600, 4000, 100, 400, 1});
+  Query query(50.0);
+  query.spending.reserve_for_contacts(reserve, 3000);
+  query.work(10'000);
+  query.clock.advance(10'000);
+  query.work(23'000);  // 43 us
+  EXPECT_TRUE(query.spending.may_finish_contacts());
+  EXPECT_FALSE(query.spending.may_make_contacts()) << "2 + 2 + 3 us before the end";
+  query.clock.advance(10'000);
+  EXPECT_FALSE(query.spending.may_finish_contacts());
+  EXPECT_DOUBLE_EQ(query.spending.close().net_overshoot_us, 0.0) << "the second is excused from 46 us on";
+}
+
+TEST(Spending, AStallBeforeContactsAreBegunCoolsTheirEndingToo) {
+  EndingReserve reserve({2000, 600, 4000, 100, 400, 1});
+  Query query(50.0);
+  query.clock.advance(10'000);
+  EXPECT_TRUE(query.spending.may_go_on());
+  query.spending.reserve_for_contacts(reserve);
+  query.work(35'500);
+  EXPECT_TRUE(query.spending.may_finish_contacts());
+  query.work(500);
+  EXPECT_FALSE(query.spending.may_finish_contacts()) << "46 us";
+}
+
+TEST(Spending, AfterAStallASearchEndsEarlierToo) {
+  Query query(20.0);
+  query.clock.advance(10'000);
+  EXPECT_TRUE(query.spending.may_go_on());
+  query.clock.advance(8'700);
+  EXPECT_TRUE(query.spending.may_go_on());
+  query.clock.advance(100);
+  EXPECT_FALSE(query.spending.may_go_on()) << "twice 600 ns before the end";
+}
+
 TEST(Spending, WithinWorkUnitsNothingIsLearntAndTheClockIsNotAsked) {
-  EndingReserve reserve({2000, 600, 4000, 400, 1});
+  EndingReserve reserve({2000, 600, 4000, 100, 400, 1});
   realtime::ManualClock clock;
   Budget budget = Budget::work(100);
   budget.clock = clock.clock();
