@@ -8,12 +8,12 @@
 
 namespace odds::ode {
 
-/// One of `count` points of a pair, as a row of the solver that yields so much that its force is what spring and damper
-/// give by depth and velocity of now, to a millionth; the solver then bounds friction by it. The damper does not turn
-/// an approach round within the step, and the force brings bodies apart no faster than
-/// `max_correcting_velocity_m_per_s`, both by the mass that the point feels. Null bodies stand still; one of the two
-/// moves. The world's greatest correcting velocity must be infinite.
-[[nodiscard]] dContact penalty_rows(const ContactPoint& point, const dContactGeom& found, std::size_t count, dBodyID a,
-                                    dBodyID b, double step_s, double max_correcting_velocity_m_per_s) noexcept;
+/// A point of contact as a row of the solver: a spring, whose force is that of the depth of now, and a damper, which
+/// the solver solves with everything else, so that it takes energy away however many pairs a body is in. Friction is
+/// bounded by their sum. Where the row of a compliant contact, held to `max_correcting_velocity_m_per_s`, pushes less
+/// at the velocity of now, it is that one. Without damping the row yields to its force to a millionth. Null bodies
+/// stand still; one of the two moves. The world's greatest correcting velocity must be infinite.
+[[nodiscard]] dContact penalty_rows(const ContactPoint& point, const dContactGeom& found, dBodyID a, dBodyID b,
+                                    double step_s, double max_correcting_velocity_m_per_s) noexcept;
 
 }  // namespace odds::ode

@@ -76,7 +76,7 @@ struct World::Implementation {
   Result<Body*> add(std::shared_ptr<const query::Shape> shape, const math::Pose& pose, const std::string& name);
   std::optional<Error> prepare_pairs();
   void warm_up_solver();
-  void add_contact(const ContactPoint& point, std::size_t count, const dContactGeom& found, dBodyID a, dBodyID b);
+  void add_contact(const ContactPoint& point, const dContactGeom& found, dBodyID a, dBodyID b);
   void note_momenta();
   void note_contacts();
   void apply_damping();
@@ -152,7 +152,7 @@ void World::Implementation::warm_up_solver() {
     Eigen::Map<Vec3>(geom.pos) = vector_of(dBodyGetPosition(body.body)) - 1e-3 * direction;
     ContactPoint point = contact_point(geom, 1, options.contact, false, body.body, nullptr);
     if (options.angular_friction) point.surface.rolling_m = point.surface.spinning_m = 1e-3;
-    add_contact(point, 1, geom, body.body, nullptr);
+    add_contact(point, geom, body.body, nullptr);
   };
   const ContactModel asked = options.contact;
   options.contact.friction = 1.0;
@@ -200,13 +200,10 @@ void World::Implementation::near(void* self, dGeomID a, dGeomID b) noexcept {
   dContactGeom geoms{};
   geoms.g1 = a;
   geoms.g2 = b;
-  for (const ContactPoint& point : meeting.contacts) {
-    world.add_contact(point, meeting.contacts.size(), geoms, body_a, body_b);
-  }
+  for (const ContactPoint& point : meeting.contacts) world.add_contact(point, geoms, body_a, body_b);
 }
 
-void World::Implementation::add_contact(const ContactPoint& point, std::size_t count, const dContactGeom& found,
-                                        dBodyID a, dBodyID b) {
+void World::Implementation::add_contact(const ContactPoint& point, const dContactGeom& found, dBodyID a, dBodyID b) {
   if (!can_be_solved(point) || contacts_made >= options.max_contacts_per_step) {
     ++summary.contacts_left_out;
     return;
@@ -214,7 +211,7 @@ void World::Implementation::add_contact(const ContactPoint& point, std::size_t c
   const Surface& surface = point.surface;
   const dContact contact =
       options.contact.law == ContactLaw::penalty
-          ? penalty_rows(point, found, count, a, b, options.step_s, options.contact.max_correcting_velocity_m_per_s)
+          ? penalty_rows(point, found, a, b, options.step_s, options.contact.max_correcting_velocity_m_per_s)
           : contact_rows(point, found, options.step_s);
   dJointAttach(dJointCreateContact(world, contacts, &contact), a, b);
   ++summary.contacts;

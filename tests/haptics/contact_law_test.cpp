@@ -1,6 +1,7 @@
 // The laws of contact: a compliant row, a penalty force, a constraint.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "haptics/on_floor.hpp"
@@ -10,12 +11,49 @@ namespace {
 
 constexpr double g = 9.81;
 
+// Kinetic and potential, of all bodies that move, J.
+double energy_of(Simulation& simulation) {
+  double sum = 0.0;
+  for (std::uint32_t i = 0; i < simulation.world().body_count(); ++i) {
+    if (!simulation.world().is_dynamic({i})) continue;
+    const ode::BodyState s = simulation.world().state({i});
+    const ode::MassProperties& m = simulation.world().mass({i});
+    const Vec3 spin = s.pose.rotation.transpose() * s.angular_velocity_rad_per_s;
+    sum += 0.5 * m.mass_kg * s.velocity_m_per_s.squaredNorm() + 0.5 * spin.dot(m.inertia_kg_m2 * spin) +
+           m.mass_kg * g * (s.pose * m.center_m).z();
+  }
+  return sum;
+}
+
+// Floors side by side, two or four, with tops at z = 0, that meet at the origin: what lies there has a pair with each.
+std::string on_tiles(int count, const std::string& rest) {
+  std::string text =
+      "format = \"odds.scene/1\"\n[loop]\nseconds = 2\n[query]\nwork_units = 20000\n"
+      "[[mesh]]\nname = \"tile\"\nfile = \"made:box:x=0.2,y=0.2,z=0.1\"\n"
+      "[[mesh]]\nname = \"ball\"\nfile = \"made:icosphere:radius=0.02\"\n";
+  for (int i = 0; i < count; ++i) {
+    const std::string x = i % 2 == 0 ? "0.1" : "-0.1";
+    const std::string y = count == 2 ? "0" : i < 2 ? "0.1" : "-0.1";
+    text += "[[body]]\nname = \"tile" + std::to_string(i) + "\"\nmesh = \"tile\"\nposition_m = [" + x + ", " + y +
+            ", -0.05]\n";
+  }
+  return text + rest;
+}
+
 class ContactLaw : public testing::TestWithParam<const char*> {
  protected:
   static std::string law(const std::string& more = "") {
     return "[effects.contact]\nlaw = \"" + std::string(GetParam()) + "\"\n" + more;
   }
   static bool yields() { return GetParam() != std::string("constraint"); }
+  // The most energy within so many ticks, in terms of that at their beginning.
+  static double gain(Simulation& simulation, int ticks) {
+    const double begun = energy_of(simulation);
+    double most = 0.0;
+    run_ticks(simulation, ticks,
+              [&](int, const haptics::TickRecord&) { most = std::max(most, energy_of(simulation)); });
+    return most / begun;
+  }
 };
 
 TEST_P(ContactLaw, ABodyRestsAsDeepAsItSays) {
@@ -79,17 +117,34 @@ TEST_P(ContactLaw, ABounceGivesNoMoreThanTheFall) {
         simulate(on_floor(moving("thing", mesh, 0, 0.25) + law(yields() ? "damping_ns_per_m = 0\n" : "") + gravity +
                           "[effects.friction]\nmu = 0.4\n"));
     throw_body(*simulation, 1, Vec3(0.5, 0, -0.5), Vec3(1, 3, 2));
-    const auto energy = [&] {
-      const ode::BodyState s = simulation->world().state({1});
-      const ode::MassProperties& m = simulation->world().mass({1});
-      const Vec3 spin = s.pose.rotation.transpose() * s.angular_velocity_rad_per_s;
-      return 0.5 * m.mass_kg * s.velocity_m_per_s.squaredNorm() + 0.5 * spin.dot(m.inertia_kg_m2 * spin) +
-             m.mass_kg * g * (s.pose * m.center_m).z();
-    };
-    const double begun = energy();
-    double most = 0.0;
-    run_ticks(*simulation, 1500, [&](int, const haptics::TickRecord&) { most = std::max(most, energy()); });
-    EXPECT_LT(most, begun * 1.02) << mesh;
+    EXPECT_LT(gain(*simulation, 1500), 1.02) << mesh;
+  }
+}
+
+TEST_P(ContactLaw, ABodyInSeveralPairsGainsNoMoreThanInOne) {
+  for (const char* tank : {"", "[effects.energy_tank]\n"}) {
+    for (const int tiles : {2, 4}) {
+      for (const double mass_kg : {0.01, 0.05}) {
+        for (const char* pair : {"stiffness_n_per_m = 1000\ndamping_ns_per_m = 20\n",
+                                 "stiffness_n_per_m = 100\ndamping_ns_per_m = 100\n"}) {
+          const auto simulation = simulate(
+              on_tiles(tiles, moving("ball", "ball", 0, 0.07, mass_kg) + law(yields() ? pair : "") + gravity + tank));
+          EXPECT_LT(gain(*simulation, 2000), 1.02) << tiles << " tiles, " << mass_kg << " kg, " << pair << tank;
+        }
+      }
+    }
+  }
+}
+
+TEST_P(ContactLaw, ALightBodyUnderAHeavyOneGainsNothing) {
+  for (const char* tank : {"", "[effects.energy_tank]\n"}) {
+    const auto simulation = simulate(on_floor(
+        moving("light", "cube", 0, 0.0199, 0.01) + moving("heavy", "bar", 0, 0.0898, 2.0) +
+        law(yields() ? "stiffness_n_per_m = 2400\n" : "") + gravity + "[effects.friction]\nmu = 0.8\n" + tank));
+    EXPECT_LT(gain(*simulation, 2000), 1.02) << tank;
+    const double weight_n = 2.01 * g;
+    const double deepest_m = yields() ? 2 * weight_n / 2400 : 1e-4;
+    EXPECT_GT(simulation->world().state({1}).pose.translation.z(), 0.02 - deepest_m) << "it is not pressed through";
   }
 }
 

@@ -35,6 +35,7 @@ inline std::string trimmed(std::string text) {
   for (const std::string name : {"ball", "cube", "bar", "slab"}) {
     if (text.find("mesh = \"" + name + "\"") != std::string::npos) continue;
     const std::size_t begin = text.find("[[mesh]]\nname = \"" + name + "\"");
+    if (begin == std::string::npos) continue;
     const std::size_t end = text.find("[[", begin + 2);
     text.erase(begin, end - begin);
   }
