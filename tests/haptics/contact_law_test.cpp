@@ -175,10 +175,28 @@ TEST_P(ContactLaw, TheImpulseOfContactsCarriesTheWeight) {
 }
 
 TEST_P(ContactLaw, AnEmptyTankOnlyStopsAnApproach) {
+  constexpr double thrown_m_per_s = 0.5;
   const auto simulation =
       simulate(on_floor(moving("ball", "ball", 0, 0.005) + law() + "[effects.energy_tank]\ninitial_j = 0\n"));
   run_ticks(*simulation, 500);
   EXPECT_NEAR(simulation->world().state({1}).pose.translation.z(), 0.005, 1e-6) << "it may not push";
+  throw_body(*simulation, 1, Vec3(0, 0, -thrown_m_per_s));
+  run_ticks(*simulation, 1);
+  const double left = yields() ? 1.0 / (1.0 + 0.001 * (20 + 0.001 * 20000) / 0.1) : 0.0;
+  EXPECT_NEAR(simulation->world().state({1}).velocity_m_per_s.z(), -left * thrown_m_per_s, 0.01 * thrown_m_per_s)
+      << "it is slowed, and not turned round";
+  // What it took from the ball it may give back, and no more but for the step that empties it.
+  double sum_j = 0.0;
+  double most_j = 0.0;
+  double largest_j = 0.0;
+  run_ticks(*simulation, 500, [&](int, const haptics::TickRecord& record) {
+    sum_j += record.contact_work_j;
+    most_j = std::max(most_j, sum_j);
+    largest_j = std::max(largest_j, record.contact_work_j);
+  });
+  const double taken_j = 0.5 * 0.1 * thrown_m_per_s * thrown_m_per_s * (1.0 - left * left);
+  EXPECT_LE(most_j, taken_j + largest_j);
+  EXPECT_GT(simulation->world().state({1}).pose.translation.z(), 0.0) << "it has not gone through";
 }
 
 INSTANTIATE_TEST_SUITE_P(Laws, ContactLaw, testing::Values("compliant", "penalty", "constraint"),
