@@ -35,8 +35,19 @@ void EffectSet::configure(ode::WorldOptions& options) const {
   }
 }
 
+std::optional<Error> EffectSet::check(const ode::WorldOptions& options) const {
+  for (const Entry& entry : entries_) {
+    auto error = entry.effect->check(options);
+    if (!error) continue;
+    if (error->place.empty()) error->place = entry.cost.place.text();
+    return error;
+  }
+  return std::nullopt;
+}
+
 std::optional<Error> EffectSet::bind(ode::World& world) {
   clock_ = world.options().clock;
+  if (auto error = check(world.options())) return error;
   for (Entry& entry : entries_) {
     if (auto error = entry.effect->bind(world)) {
       error->place = entry.cost.place.text();

@@ -80,7 +80,10 @@ std::optional<Error> read_effects(const Settings& settings, Scene& scene) {
     if (!made) return made.error();
     if (auto error = check(scene, {&asked, std::move(made).value()})) return error;
   }
-  return std::nullopt;
+  const std::unique_ptr<haptics::EffectSet> together = scene.make_effects();
+  auto error = together->check(scene.world_options(*together));
+  if (error) error->file = scene.file;
+  return error;
 }
 
 const AskedEffect* Scene::find_effect(std::string_view effect_name) const {

@@ -215,21 +215,38 @@ TEST(ContactLaws, RefuseWhatDoesNothing) {
   says("law = \"constraint\"\nerror_reduction = 1.3\n", "out of range");
 }
 
-std::string made_says(const std::string& effects) {
-  Result<Scene> parsed = parse_scene(trimmed(on_floor(moving("ball", "ball", 0, 0.1) + effects)), "test.toml", ".");
-  if (!parsed) return parsed.error().message();
-  const auto made = Simulation::make(std::move(parsed).value(), {});
-  return made.ok() ? "taken" : made.error().message();
-}
-
 TEST(ContactLaws, RefuseEffectsThatTheyCannotCarry) {
-  const std::string bounce = "[effects.restitution]\ncoefficient = 0.5\n";
-  const std::string thick = "[effects.friction]\nmu = 0.1\nviscous_ns_per_m = 1\n";
-  const auto law = [](const std::string& name) { return "[effects.contact]\nlaw = \"" + name + "\"\n"; };
-  EXPECT_NE(made_says(law("penalty") + bounce).find("knows no impact"), std::string::npos);
-  EXPECT_NE(made_says(law("constraint") + thick).find("viscous friction"), std::string::npos);
-  EXPECT_EQ(made_says(law("constraint") + bounce), "taken");
-  EXPECT_EQ(made_says(law("penalty") + thick), "taken");
+  const auto bounce = [](const char* header) { return std::string(header) + "\ncoefficient = 0.5\n"; };
+  const auto thick = [](const char* header) { return std::string(header) + "\nmu = 0.1\nviscous_ns_per_m = 1\n"; };
+  const auto law = [](const std::string& name, const char* header = "[effects.contact]") {
+    return header + ("\nlaw = \"" + name + "\"\n");
+  };
+  const std::string ball = moving("ball", "ball", 0, 0.1);
+  const auto scene = [&](const std::string& effects) { return on_floor(ball + effects); };
+  // What reading the scene says, and the place of the line that it has to name.
+  const auto says = [&](const std::string& effects, const char* line, const char* what, const char* remedy) {
+    const std::string text = trimmed(scene(effects));
+    const auto number = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.find(line)), '\n');
+    const std::string message = refusal(scene(effects));
+    EXPECT_EQ(message.find("test.toml:" + std::to_string(number) + ":"), 0U) << message;
+    EXPECT_NE(message.find(what), std::string::npos) << message;
+    EXPECT_NE(message.find(remedy), std::string::npos) << message;
+  };
+  for (const char* contact_header : {"[effects.contact]", "[[effects.contact]]"}) {
+    for (const char* header : {"[effects.restitution]", "[[effects.restitution]]"}) {
+      says(law("penalty", contact_header) + bounce(header), header, "knows no impact", "take law = \"compliant\" or");
+    }
+    for (const char* header : {"[effects.friction]", "[[effects.friction]]"}) {
+      says(thick(header) + law("constraint", contact_header), "viscous_ns_per_m", "viscous friction",
+           "remove 'viscous_ns_per_m'");
+    }
+  }
+  for (const std::string& effects :
+       {law("constraint") + bounce("[effects.restitution]"), law("penalty") + thick("[effects.friction]"),
+        bounce("[effects.restitution]") + "[effects.contact]\n"}) {
+    EXPECT_EQ(refusal(scene(effects)), "taken");
+    EXPECT_NE(simulate(scene(effects)), nullptr);
+  }
 }
 
 TEST(ContactLaws, APenaltyTooStiffForItsBodyIsSaid) {

@@ -303,6 +303,18 @@ TEST_F(SceneSchema, RefusesWhatDisagrees) {
        R"([{"op": "add", "path": "/physics/ticks_per_step", "value": 4},
            {"op": "add", "path": "/device", "value": {"hand": {"type": "null"}}}])"},
       {"friction without contact", R"([{"op": "remove", "path": "/effects/contact"}])"},
+      {"restitution by a penalty",
+       R"([{"op": "add", "path": "/effects/contact/law", "value": "penalty"},
+           {"op": "add", "path": "/effects/restitution", "value": {"coefficient": 0.5}}])"},
+      {"restitution by a penalty, in lists",
+       R"([{"op": "replace", "path": "/effects/contact", "value": [{"law": "penalty"}]},
+           {"op": "add", "path": "/effects/restitution", "value": [{"coefficient": 0.5}]}])"},
+      {"viscous friction by a constraint",
+       R"([{"op": "add", "path": "/effects/contact/law", "value": "constraint"},
+           {"op": "add", "path": "/effects/friction/viscous_ns_per_m", "value": 0.5}])"},
+      {"viscous friction by a constraint, in lists",
+       R"([{"op": "replace", "path": "/effects/contact", "value": [{"law": "constraint"}]},
+           {"op": "replace", "path": "/effects/friction", "value": [{"mu": 0.5, "viscous_ns_per_m": 0.5}]}])"},
       {"two gravities", R"([{"op": "add", "path": "/effects/gravity", "value": [{}, {}]}])"},
       {"another format", R"([{"op": "replace", "path": "/format", "value": "odds.scene/2"}])"},
       {"no body", R"([{"op": "replace", "path": "/body", "value": []}])"}};
@@ -313,13 +325,41 @@ TEST_F(SceneSchema, RefusesWhatDisagrees) {
   }
 }
 
-TEST_F(SceneSchema, FitsEverySceneOfTheTree) {
-  std::vector<std::filesystem::path> files = {source / "tests/fuzz/seeds/every_effect.toml",
-                                              source / "tests/fuzz/seeds/contact_laws.toml"};
-  for (const auto& entry : std::filesystem::directory_iterator(source / "demos/scenes")) {
-    if (entry.path().extension() == ".toml") files.push_back(entry.path());
+TEST_F(SceneSchema, TakesEffectsThatALawCarries) {
+  const std::vector<std::pair<const char*, const char*>> agreeing = {
+      {"restitution of a constraint",
+       R"([{"op": "add", "path": "/effects/contact/law", "value": "constraint"},
+           {"op": "add", "path": "/effects/restitution", "value": {"coefficient": 0.5}}])"},
+      {"no viscosity in the friction of a constraint",
+       R"([{"op": "add", "path": "/effects/contact/law", "value": "constraint"},
+           {"op": "add", "path": "/effects/friction/viscous_ns_per_m", "value": 0}])"},
+      {"no restitution by a penalty, in a list",
+       R"([{"op": "add", "path": "/effects/contact/law", "value": "penalty"},
+           {"op": "add", "path": "/effects/restitution", "value": []}])"},
+      {"friction of a constraint without the key, in lists",
+       R"([{"op": "replace", "path": "/effects/contact", "value": [{"law": "constraint"}]},
+           {"op": "replace", "path": "/effects/friction", "value": [{"mu": 0.5}]}])"},
+      {"restitution of the law that is taken where none is named",
+       R"([{"op": "replace", "path": "/effects/contact", "value": [{}]},
+           {"op": "add", "path": "/effects/restitution", "value": {"coefficient": 0.5}}])"},
+      {"viscous friction by a penalty",
+       R"([{"op": "add", "path": "/effects/contact/law", "value": "penalty"},
+           {"op": "add", "path": "/effects/friction/viscous_ns_per_m", "value": 0.5}])"}};
+  for (const auto& [what, patch] : agreeing) {
+    const Json document = base().patch(Json::parse(patch));
+    EXPECT_FALSE(refusal(document)) << what;
+    EXPECT_TRUE(fits(document)) << what;
   }
-  EXPECT_GT(files.size(), 7U);
+}
+
+TEST_F(SceneSchema, FitsEverySceneOfTheTree) {
+  std::vector<std::filesystem::path> files;
+  for (const char* folder : {"tests/fuzz/seeds", "demos/scenes"}) {
+    for (const auto& entry : std::filesystem::directory_iterator(source / folder)) {
+      if (entry.path().extension() == ".toml") files.push_back(entry.path());
+    }
+  }
+  EXPECT_GT(files.size(), 9U);
   for (const auto& file : files) {
     const auto settings = parse_toml(contents_of(file), file.string());
     ASSERT_TRUE(settings.ok()) << settings.error().message();

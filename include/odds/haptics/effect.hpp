@@ -97,6 +97,9 @@ class Effect {
 
   /// Sets what it wants of the world, before that is made.
   virtual void configure(ode::WorldOptions& /*options*/) const {}
+  /// Refuses a world that the effects of the scene together ask for, e.g. a law of contact that it cannot act in. The
+  /// place is that of a key, or empty for that of its table. Asked when a scene is read, and again before bind().
+  [[nodiscard]] virtual std::optional<Error> check(const ode::WorldOptions& /*options*/) const { return std::nullopt; }
   /// Once the world is prepared. May allocate, and refuse the bodies that it finds.
   [[nodiscard]] virtual std::optional<Error> bind(const ode::World& /*world*/) { return std::nullopt; }
   /// At the start of a run: forgets what it kept from ticks.

@@ -34,8 +34,10 @@ class EffectSet {
   /// Applies what the effects want of the world: forces, contact model, and how much the query has to find out.
   /// Effects that are switched off want nothing.
   void configure(ode::WorldOptions& options) const;
+  /// The first refusal of these options by an effect, with its place.
+  [[nodiscard]] std::optional<Error> check(const ode::WorldOptions& options) const;
   /// Connects with the world, which outlives the set, is prepared, and calls back at meetings from now on. Costs are
-  /// by the world's clock. An effect's refusal names the place that asked for it.
+  /// by the world's clock. An effect's refusal, of check() too, names the place that asked for it.
   [[nodiscard]] std::optional<Error> bind(ode::World& world);
   /// At the start of a run; costs begin anew.
   void reset() noexcept;

@@ -13,6 +13,7 @@ struct Parameters {
   double static_mu = 0.0;         // at rest; mu where the scene gives none
   double stick_m_per_s = 0.01;    // below about this slip the static one holds (Stribeck)
   double viscous_ns_per_m = 0.0;  // of a pair
+  Place viscous_place;
 };
 
 class Friction final : public Effect {
@@ -25,9 +26,10 @@ class Friction final : public Effect {
   [[nodiscard]] std::string_view evaluates() const noexcept override { return "contacts"; }
   [[nodiscard]] std::string_view rests_on() const noexcept override { return "contact"; }
   void configure(ode::WorldOptions& options) const override { options.contact.friction = parameters_.mu; }
-  [[nodiscard]] std::optional<Error> bind(const ode::World& world) override {
-    if (!(parameters_.viscous_ns_per_m > 0.0) || world.options().contact.law != ode::ContactLaw::constraint) return {};
-    return Error{"", "", "viscous friction needs the normal force, which a constraint tells only when it is solved",
+  [[nodiscard]] std::optional<Error> check(const ode::WorldOptions& options) const override {
+    if (!(parameters_.viscous_ns_per_m > 0.0) || options.contact.law != ode::ContactLaw::constraint) return {};
+    return Error{"", parameters_.viscous_place.text(),
+                 "viscous friction needs the normal force, which a constraint tells only when it is solved",
                  "take law = \"compliant\" or \"penalty\" in [effects.contact], or remove 'viscous_ns_per_m'"};
   }
   std::uint32_t meet(const TickView&, ode::Meeting& meeting) noexcept override {
@@ -72,6 +74,7 @@ Result<std::unique_ptr<Effect>> make_friction(const EffectRequest& request) {
   }
   reader.number("stick_m_per_s", Range::positive(), parameters.stick_m_per_s);
   reader.number("viscous_ns_per_m", Range::not_negative(), parameters.viscous_ns_per_m);
+  parameters.viscous_place = reader.place_of("viscous_ns_per_m");
   if (reader.has("stick_m_per_s") && !reader.has("static_mu")) {
     reader.reject("stick_m_per_s", "without 'static_mu' nothing sticks", "add 'static_mu', or remove this key");
   }

@@ -13,8 +13,8 @@ class Restitution final : public Effect {
   [[nodiscard]] std::uint32_t stages() const noexcept override { return stage_meeting; }
   [[nodiscard]] std::string_view evaluates() const noexcept override { return "contacts"; }
   [[nodiscard]] std::string_view rests_on() const noexcept override { return "contact"; }
-  [[nodiscard]] std::optional<Error> bind(const ode::World& world) override {
-    if (world.options().contact.law != ode::ContactLaw::penalty) return std::nullopt;
+  [[nodiscard]] std::optional<Error> check(const ode::WorldOptions& options) const override {
+    if (options.contact.law != ode::ContactLaw::penalty) return std::nullopt;
     return Error{"", "", "a penalty force knows no impact, and so no restitution",
                  "take law = \"compliant\" or \"constraint\" in [effects.contact], or remove [effects.restitution]"};
   }

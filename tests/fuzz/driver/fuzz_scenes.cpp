@@ -97,12 +97,11 @@ std::string read_whole(const std::filesystem::path& path) {
 
 std::vector<std::string> scene_texts() {
   std::vector<std::string> texts;
-  for (const auto& entry :
-       std::filesystem::directory_iterator(std::filesystem::path(ODDS_SOURCE_DIR) / "demos/scenes")) {
-    texts.push_back(read_whole(entry.path()));
+  for (const char* folder : {"demos/scenes", "tests/fuzz/seeds"}) {
+    for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(ODDS_SOURCE_DIR) / folder)) {
+      if (entry.path().extension() == ".toml") texts.push_back(read_whole(entry.path()));
+    }
   }
-  for (const char* seed : {"every_effect.toml", "contact_laws.toml"})
-    texts.push_back(read_whole(std::filesystem::path(ODDS_SOURCE_DIR) / "tests/fuzz/seeds" / seed));
   std::sort(texts.begin(), texts.end());
   return texts;
 }
