@@ -21,6 +21,14 @@ std::uint32_t EffectSet::needs() const noexcept {
   return needs;
 }
 
+double EffectSet::pair_stiffness_n_per_m(ode::BodyId a, ode::BodyId b, double law) const noexcept {
+  double stiffness = law;
+  for (const Entry& entry : entries_) {
+    if (entry.acts) stiffness = entry.effect->pair_stiffness_n_per_m(a, b, stiffness);
+  }
+  return stiffness;
+}
+
 void EffectSet::configure(ode::WorldOptions& options) const {
   const std::uint32_t all = needs();
   const bool one = (all & (need_one_contact | need_patch)) != 0;

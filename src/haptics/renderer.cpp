@@ -62,6 +62,7 @@ bool Renderer::begin() noexcept {
   rescued_steps_ = 0;
   contacts_left_out_ = 0;
   pairs_left_out_ = 0;
+  solver_messages_ = 0;
   frame_overshoot_us_ = 0.0;
   effects_->reset();
   world_->abandon_step();
@@ -244,6 +245,7 @@ void Renderer::tick(std::int64_t now_ns, TickRecord& record) noexcept {
   copy(step, record);
   contacts_left_out_ += step.contacts_left_out;
   pairs_left_out_ += step.pairs_left_out;
+  solver_messages_ += step.solver_messages;
   frame_overshoot_us_ = std::max(frame_overshoot_us_, step.frame_overshoot_us);
   if (step.bodies_slowed + step.bodies_recovered > 0) ++rescued_steps_;
   if (hand_) {

@@ -43,6 +43,7 @@ dContact penalty_rows(const ContactPoint& point, const dContactGeom& found, dBod
   }
   dContact contact = contact_rows(point, found, step_s);
   contact.surface.mode |= dContactMotionN;
+  if (surface.pushes) contact.surface.mode &= ~dContactBounce;  // it would take the spring's speed for an approach
   contact.surface.soft_erp = 0.0;
   contact.surface.soft_cfm = 1.0 / weight;
   contact.surface.motionN = at_rest;

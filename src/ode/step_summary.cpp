@@ -28,6 +28,7 @@ void StepSummary::add(const StepSummary& next) noexcept {
   pairs_left_out += next.pairs_left_out;
   frame_overshoot_us = std::max(frame_overshoot_us, next.frame_overshoot_us);
   contacts_left_out += next.contacts_left_out;
+  solver_messages += next.solver_messages;
   max_depth_m = std::max(max_depth_m, next.max_depth_m);
   collision_us += next.collision_us;
   step_us += next.step_us;

@@ -368,7 +368,10 @@ StepSummary World::step() noexcept {
   if (measures) self.note_momenta();
   ++self.summary.solver_calls;
   self.summary.bodies_stepped = self.dynamic_bodies;
+  const std::uint64_t complaints = solver_messages.load(std::memory_order_relaxed);
   self.options.solver == Solver::exact ? dWorldStep(self.world, h) : dWorldQuickStep(self.world, h);
+  self.summary.solver_messages =
+      static_cast<std::uint32_t>(solver_messages.load(std::memory_order_relaxed) - complaints);
   dJointGroupEmpty(self.contacts);
   if (measures) self.note_contacts();
   for (const auto& body : self.bodies) {

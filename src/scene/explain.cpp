@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "odds/haptics/effect_registry.hpp"
@@ -170,8 +171,9 @@ Result<Explanation> explain(const Scene& asked, std::uint64_t samples,
   explanation.ticks = totals.ticks;
   explanation.step_us = percentile(whole, 0.5);
   explanation.warnings = simulation.warnings();
-  if (std::string warning = simulation.workspace_warning(); !warning.empty())
-    explanation.warnings.push_back(std::move(warning));
+  for (std::string& warning : std::array{simulation.workspace_warning(), simulation.solver_warning()}) {
+    if (!warning.empty()) explanation.warnings.push_back(std::move(warning));
+  }
   explanation.device = device_line(scene);
   explanation.effects = lines_of(simulation, differences, evaluations, totals);
   return explanation;

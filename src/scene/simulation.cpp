@@ -105,7 +105,7 @@ std::optional<Error> Simulation::load() {
     error->file = scene_.file;
     return error;
   }
-  if (device_) warn_of_effects();
+  warn_of_effects();
   renderer_->set_substeps({scene_.substep_way_m, scene_.most_substeps});
   if (!renderer_->begin()) {
     return Error{scene_.file, scene_.device->place.text(),
@@ -159,11 +159,15 @@ std::optional<Error> Simulation::add_hand() {
 
 // After bind(): some depend on the bodies.
 void Simulation::warn_of_effects() {
+  for (std::size_t i = 0; i < effects_->size(); ++i) {
+    for (std::string& warning : effects_->effect(i).warnings(*effects_)) warnings_.push_back(std::move(warning));
+  }
+  if (!device_) return;
   haptics::DeviceSpec spec = device_->spec();
   if (scene_.device->physical_damping_ns_per_m)
     spec.physical_damping_ns_per_m = *scene_.device->physical_damping_ns_per_m;
   for (std::size_t i = 0; i < effects_->size(); ++i) {
-    for (std::string& warning : effects_->effect(i).warnings(spec, scene_.device->scale, scene_.loop.period_s()))
+    for (std::string& warning : effects_->effect(i).device_warnings(spec, scene_.device->scale, scene_.loop.period_s()))
       warnings_.push_back(std::move(warning));
   }
 }
@@ -177,6 +181,16 @@ std::string Simulation::workspace_warning() const {
       "the device '{}' went {:.4g} m from the centre of its workspace, which ends at {:.4g} m: a real one of its kind "
       "could not follow; give a larger workspace_scale, or another workspace_origin_m",
       device_->spec().name, farthest_m, radius_m);
+}
+
+std::string Simulation::solver_warning() const {
+  const std::uint64_t count = renderer_->solver_messages();
+  if (count == 0) return {};
+  return fmt::format(
+      "ODE's solver complained {} times (its 'LCP internal error' and the like): it gave up on a part of the contacts, "
+      "whose forces may be wrong there; give law = \"compliant\" with less stiffness, fewer contacts, or [physics] "
+      "solver = \"iterative\"",
+      count);
 }
 
 PoseTrack Simulation::make_pose_track() const {
@@ -256,6 +270,7 @@ RunOutcome Simulation::run(const std::stop_token& stop) {
   outcome.rescued_steps = renderer_->rescued_steps();
   outcome.contacts_left_out = renderer_->contacts_left_out();
   outcome.pairs_left_out = renderer_->pairs_left_out();
+  outcome.solver_messages = renderer_->solver_messages();
   outcome.frame_overshoot_us = renderer_->frame_overshoot_us();
   for (std::size_t i = 0; i < effects_->size(); ++i) outcome.effects.push_back(effects_->cost(i));
   outcome.events = effects_->events();

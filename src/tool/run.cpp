@@ -123,7 +123,8 @@ int run(const RunArguments& arguments) {
     outcome = simulation.run(stop.get_token());
   }
   info.warnings = simulation.warnings();
-  if (const std::string warning = simulation.workspace_warning(); !warning.empty()) {
+  for (const std::string& warning : {simulation.workspace_warning(), simulation.solver_warning()}) {
+    if (warning.empty()) continue;
     warn(warning);
     info.warnings.push_back(warning);
   }

@@ -17,6 +17,8 @@
 
 namespace odds::haptics {
 
+class EffectSet;
+
 /// Bits of Effect::needs(). The union over a scene's effects decides what a tick computes at all: without the first
 /// three nothing is collided.
 enum Need : std::uint32_t {
@@ -118,9 +120,17 @@ class Effect {
   [[nodiscard]] virtual std::span<const ContactEvent> events() const noexcept { return {}; }
   /// Events that found no room.
   [[nodiscard]] virtual std::uint64_t events_lost() const noexcept { return 0; }
+  /// Stiffness of the contacts of two bodies together, N/m, where it is `before` without this effect.
+  [[nodiscard]] virtual double pair_stiffness_n_per_m(ode::BodyId /*a*/, ode::BodyId /*b*/,
+                                                      double before) const noexcept {
+    return before;
+  }
+  /// Sentences on what may go wrong with it in this scene, whose effects are `all`. After bind().
+  [[nodiscard]] virtual std::vector<std::string> warnings(const EffectSet& /*all*/) const { return {}; }
   /// Sentences on what may go wrong with it on this device, which stands to the scene as `scale` says.
-  [[nodiscard]] virtual std::vector<std::string> warnings(const DeviceSpec& /*device*/, const DeviceScale& /*scale*/,
-                                                          double /*period_s*/) const {
+  [[nodiscard]] virtual std::vector<std::string> device_warnings(const DeviceSpec& /*device*/,
+                                                                 const DeviceScale& /*scale*/,
+                                                                 double /*period_s*/) const {
     return {};
   }
 };

@@ -31,6 +31,9 @@ class EffectSet {
   [[nodiscard]] const EffectCost& cost(std::size_t i) const noexcept { return entries_[i].cost; }
   /// Union of Need bits.
   [[nodiscard]] std::uint32_t needs() const noexcept;
+  /// Stiffness of the contacts of two bodies together, N/m, after all effects that change it; `law` is that of the
+  /// world's law of contact.
+  [[nodiscard]] double pair_stiffness_n_per_m(ode::BodyId a, ode::BodyId b, double law) const noexcept;
   /// Applies what the effects want of the world: forces, contact model, and how much the query has to find out.
   /// Effects that are switched off want nothing.
   void configure(ode::WorldOptions& options) const;

@@ -78,6 +78,8 @@ class Renderer {
   [[nodiscard]] std::uint64_t contacts_left_out() const noexcept { return contacts_left_out_; }
   /// Pairs for which a frame had no time left, over all ticks.
   [[nodiscard]] std::uint64_t pairs_left_out() const noexcept { return pairs_left_out_; }
+  /// Messages with which ODE's solver complained, over all ticks.
+  [[nodiscard]] std::uint64_t solver_messages() const noexcept { return solver_messages_; }
   /// Largest time of a frame beyond its budget, microseconds.
   [[nodiscard]] double frame_overshoot_us() const noexcept { return frame_overshoot_us_; }
 
@@ -122,6 +124,7 @@ class Renderer {
   std::uint64_t rescued_steps_ = 0;
   std::uint64_t contacts_left_out_ = 0;
   std::uint64_t pairs_left_out_ = 0;
+  std::uint64_t solver_messages_ = 0;
   double frame_overshoot_us_ = 0.0;
 };
 

@@ -17,12 +17,14 @@ struct BodyId {
 
 /// What the solver is told about one point of contact. SI.
 struct Surface {
-  double stiffness_n_per_m = 0.0;         ///< of this point: its share of the pair's; > 0
-  double damping_ns_per_m = 0.0;          ///< likewise; >= 0
-  double friction = 0.0;                  ///< Coulomb's mu; 0: no rows
-  double rolling_m = 0.0;                 ///< torque against rolling, per normal force: a lever arm; 0: no rows
-  double spinning_m = 0.0;                ///< torque against spinning about the normal, per normal force; 0: no row
-  double restitution = 0.0;               ///< speed after an impact, per speed before; 0: none
+  double stiffness_n_per_m = 0.0;  ///< of this point: its share of the pair's; > 0
+  double damping_ns_per_m = 0.0;   ///< likewise; >= 0
+  double friction = 0.0;           ///< Coulomb's mu; 0: no rows
+  double rolling_m = 0.0;          ///< torque against rolling, per normal force: a lever arm; 0: no rows
+  double spinning_m = 0.0;         ///< torque against spinning about the normal, per normal force; 0: no row
+  /// Speed after an impact, per speed before; 0: none. A penalty bounces only where it does not push: its spring is
+  /// told to the solver as a speed, of which a bounce would give a share too.
+  double restitution = 0.0;
   double restitution_from_m_per_s = 0.0;  ///< slower impacts do not bounce
   bool pushes = true;                     ///< false: depth makes no force, only approach is stopped
   Vec3 surface_velocity = Vec3::Zero();   ///< m/s, world: how a's surface is carried along over b's

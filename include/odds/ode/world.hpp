@@ -21,8 +21,8 @@ namespace odds::ode {
 /// By which law two bodies in contact push each other apart. Friction is the solver's, bounded by that force, in all.
 enum class ContactLaw : std::uint8_t {
   compliant,   ///< a spring and damper solved implicitly with everything else: stable for every stiffness and damping
-  penalty,     ///< the same spring and damper as a force of the step's beginning: what haptic renderers do; stable
-               ///< while stiffness times the step's square stays below the mass that it moves
+  penalty,     ///< the same spring as a force of the step's beginning, what haptic renderers do, with a damper that is
+               ///< solved; stable while stiffness times the step's square stays below the mass that it moves
   constraint,  ///< no overlap is allowed: what there is, is reduced by a share in each step, at any load
 };
 
@@ -31,8 +31,10 @@ struct ContactModel {
   bool enabled = true;   ///< false: nothing is collided at all
   bool responds = true;  ///< false: pairs are queried and meet (MeetingHook), but nothing pushes them apart
   ContactLaw law = ContactLaw::compliant;
-  double stiffness_n_per_m =
-      20000.0;                     ///< of a whole pair: its contacts share it, so that their number is not felt; > 0
+  /// Of a whole pair: its contacts share it, so that their number is not felt; > 0. A constraint takes no notice of
+  /// stiffness and damping: it makes its own of each pair (Meeting::stiffness_n_per_m), by which the pair yields by a
+  /// millionth of what its mass would, at `error_reduction`.
+  double stiffness_n_per_m = 20000.0;
   double damping_ns_per_m = 20.0;  ///< likewise; >= 0
   double error_reduction = 0.2;    ///< of a constraint: share of the overlap that a step takes away, (0, 1]
   double friction = 0.0;           ///< Coulomb's mu; 0: no friction rows at all
@@ -152,6 +154,9 @@ struct StepSummary {
   std::uint32_t pairs_left_out = 0;     ///< for which the frame had no time left
   double frame_overshoot_us = 0.0;      ///< of the frame beyond its time, >= 0
   std::uint32_t contacts_left_out = 0;  ///< beyond max_contacts_per_step, or not finite
+  /// With which ODE's solver complained, e.g. "LCP internal error": it gave up on a part of the contacts. Those of
+  /// other worlds that step meanwhile, in other threads, count too.
+  std::uint32_t solver_messages = 0;
   double max_depth_m = 0.0;
   double collision_us = 0.0;        ///< broad phase, queries and contact joints; by the world's clock
   double step_us = 0.0;             ///< of the solver, by the world's clock; 0 where nothing can move

@@ -54,6 +54,7 @@ struct RunOutcome {
   std::uint64_t rescued_steps = 0;
   std::uint64_t contacts_left_out = 0;
   std::uint64_t pairs_left_out = 0;           ///< for which a frame had no time left
+  std::uint64_t solver_messages = 0;          ///< with which ODE's solver complained
   double frame_overshoot_us = 0.0;            ///< largest, of a step's frame beyond its time
   std::vector<haptics::EffectCost> effects;   ///< what each effect took, in the order in which they act
   std::vector<haptics::ContactEvent> events;  ///< if the scene asks for events
@@ -88,6 +89,8 @@ class Simulation {
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
   /// After a run: a sentence if the device went beyond its workspace; "" if it did not.
   [[nodiscard]] std::string workspace_warning() const;
+  /// After a run: a sentence if ODE's solver complained; "" if it did not.
+  [[nodiscard]] std::string solver_warning() const;
   /// The budget that the queries really have.
   [[nodiscard]] const query::Budget& budget() const noexcept;
   [[nodiscard]] ode::World& world() noexcept { return *world_; }

@@ -20,13 +20,17 @@ class Compliance final : public Effect {
     for (ode::ContactPoint& point : meeting.contacts) {
       double& k = point.surface.stiffness_n_per_m;
       const double share = k / all;
-      k = k * (k_ * share) / (k + k_ * share);
+      k = in_series(k, k_ * share);
       point.surface.damping_ns_per_m = b_ * share;
     }
     return static_cast<std::uint32_t>(meeting.contacts.size());
   }
+  [[nodiscard]] double pair_stiffness_n_per_m(ode::BodyId a, ode::BodyId b, double before) const noexcept override {
+    return a == body_ || b == body_ ? in_series(before, k_) : before;
+  }
 
  private:
+  [[nodiscard]] static double in_series(double one, double other) noexcept { return one * other / (one + other); }
   ode::BodyId body_;
   double k_;
   double b_;

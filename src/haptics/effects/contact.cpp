@@ -7,13 +7,15 @@
 #include <limits>
 
 #include "haptics/effects/list.hpp"
+#include "odds/haptics/effect_set.hpp"
 
 namespace odds::haptics::effects {
 namespace {
 
 class Contact final : public Effect {
  public:
-  explicit Contact(const ode::ContactModel& model) : model_(model) {}
+  Contact(const ode::ContactModel& model, std::span<const BodyInfo> bodies)
+      : model_(model), bodies_(bodies.begin(), bodies.end()) {}
   [[nodiscard]] std::uint32_t needs() const noexcept override {
     return need_patch | (model_.law == ode::ContactLaw::penalty ? std::uint32_t{need_velocity} : 0U);
   }
@@ -25,29 +27,48 @@ class Contact final : public Effect {
     options.contact.friction = friction;
   }
   [[nodiscard]] std::optional<Error> bind(const ode::World& world) override {
-    lightest_kg_ = std::numeric_limits<double>::infinity();
+    masses_kg_.clear();
     for (std::uint32_t i = 0; i < world.body_count(); ++i) {
-      if (world.is_dynamic({i})) lightest_kg_ = std::min(lightest_kg_, world.mass({i}).mass_kg);
+      masses_kg_.push_back(world.is_dynamic({i}) ? world.mass({i}).mass_kg : std::numeric_limits<double>::infinity());
     }
     step_s_ = world.options().step_s;
     return std::nullopt;
   }
   std::uint32_t after_step(const TickView& tick) noexcept override { return tick.step->contacts; }
-  // A point at a lever arm feels a quarter of the mass of a slender body.
-  [[nodiscard]] std::vector<std::string> warnings(const DeviceSpec&, const DeviceScale&, double) const override {
+  [[nodiscard]] std::vector<std::string> warnings(const EffectSet& all) const override {
     if (model_.law != ode::ContactLaw::penalty) return {};
-    const double felt_kg = 0.25 * lightest_kg_;
-    const double most = felt_kg / (step_s_ * step_s_);
-    if (model_.stiffness_n_per_m <= most) return {};
+    Worst worst;
+    for (std::uint32_t a = 0; a < masses_kg_.size(); ++a) {
+      for (std::uint32_t b = a + 1; b < masses_kg_.size(); ++b) {
+        const Worst pair{a, b, all.pair_stiffness_n_per_m({a}, {b}, model_.stiffness_n_per_m),
+                         most_n_per_m(std::min(masses_kg_[a], masses_kg_[b]))};
+        if (pair.stiffness_n_per_m * worst.most_n_per_m > worst.stiffness_n_per_m * pair.most_n_per_m) worst = pair;
+      }
+    }
+    if (worst.stiffness_n_per_m <= worst.most_n_per_m) return {};
+    const std::uint32_t lighter = masses_kg_[worst.a] < masses_kg_[worst.b] ? worst.a : worst.b;
     return {
-        fmt::format("contact: a penalty of {:.6g} N/m may tremble on a body of {:.3g} kg with steps of {:.3g} ms: stay "
-                    "below {:.6g} N/m, or take law = \"compliant\"",
-                    model_.stiffness_n_per_m, lightest_kg_, 1e3 * step_s_, most)};
+        fmt::format("contact: a penalty of {:.6g} N/m between '{}' and '{}' may tremble on a body of {:.3g} kg with "
+                    "steps of {:.3g} "
+                    "ms: stay below {:.6g} N/m, or take law = \"compliant\"",
+                    worst.stiffness_n_per_m, bodies_[worst.a].name, bodies_[worst.b].name, masses_kg_[lighter],
+                    1e3 * step_s_, worst.most_n_per_m)};
   }
 
  private:
+  /// The pair that is stiffest for its lighter body.
+  struct Worst {
+    std::uint32_t a = 0;
+    std::uint32_t b = 0;
+    double stiffness_n_per_m = 0.0;
+    double most_n_per_m = 1.0;
+  };
+  // A point at a lever arm feels a quarter of the mass of a slender body.
+  [[nodiscard]] double most_n_per_m(double mass_kg) const noexcept { return 0.25 * mass_kg / (step_s_ * step_s_); }
+
   ode::ContactModel model_;
-  double lightest_kg_ = std::numeric_limits<double>::infinity();
+  std::vector<BodyInfo> bodies_;
+  std::vector<double> masses_kg_;  // infinite: fixed
   double step_s_ = 0.0;
 };
 
@@ -74,7 +95,7 @@ Result<std::unique_ptr<Effect>> make_contact(const EffectRequest& request) {
                   "remove this key, or take law = \"constraint\"");
   }
   if (auto error = reader.finish()) return *error;
-  return std::unique_ptr<Effect>(std::make_unique<Contact>(model));
+  return std::unique_ptr<Effect>(std::make_unique<Contact>(model, request.bodies));
 }
 
 }  // namespace odds::haptics::effects

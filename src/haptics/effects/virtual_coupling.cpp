@@ -28,8 +28,8 @@ class Coupling final : public Effect {
     on_hand.torque_nm += reaction.torque_nm;
     return 0;  // the same tick
   }
-  [[nodiscard]] std::vector<std::string> warnings(const DeviceSpec& device, const DeviceScale& scale,
-                                                  double period_s) const override {
+  [[nodiscard]] std::vector<std::string> device_warnings(const DeviceSpec& device, const DeviceScale& scale,
+                                                         double period_s) const override {
     std::vector<std::string> all;
     if (auto warning = passivity_warning(coupling_, device, period_s, scale)) all.push_back(std::move(*warning));
     if (!torque_) return all;
