@@ -5,6 +5,7 @@
 #include <rapidcheck/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -202,6 +203,32 @@ TEST(WorldContact, AMeetingTellsHowStiffThePairIsByItsLaw) {
     EXPECT_NEAR(weight, 1e6 * 0.5 / 1e-3, 1.0) << "yields by a millionth";
     EXPECT_NEAR(1e-3 * heard.stiffness_n_per_m / weight, 0.2, 1e-12) << "takes a fifth away";
   }
+}
+
+// Its row tells the spring as a speed: a bounce of that would push by a multiple of the spring.
+TEST(WorldContact, APenaltyThatPushesDoesNotBounce) {
+  std::array<double, 2> fastest = {};
+  for (const bool bounces : {false, true}) {
+    WorldOptions options = repeatable_options();
+    options.contact.law = ContactLaw::penalty;
+    options.contact.stiffness_n_per_m = 5000;
+    World world = make(options);
+    ASSERT_TRUE(world.add_fixed(floor_plate(), at(0, 0, 0), "floor").ok());
+    const BodyId body = world.add_dynamic(cube(), at(0, 0, 0.0999), {.mass_kg = 0.5}, "cube").value();
+    ASSERT_FALSE(world.prepare().has_value());
+    if (bounces) {
+      world.set_meeting_hook({[](void*, Meeting& meeting) noexcept {
+                                for (ContactPoint& point : meeting.contacts) point.surface.restitution = 1.0;
+                              },
+                              nullptr});
+    }
+    for (int i = 0; i < 100; ++i) {
+      world.step();
+      fastest[bounces ? 1 : 0] = std::max(fastest[bounces ? 1 : 0], world.state(body).velocity_m_per_s.norm());
+    }
+  }
+  EXPECT_GT(fastest[0], 1e-4);
+  EXPECT_EQ(fastest[1], fastest[0]);
 }
 
 TEST(WorldContact, TheImpulseOfContactsCarriesTheWeightWhereItIsAskedFor) {

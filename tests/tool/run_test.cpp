@@ -122,6 +122,34 @@ std::string with(std::string text, const std::string& from, const std::string& t
   return text.replace(text.find(from), from.size(), to);
 }
 
+TEST(Run, WarnsOfASolverThatGivesUpOnTheConsoleAndInTheSummary) {
+  const auto moving = [](const char* name, const char* mesh, const char* mass_kg, const char* position_m) {
+    return std::string("[[body]]\nname = \"") + name + "\"\nmesh = \"" + mesh +
+           "\"\nmotion = \"dynamic\"\nmass_kg = " + mass_kg + "\nposition_m = [" + position_m + "]\n";
+  };
+  const TemporaryFolder folder;
+  for (const bool gives_up : {false, true}) {
+    folder.write("scene.toml",
+                 std::string("format = \"odds.scene/1\"\n[loop]\nseconds = 0.3\n[query]\nwork_units = 20000\n"
+                             "[[mesh]]\nname = \"slab\"\nfile = \"made:box:x=4,y=1,z=0.1,cells=2\"\n"
+                             "[[mesh]]\nname = \"cube\"\nfile = \"made:box:x=0.04,y=0.04,z=0.04\"\n"
+                             "[[mesh]]\nname = \"bar\"\nfile = \"made:box:x=0.2,y=0.05,z=0.1\"\n"
+                             "[[body]]\nname = \"floor\"\nmesh = \"slab\"\nposition_m = [0, 0, -0.05]\n") +
+                     moving("a", "cube", "1e-5", "0.03, 0, 0.0249") + moving("b", "bar", "50", "0, 0, 0.1098") +
+                     moving("c", "cube", "500", "0, 0, 0.1995") +
+                     "[effects.gravity]\ng_m_per_s2 = [3, 0, -9.81]\n[effects.friction]\nmu = 1\n[effects.contact]\n" +
+                     (gives_up ? "stiffness_n_per_m = 1e12\ndamping_ns_per_m = 1e12\n" : ""));
+    const Ran ran = run_tool(folder, "run scene.toml --fast --out out");
+    ASSERT_EQ(ran.status, 0) << ran.errors;
+    EXPECT_EQ(ran.errors.find("warning: ODE's solver complained") != std::string::npos, gives_up) << ran.errors;
+    const auto summary = nlohmann::json::parse(contents_of(folder / "out/summary.json"));
+    ASSERT_EQ(summary["warnings"].size(), gives_up ? 1U : 0U) << summary["warnings"];
+    if (!gives_up) continue;
+    EXPECT_EQ(summary["warnings"][0].get<std::string>().find("ODE's solver complained"), 0U);
+    EXPECT_NE(contents_of(folder / "out/report.html").find("s solver complained"), std::string::npos);
+  }
+}
+
 // So many ticks a second that some are skipped on most machines; what was skipped must be skipped again.
 TEST(Run, InRealTimeWithWorkUnitsIsReplayedBitForBit) {
   const TemporaryFolder folder;
@@ -163,7 +191,8 @@ TEST(Run, RefusesTicksThatAreNone) {
     return ran.errors;
   };
   EXPECT_NE(errors_of("time,more\n0,\n").find("served.csv:1: the first column is not 'tick'"), std::string::npos);
-  EXPECT_NE(errors_of("tick,more\n0,\nx,\n").find("served.csv:3: \"x\" is not the number of a tick"), std::string::npos);
+  EXPECT_NE(errors_of("tick,more\n0,\nx,\n").find("served.csv:3: \"x\" is not the number of a tick"),
+            std::string::npos);
   EXPECT_NE(errors_of("tick,more\n1,\n1,\n").find("served.csv:3: ticks must ascend"), std::string::npos);
   EXPECT_NE(errors_of("tick,more\n").find("there is no tick in it"), std::string::npos);
   EXPECT_NE(errors_of("tick," + std::string(5000, 'x')).find("served.csv:1: the line is too long"), std::string::npos);
