@@ -188,8 +188,8 @@ std::string Simulation::solver_warning() const {
   if (count == 0) return {};
   return fmt::format(
       "ODE's solver complained {} times (its 'LCP internal error' and the like): it gave up on a part of the contacts, "
-      "whose forces may be wrong there; give law = \"compliant\" with less stiffness, fewer contacts, or [physics] "
-      "solver = \"iterative\"",
+      "whose forces may be wrong there; put no light body between heavy ones, give contacts less stiffness, or take "
+      "solver = \"iterative\" in [physics]",
       count);
 }
 
