@@ -34,7 +34,7 @@ bool by_probability(const Request& request) noexcept { return request.polygon_fr
 /// The witness of the last hit. True: it still is one, and no more are wanted.
 bool witness_suffices(const PosedMeshes& meshes, const Request& request, Pair::Implementation& pair,
                       Spending& spending) noexcept {
-  if (request.method != Method::incremental || by_probability(request) || wanted_hits(request) != 1 ||
+  if (request.method != Method::incremental || by_probability(request) || wanted_hits(request, pair) != 1 ||
       !pair.has_witness || !spending.allows(1)) {
     return false;
   }
@@ -56,7 +56,7 @@ SearchResult search(const Encounter<V>& encounter, const PosedMeshes&, const Req
   if (encounter.far_apart()) return result;
   spending.spend_node_pairs(1);
   if (!encounter.volumes_overlap(0, 0)) return result;
-  const std::uint32_t wanted = wanted_hits(request);
+  const std::uint32_t wanted = wanted_hits(request, pair);
   if (request.method == Method::exact && !request.polygon_free) {
     result.method = Method::exact;
     search_depth_first(encounter, {0, 0, 0.0F}, wanted, pair.hits, spending, result);
@@ -76,7 +76,7 @@ SearchResult search(const wide::Encounter& encounter, const PosedMeshes& meshes,
                     BucketQueue& queue, Pair::Implementation& pair, Spending& spending) noexcept {
   SearchResult result;
   if (encounter.far_apart()) return result;
-  const std::uint32_t wanted = wanted_hits(request);
+  const std::uint32_t wanted = wanted_hits(request, pair);
   wide::Task task{encounter, request, wanted, queue, pair.hits, spending, result};
   if (request.method == Method::exact && !request.polygon_free) {
     result.method = Method::exact;
@@ -205,6 +205,7 @@ void search_and_answer(const Tree& a, const Tree& b, const PosedMeshes& meshes, 
                        const Request& request, Pair::Implementation& pair, Spending& spending) noexcept {
   Answer& answer = pair.answer;
   if (carry_contacts(meshes, pose_b_in_a, request, pair, spending)) return;
+  if (carry_late_contacts(meshes, pose_b_in_a, request, pair, spending)) return;
   if (is_still_apart(b, meshes, request, pair)) {
     pair.has_witness = false;
     if (!answer_within(meshes, pose_b_in_a, request, b.reach(), pair.within_is_of_front, pair, spending)) {
@@ -295,7 +296,10 @@ Result<Pair> Pair::make(std::shared_ptr<const Shape> a, std::shared_ptr<const Sh
                  "choose InstructionSet::best"};
   }
   static_cast<void>(realtime::fastest_clock());  // calibrates now, so that no query has to
+  const bool may_be_late = options.late_contacts && a->has_polygons() && b->has_polygons();
+  auto late = may_be_late ? std::make_unique<LateContacts>(a, b, options) : nullptr;
   Pair pair(std::make_unique<Implementation>(std::move(a), std::move(b), options));
+  pair.implementation_->late = std::move(late);
   // Once through what a query ends with, so that the first real one does not wait for pages of code.
   Request first;
   first.budget = {.microseconds = 1.0, .work_units = 64};
@@ -314,11 +318,10 @@ Pair::~Pair() = default;
 Pair::Pair(Pair&&) noexcept = default;
 Pair& Pair::operator=(Pair&&) noexcept = default;
 
-const Answer& Pair::run(const math::Pose& pose_b_in_a, const Request& request) noexcept {
-  Implementation& pair = *implementation_;
+void run_pair(Pair::Implementation& pair, const math::Pose& pose_b_in_a, const Request& request) noexcept {
   if (!usable(pose_b_in_a, request)) {
     pair.answer = refused();
-    return pair.answer;
+    return;
   }
   Request possible = request;
   possible.polygon_free = request.polygon_free || pair.polygon_free;
@@ -328,7 +331,11 @@ const Answer& Pair::run(const math::Pose& pose_b_in_a, const Request& request) n
         run_on(a, *std::get_if<Tree>(&pair.b->data().tree), pose_b_in_a, possible, pair);
       },
       pair.a->data().tree);
-  return pair.answer;
+}
+
+const Answer& Pair::run(const math::Pose& pose_b_in_a, const Request& request) noexcept {
+  run_pair(*implementation_, pose_b_in_a, request);
+  return implementation_->answer;
 }
 
 void Pair::note_apart(const math::Pose& pose_b_in_a) noexcept {
@@ -366,6 +373,7 @@ void Pair::reset() noexcept {
   implementation_->carried.forget();
   implementation_->near.forget();
   implementation_->has_witness = false;
+  if (implementation_->late) implementation_->late->forget();
   implementation_->within = Within::neither;
   implementation_->within_is_of_front = false;
 }

@@ -22,6 +22,8 @@ constexpr double most_hits = 65536.0;
 // For a direction that is looked for in haste, before what is there is written.
 constexpr std::int64_t hasty_ns = 2500;
 constexpr std::int64_t hasty_single_ns = 1000;
+/// Budgets of less have no time for a patch beside the search.
+constexpr double late_below_us = 50.0;
 constexpr std::uint32_t pairs_of_a_depth = 12;  ///< a patch of fewer may show anything less than how deep bodies are
 
 /// Pairs of triangles that a patch has time for.
@@ -110,6 +112,12 @@ bool knows_nothing_here(bool moved_little, const Pair::Implementation& pair) noe
          (!moved_little && deepest_of(pair.answer.contacts) <= unmeasured_depth(pair) * (1.0 + 1e-9));
 }
 
+/// Whether contacts may be made over several runs.
+bool may_be_late(const Request& request, const Pair::Implementation& pair) noexcept {
+  return pair.late != nullptr && request.max_contacts > 1 && !request.polygon_free &&
+         request.budget.microseconds < late_below_us;
+}
+
 /// What single pairs of triangles say, when there is no time for a patch.
 void make_rough_contacts(const PosedMeshes& meshes, const Vec3* known_normal, bool moved_little, const Request& request,
                          Pair::Implementation& pair, Spending& spending) noexcept {
@@ -118,10 +126,12 @@ void make_rough_contacts(const PosedMeshes& meshes, const Vec3* known_normal, bo
   const Vec3 towards_a =
       pair.previous_normal.isZero() ? Vec3(by_place + tolerances::came_side * pair.came) : pair.previous_normal;
   spending.reserve_for_contacts(pair.endings.rough);
+  const double kept_us = may_be_late(request, pair) ? 0.5 * spending.left_us() : 0.0;
   const auto room =
       std::span(pair.contacts).first(std::min(static_cast<std::size_t>(request.max_contacts), pair.contacts.size()));
-  const std::size_t count = rough_contacts(meshes, pair.hits.pairs(), pair.a->is_solid() && pair.b->is_solid(),
-                                           towards_a, known_normal, room, [&] { return spending.may_make_contacts(); });
+  const std::size_t count =
+      rough_contacts(meshes, pair.hits.pairs(), pair.a->is_solid() && pair.b->is_solid(), towards_a, known_normal, room,
+                     [&] { return spending.may_make_contacts() && spending.left_us() >= kept_us; });
   pair.answer.contacts = room.first(count);
   limit_to_believed(meshes, 1.0, pair);
   pair.answer.contacts_complete = false;
@@ -139,10 +149,43 @@ double believed_depth(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, 
   return std::max(unmeasured, pair.known_depth.believed(place, *known_normal, meshes.pose()));
 }
 
+/// Whether one of the pairs of triangles that met where the contacts are from meets now: a hit.
+bool prove_carried(const PosedMeshes& meshes, Pair::Implementation& pair, Spending& spending) noexcept {
+  for (TrianglePair& proof : pair.carried.proofs()) {
+    if (!spending.allows(1) || !spending.may_go_on_after(2)) return false;
+    spending.spend_triangle_pairs(1);
+    if (!meshes.meet(proof)) continue;
+    std::swap(proof, pair.carried.proofs().front());  // the next run's first
+    pair.hits.add(pair.carried.proofs().front());
+    pair.answer.verdict = Verdict::hit;
+    pair.answer.probability = 1.0;
+    return true;
+  }
+  return false;
+}
+
+/// Whether the contacts of an earlier pose are of use now, far as the bodies may have moved.
+bool serves_late(const math::Pose& pose_b_in_a, const Request& request, const Pair::Implementation& pair) noexcept {
+  const double size = std::min(pair.a->mesh().size(), pair.b->mesh().size());
+  return pair.carried.serve(pose_b_in_a, request.max_contacts, tolerances::late_motion * size, size);
+}
+
+/// Those of them that have not come apart since.
+void write_late(const math::Pose& pose_b_in_a, Pair::Implementation& pair) noexcept {
+  const std::size_t written = pair.carried.write(pose_b_in_a, pair.contacts);
+  const auto end = std::remove_if(pair.contacts.begin(), pair.contacts.begin() + static_cast<std::ptrdiff_t>(written),
+                                  [](const Contact& contact) { return !(contact.depth > 0.0); });
+  pair.answer.contacts = std::span(pair.contacts.begin(), end);
+  pair.answer.contacts_complete = false;
+  pair.answer.contacts_late = true;
+  pair.answer.contact_pairs = pair.carried.made_from();
+}
+
 }  // namespace
 
-std::uint32_t wanted_hits(const Request& request) noexcept {
+std::uint32_t wanted_hits(const Request& request, const Pair::Implementation& pair) noexcept {
   if (request.max_contacts <= 1) return 1;
+  if (may_be_late(request, pair)) return most_contacts;
   if (!std::isfinite(request.budget.microseconds)) return no_feature;
   return hits_in(request.budget.microseconds, hits_per_microsecond);
 }
@@ -158,6 +201,14 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   const Vec3* known_normal = pair.known_direction.at(pose_b_in_a, smaller);
   const bool moved_little = most_depth - pair.known_depth.depth() <= tolerances::coherent_motion * smaller;
   note_side(meshes, pair);
+  if (may_be_late(request, pair)) {
+    make_rough_contacts(meshes, known_normal, moved_little, request, pair, spending);
+    spending.reserve_for_contacts(pair.endings.late);
+    if (pair.late->work(pose_b_in_a, request, pair, spending) && serves_late(pose_b_in_a, request, pair)) {
+      write_late(pose_b_in_a, pair);
+    }
+    return;
+  }
   if (!spending.may_make_contacts()) {
     (single ? pair.endings.single : pair.endings.patch).note(0);  // or it would never be tried again
     make_rough_contacts(meshes, known_normal, moved_little, request, pair, spending);
@@ -251,21 +302,24 @@ bool carry_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, co
   if (request.max_contacts <= 1 || request.polygon_free) return false;
   const double size = std::min(pair.a->mesh().size(), pair.b->mesh().size());
   if (!pair.carried.serve(pose_b_in_a, request.max_contacts, request.carry_motion * size, size)) return false;
-  for (TrianglePair& proof : pair.carried.proofs()) {
-    if (!spending.allows(1) || !spending.may_go_on_after(2)) return false;
-    spending.spend_triangle_pairs(1);
-    if (!meshes.meet(proof)) continue;
-    std::swap(proof, pair.carried.proofs().front());  // the next run's first
-    pair.hits.add(pair.carried.proofs().front());
-    pair.answer.verdict = Verdict::hit;
-    pair.answer.probability = 1.0;
-    pair.answer.contacts = std::span(pair.contacts).first(pair.carried.write(pose_b_in_a, pair.contacts));
-    pair.answer.contacts_carried = true;
-    pair.answer.contacts_complete = pair.carried.part_of() == 0;
-    pair.answer.contact_pairs = pair.carried.part_of();
-    return true;
+  if (!prove_carried(meshes, pair, spending)) return false;
+  pair.answer.contacts = std::span(pair.contacts).first(pair.carried.write(pose_b_in_a, pair.contacts));
+  pair.answer.contacts_carried = true;
+  pair.answer.contacts_complete = pair.carried.part_of() == 0;
+  pair.answer.contact_pairs = pair.carried.part_of();
+  return true;
+}
+
+bool carry_late_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request,
+                         Pair::Implementation& pair, Spending& spending) noexcept {
+  if (!may_be_late(request, pair)) return false;
+  if (!serves_late(pose_b_in_a, request, pair) || !prove_carried(meshes, pair, spending)) return false;
+  write_late(pose_b_in_a, pair);
+  spending.reserve_for_contacts(pair.endings.late);
+  if (pair.late->work(pose_b_in_a, request, pair, spending) && serves_late(pose_b_in_a, request, pair)) {
+    write_late(pose_b_in_a, pair);
   }
-  return false;
+  return true;
 }
 
 }  // namespace odds::query

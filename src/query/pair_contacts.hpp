@@ -10,7 +10,7 @@
 namespace odds::query {
 
 /// Hits that are wanted: one proves; a patch takes as many as its making has time for.
-[[nodiscard]] std::uint32_t wanted_hits(const Request& request) noexcept;
+[[nodiscard]] std::uint32_t wanted_hits(const Request& request, const Pair::Implementation& pair) noexcept;
 
 /// Makes the answer's contacts from the pair's hits, within the budget: with care, in a hurry, or roughly. `searched`:
 /// how the hits were found; `most_depth`: what is known of the depth, metres.
@@ -21,5 +21,10 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
 /// The contacts of an earlier run, where the bodies have hardly moved since: false if they will not do.
 [[nodiscard]] bool carry_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request,
                                   Pair::Implementation& pair, Spending& spending) noexcept;
+
+/// Of a short budget: those of an earlier run, where the bodies have moved farther, while the work on those of now goes
+/// on. False if they will not do.
+[[nodiscard]] bool carry_late_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request,
+                                       Pair::Implementation& pair, Spending& spending) noexcept;
 
 }  // namespace odds::query

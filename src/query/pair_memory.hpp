@@ -14,6 +14,7 @@
 #include "query/ending_reserve.hpp"
 #include "query/known_depth.hpp"
 #include "query/known_direction.hpp"
+#include "query/late_contacts.hpp"
 #include "query/near_contacts.hpp"
 #include "query/recalibration.hpp"
 #include "query/scratch_pool.hpp"
@@ -45,6 +46,17 @@ struct Pair::Implementation {
         front(front_capacity(*a, *b, options.slice_capacity)),
         wide(wide::searches_for(options.instruction_set)),
         polygon_free(!a->has_polygons() || !b->has_polygons()) {}
+  /// For exact searches alone, in memory that is lent for each.
+  struct Worker {};
+  Implementation(Worker, std::shared_ptr<const Shape> shape_a, std::shared_ptr<const Shape> shape_b,
+                 const PairOptions& options)
+      : a(std::move(shape_a)),
+        b(std::move(shape_b)),
+        hits(options.hit_capacity),
+        slice(1),
+        front(1),
+        wide(wide::searches_for(options.instruction_set)),
+        polygon_free(false) {}
 
   std::shared_ptr<const Shape> a;
   std::shared_ptr<const Shape> b;
@@ -70,8 +82,12 @@ struct Pair::Implementation {
   CarriedContacts carried;
   NearContacts near;
   EndingReserves endings;
+  std::unique_ptr<LateContacts> late;           ///< or null
   std::array<Contact, most_contacts> contacts;  ///< the answer's
   Answer answer;
 };
+
+/// Pair::run of what is private.
+void run_pair(Pair::Implementation& pair, const math::Pose& pose_b_in_a, const Request& request) noexcept;
 
 }  // namespace odds::query

@@ -20,14 +20,15 @@ std::shared_ptr<ScratchPool> ScratchPool::of(const Capacities& capacities) {
 }
 
 ScratchPool::ScratchPool(const Capacities& capacities)
-    : capacities_(capacities), places_(std::max(most_threads, std::thread::hardware_concurrency())) {
+    : capacities_(capacities),
+      places_(capacities.most > 0 ? capacities.most : std::max(most_threads, std::thread::hardware_concurrency())) {
   scratches_.reserve(places_.size());
 }
 
 void ScratchPool::add_pair() {
   const std::lock_guard lock(changing_);
   if (scratches_.size() < std::min<std::size_t>(pairs_ + 1, places_.size())) {
-    scratches_.push_back(std::make_unique<Scratch>(capacities_.queue, capacities_.hits));
+    scratches_.push_back(std::make_unique<Scratch>(capacities_.queue, capacities_.hits, capacities_.stack_bytes));
     places_[scratches_.size() - 1].free.store(scratches_.back().get(), std::memory_order_release);
     made_.store(static_cast<std::uint32_t>(scratches_.size()), std::memory_order_release);
   }
@@ -50,6 +51,23 @@ ScratchPool::Loan ScratchPool::borrow(std::uint32_t& last) noexcept {
     }
     i = i + 1 < size() ? i + 1 : 0;
   }
+}
+
+Scratch* ScratchPool::take(std::uint32_t& last) noexcept {
+  const std::uint32_t count = size();
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t at = (last + i) % count;
+    if (places_[at].free.load(std::memory_order_relaxed) == nullptr) continue;
+    if (Scratch* const scratch = places_[at].free.exchange(nullptr, std::memory_order_acquire)) {
+      last = at;
+      return scratch;
+    }
+  }
+  return nullptr;
+}
+
+void ScratchPool::give_back(Scratch& scratch, std::uint32_t last) noexcept {
+  places_[last].free.store(&scratch, std::memory_order_release);
 }
 
 }  // namespace odds::query

@@ -116,7 +116,12 @@ TEST(Budget, HoldsInA1kHzLoopNetOfStalls) {
   undisturbed.clear();
   math::Random random(3);
   const Request request = {.budget = Budget::time(budget_us), .max_contacts = 8};
-  static_cast<void>(pair.run(random_pose(random, shape->mesh().size()), request));  // pages and caches
+  // Every way to an answer is gone once: pages of code and of the stack that nobody has touched yet are faults, too.
+  for (const double warm_us : {1.0, 2.0, 5.0, 10.0, 20.0, 50.0, budget_us}) {
+    Request warm = request;
+    warm.budget = Budget::time(warm_us);
+    for (int i = 0; i < 40; ++i) static_cast<void>(pair.run(random_pose(random, shape->mesh().size()), warm));
+  }
   const auto before = realtime::thread_usage();
   const auto loop =
       realtime::run_periodic({.ticks = ticks}, realtime::real_time(), {}, [&](const realtime::Tick&) noexcept {

@@ -114,6 +114,9 @@ inline constexpr double way_it_came = 0.25;
 /// Of the smaller body's size: bodies in ODE that have moved by less keep their contacts (Request::carry_motion).
 /// Stacks drifted as little with it as without, and ten times as far with 1e-4. Test: Bricks.CreepingAddsUp.
 inline constexpr double resting_motion = 1e-5;
+/// Of the smaller body's size: contacts that are late (PairOptions::late_contacts) are carried along while bodies move
+/// by less.
+inline constexpr double late_motion = 0.02;
 /// Cosine below which a surface is a wall, whose slope tells nothing of where an overlap gets deeper.
 inline constexpr double steep = 0.05;
 /// An overlap that changes by less than this part of itself across the patch is level.

@@ -83,8 +83,11 @@ struct Answer {
   /// way out of a solid (Request::solids).
   std::uint32_t contact_pairs = 0;
   bool contacts_carried = false;  ///< they are those of an earlier run, moved along (Request::carry_motion)
-  bool has_cell_pair = false;     ///< whether `cell_pair` is set: some pair of nodes remained undecided
-  Contact cell_pair;              ///< where the surfaces most probably meet: centroids, mean normals, depth estimate
+  /// They are all those of a pose some runs ago, which a short budget had no time for at once, moved along with the
+  /// bodies since (PairOptions::late_contacts).
+  bool contacts_late = false;
+  bool has_cell_pair = false;  ///< whether `cell_pair` is set: some pair of nodes remained undecided
+  Contact cell_pair;           ///< where the surfaces most probably meet: centroids, mean normals, depth estimate
   double cell_pair_probability = 0.0;  ///< of an intersection within that pair of nodes
   Cost cost;
 };

@@ -31,6 +31,10 @@ struct PairOptions {
   /// Poses on which `make` learns how true the general odds are for this very pair; 0: none. About 0.2 ms each; 240 and
   /// more are worth it. The pair keeps what it learnt.
   std::uint32_t calibration_poses = 0;
+  /// Whether contacts (more than one) that budgets of less than 50 us have no time for are made over the runs that
+  /// follow, in what is left of their budgets, and carried along with the bodies: complete, but of a pose some runs ago
+  /// (Answer::contacts_late). Without, they are guessed from single pairs of triangles (Answer::contacts_complete).
+  bool late_contacts = true;
 };
 
 /// A workspace for queries between two shapes. All memory is taken in `make`; `run` never allocates, locks, throws or

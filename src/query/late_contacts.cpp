@@ -1,0 +1,99 @@
+#include "query/late_contacts.hpp"
+
+#include <limits>
+
+#include "query/pair_memory.hpp"
+
+namespace odds::query {
+namespace {
+
+/// For a search and a patch, which keep their arrays on it: they were seen to need 70 kB.
+constexpr std::uint32_t stack_bytes = 256 * 1024;
+/// Questions that are worked on at a time, of all pairs together.
+constexpr std::uint32_t most_at_work = 16;
+/// A time that no worker sees the end of.
+constexpr double ever_us = 1e9;
+
+/// What the search for a direction and a depth starts from, and what it ends with.
+void copy_what_is_known(const Pair::Implementation& from, Pair::Implementation& to) noexcept {
+  to.previous_normal = from.previous_normal;
+  to.previous_position = from.previous_position;
+  to.came = from.came;
+  to.apart_at = from.apart_at;
+  to.known_depth = from.known_depth;
+  to.known_direction = from.known_direction;
+}
+
+}  // namespace
+
+LateContacts::LateContacts(const std::shared_ptr<const Shape>& a, const std::shared_ptr<const Shape>& b,
+                           const PairOptions& options)
+    : worker_(std::make_unique<Pair::Implementation>(Pair::Implementation::Worker{}, a, b, options)),
+      pool_(ScratchPool::of({64, options.hit_capacity, stack_bytes, most_at_work})) {
+  pool_->add_pair();
+}
+
+LateContacts::~LateContacts() {
+  forget();
+  pool_->remove_pair();
+}
+
+void LateContacts::forget() noexcept {
+  if (!is_at_work()) return;
+  dropped_ = true;
+  scratch_->fiber->resume();  // its clock says that its time is up, and asks nobody
+  end();
+}
+
+bool LateContacts::work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair,
+                        Spending& spending) noexcept {
+  if (!spending.may_make_contacts()) return false;
+  if (!is_at_work()) {
+    scratch_ = pool_->take(last_);
+    if (scratch_ == nullptr) return false;
+    worker_->scratch.use(scratch_);
+    pose_ = pose_b_in_a;
+    request_ = {};
+    request_.method = Method::exact;
+    request_.budget.microseconds = ever_us;
+    request_.budget.clock = {&LateContacts::read_clock, this};
+    request_.max_contacts = request.max_contacts;
+    worker_->carried.forget();
+    copy_what_is_known(pair, *worker_);
+    worker_->known_at = pair.known_at;
+    worker_->apart_last = pair.apart_last;
+    dropped_ = false;
+    time_ns_ = 0;
+    scratch_->fiber->start(&LateContacts::answer, this);
+  }
+  spending_ = &spending;
+  scratch_->fiber->resume();
+  spending_ = nullptr;
+  if (!scratch_->fiber->is_done()) return false;
+  end();
+  const Answer& answer = worker_->answer;
+  if (answer.contacts.empty() || !answer.contacts_complete) return false;
+  copy_what_is_known(*worker_, pair);
+  pair.carried = worker_->carried;
+  return true;
+}
+
+void LateContacts::answer(void* self) noexcept {
+  auto& late = *static_cast<LateContacts*>(self);
+  run_pair(*late.worker_, late.pose_, late.request_);
+}
+
+std::int64_t LateContacts::read_clock(void* self) noexcept {
+  constexpr std::int64_t tick_ns = 100;
+  auto& late = *static_cast<LateContacts*>(self);
+  late.time_ns_ += tick_ns;
+  while (!late.dropped_ && !late.spending_->may_make_contacts()) late.scratch_->fiber->yield();
+  return late.dropped_ ? std::numeric_limits<std::int64_t>::max() / 2 : late.time_ns_;
+}
+
+void LateContacts::end() noexcept {
+  pool_->give_back(*scratch_, last_);
+  scratch_ = nullptr;
+}
+
+}  // namespace odds::query

@@ -1,0 +1,50 @@
+// Contacts that a run has no time for, made over the runs that follow.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "odds/query/pair.hpp"
+#include "query/scratch_pool.hpp"
+#include "query/spending.hpp"
+
+namespace odds::query {
+
+/// Of a few microseconds nothing is left for a contact patch. So a run leaves a question behind, its pose and what was
+/// known there, and each run that follows spends what it has left on the answer, which an exact search and a patch
+/// without a deadline give. It is late by some runs and is carried along with the bodies until the next one comes.
+/// Takes memory when it is made; the work itself neither allocates, locks nor calls the system.
+class LateContacts {
+ public:
+  LateContacts(const std::shared_ptr<const Shape>& a, const std::shared_ptr<const Shape>& b,
+               const PairOptions& options);
+  ~LateContacts();
+  LateContacts(const LateContacts&) = delete;
+  LateContacts& operator=(const LateContacts&) = delete;
+
+  /// Drops the question that is being worked on.
+  void forget() noexcept;
+  /// Whether one is.
+  [[nodiscard]] bool is_at_work() const noexcept { return scratch_ != nullptr; }
+  /// Goes on with the question while `spending.may_make_contacts()`; without one, asks that of this run first: `pair`
+  /// at `pose_b_in_a`. True: it was answered now, and `pair` knows the complete contacts of that pose, to be carried.
+  bool work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair,
+            Spending& spending) noexcept;
+
+ private:
+  static void answer(void* self) noexcept;
+  static std::int64_t read_clock(void* self) noexcept;
+  void end() noexcept;
+
+  std::unique_ptr<Pair::Implementation> worker_;
+  std::shared_ptr<ScratchPool> pool_;
+  std::uint32_t last_ = 0;      ///< in the pool
+  Scratch* scratch_ = nullptr;  ///< while a question is being worked on
+  Spending* spending_ = nullptr;
+  bool dropped_ = false;  ///< it is to end as soon as it can
+  math::Pose pose_;
+  Request request_;
+  std::int64_t time_ns_ = 0;  ///< the worker's own, which never runs out
+};
+
+}  // namespace odds::query
