@@ -46,7 +46,6 @@ class CarriedContacts {
   void keep(std::span<const Contact> contacts, int wanted, std::span<const TrianglePair> hits, const math::Pose& pose,
             std::uint32_t part_of = 0) noexcept {
     part_of_ = part_of;
-    made_from_ = part_of > 0 ? part_of : static_cast<std::uint32_t>(hits.size());
     count_ = std::min(contacts.size(), held_.size());
     for (std::size_t i = 0; i < count_; ++i) held_[i] = HeldContact(contacts[i], pose);
     wanted_ = wanted;
@@ -67,9 +66,6 @@ class CarriedContacts {
   /// How many pairs of triangles the contacts were made from, if those were a part; else 0.
   [[nodiscard]] std::uint32_t part_of() const noexcept { return part_of_; }
 
-  /// How many pairs of triangles they were made from, all or a part.
-  [[nodiscard]] std::uint32_t made_from() const noexcept { return made_from_; }
-
   /// Pairs of triangles, the likeliest first, of which one that still meets proves the hit.
   [[nodiscard]] std::span<TrianglePair> proofs() noexcept { return std::span(proofs_).first(proof_count_); }
 
@@ -86,7 +82,6 @@ class CarriedContacts {
   std::size_t proof_count_ = 0;
   int wanted_ = 0;
   std::uint32_t part_of_ = 0;
-  std::uint32_t made_from_ = 0;
   math::Pose pose_;
   math::Pose rest_pose_;
   int rest_runs_ = 0;

@@ -1,5 +1,7 @@
 #include "query/late_contacts.hpp"
 
+#include <cstdio>
+#include <algorithm>
 #include <limits>
 
 #include "query/pair_memory.hpp"
@@ -33,12 +35,19 @@ LateContacts::LateContacts(const std::shared_ptr<const Shape>& a, const std::sha
   pool_->add_pair();
 }
 
+long dbg[10];
 LateContacts::~LateContacts() {
+  if (dbg[0] + dbg[1] > 100) std::fprintf(stderr, "DBG rough %ld late %ld work calls %ld finished %ld ok %ld noTime %ld noScratch %ld lateAfterSearch %ld\n", dbg[0], dbg[1], dbg[2], dbg[3], dbg[4], dbg[5], dbg[6], dbg[7]), std::fill_n(dbg, 10, 0L);
   forget();
   pool_->remove_pair();
 }
 
 void LateContacts::forget() noexcept {
+  drop();
+  manifold_.forget();
+}
+
+void LateContacts::drop() noexcept {
   if (!is_at_work()) return;
   dropped_ = true;
   scratch_->fiber->resume();  // its clock says that its time is up, and asks nobody
@@ -47,10 +56,11 @@ void LateContacts::forget() noexcept {
 
 bool LateContacts::work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair,
                         Spending& spending) noexcept {
-  if (!spending.may_make_contacts()) return false;
+  if (!spending.may_make_contacts()) { ++dbg[5]; return false; }
+  ++dbg[2];
   if (!is_at_work()) {
     scratch_ = pool_->take(last_);
-    if (scratch_ == nullptr) return false;
+    if (scratch_ == nullptr) { ++dbg[6]; return false; }
     worker_->scratch.use(scratch_);
     pose_ = pose_b_in_a;
     request_ = {};
@@ -71,10 +81,14 @@ bool LateContacts::work(const math::Pose& pose_b_in_a, const Request& request, P
   spending_ = nullptr;
   if (!scratch_->fiber->is_done()) return false;
   end();
+  ++dbg[3];
   const Answer& answer = worker_->answer;
   if (answer.contacts.empty() || !answer.contacts_complete) return false;
+  ++dbg[4];
   copy_what_is_known(*worker_, pair);
   pair.carried = worker_->carried;
+  const double size = std::min(pair.a->mesh().size(), pair.b->mesh().size());
+  manifold_.keep(answer.contacts, pose_, size, answer.contact_pairs);
   return true;
 }
 

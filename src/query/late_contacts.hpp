@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "odds/query/pair.hpp"
+#include "query/late_manifold.hpp"
 #include "query/scratch_pool.hpp"
 #include "query/spending.hpp"
 
@@ -22,8 +23,10 @@ class LateContacts {
   LateContacts(const LateContacts&) = delete;
   LateContacts& operator=(const LateContacts&) = delete;
 
-  /// Drops the question that is being worked on.
+  /// Drops the question that is being worked on, and all contacts.
   void forget() noexcept;
+  /// Contacts of poses before, to be carried along.
+  [[nodiscard]] const LateManifold& manifold() const noexcept { return manifold_; }
   /// Whether one is.
   [[nodiscard]] bool is_at_work() const noexcept { return scratch_ != nullptr; }
   /// Goes on with the question while `spending.may_make_contacts()`; without one, asks that of this run first: `pair`
@@ -32,6 +35,7 @@ class LateContacts {
             Spending& spending) noexcept;
 
  private:
+  void drop() noexcept;
   static void answer(void* self) noexcept;
   static std::int64_t read_clock(void* self) noexcept;
   void end() noexcept;
@@ -42,6 +46,7 @@ class LateContacts {
   Scratch* scratch_ = nullptr;  ///< while a question is being worked on
   Spending* spending_ = nullptr;
   bool dropped_ = false;  ///< it is to end as soon as it can
+  LateManifold manifold_;
   math::Pose pose_;
   Request request_;
   std::int64_t time_ns_ = 0;  ///< the worker's own, which never runs out

@@ -9,6 +9,7 @@
 #include "query/rough_contacts.hpp"
 
 namespace odds::query {
+extern long dbg[10];
 namespace {
 
 // A pair of triangles in a patch takes 0.3 us, half of it to be found; rays and choice some 25 us whatever their
@@ -164,28 +165,26 @@ bool prove_carried(const PosedMeshes& meshes, Pair::Implementation& pair, Spendi
   return false;
 }
 
-/// Whether the contacts of an earlier pose are of use now, far as the bodies may have moved.
-bool serves_late(const math::Pose& pose_b_in_a, const Request& request, const Pair::Implementation& pair) noexcept {
-  const double size = std::min(pair.a->mesh().size(), pair.b->mesh().size());
-  return pair.carried.serve(pose_b_in_a, request.max_contacts, tolerances::late_motion * size, size);
+/// Whether the contacts of earlier poses are of use now, far as the bodies may have moved.
+bool serves_late(const math::Pose& pose_b_in_a, const Pair::Implementation& pair) noexcept {
+  return pair.late->manifold().serves(pose_b_in_a, std::min(pair.a->mesh().size(), pair.b->mesh().size()));
 }
 
-/// Those of them that have not come apart since.
-void write_late(const math::Pose& pose_b_in_a, Pair::Implementation& pair) noexcept {
-  const std::size_t written = pair.carried.write(pose_b_in_a, pair.contacts);
-  const auto end = std::remove_if(pair.contacts.begin(), pair.contacts.begin() + static_cast<std::ptrdiff_t>(written),
-                                  [](const Contact& contact) { return !(contact.depth > 0.0); });
-  pair.answer.contacts = std::span(pair.contacts.begin(), end);
+/// Those of them that overlap.
+void write_late(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair) noexcept {
+  const std::span<Contact> room =
+      std::span(pair.contacts).first(std::min(static_cast<std::size_t>(request.max_contacts), pair.contacts.size()));
+  pair.answer.contacts = room.first(pair.late->manifold().write(pose_b_in_a, room));
   pair.answer.contacts_complete = false;
   pair.answer.contacts_late = true;
-  pair.answer.contact_pairs = pair.carried.made_from();
+  pair.answer.contact_pairs = pair.late->manifold().made_from();
 }
 
 }  // namespace
 
 std::uint32_t wanted_hits(const Request& request, const Pair::Implementation& pair) noexcept {
   if (request.max_contacts <= 1) return 1;
-  if (may_be_late(request, pair)) return most_contacts;
+  if (may_be_late(request, pair)) return pair.late->is_at_work() ? 1 : most_contacts;
   if (!std::isfinite(request.budget.microseconds)) return no_feature;
   return hits_in(request.budget.microseconds, hits_per_microsecond);
 }
@@ -202,10 +201,16 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   const bool moved_little = most_depth - pair.known_depth.depth() <= tolerances::coherent_motion * smaller;
   note_side(meshes, pair);
   if (may_be_late(request, pair)) {
-    make_rough_contacts(meshes, known_normal, moved_little, request, pair, spending);
+    if (serves_late(pose_b_in_a, pair)) {
+      ++dbg[7];
+      write_late(pose_b_in_a, request, pair);
+    } else {
+      ++dbg[0];
+      make_rough_contacts(meshes, known_normal, moved_little, request, pair, spending);
+    }
     spending.reserve_for_contacts(pair.endings.late);
-    if (pair.late->work(pose_b_in_a, request, pair, spending) && serves_late(pose_b_in_a, request, pair)) {
-      write_late(pose_b_in_a, pair);
+    if (pair.late->work(pose_b_in_a, request, pair, spending) && serves_late(pose_b_in_a, pair)) {
+      write_late(pose_b_in_a, request, pair);
     }
     return;
   }
@@ -313,11 +318,12 @@ bool carry_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, co
 bool carry_late_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request,
                          Pair::Implementation& pair, Spending& spending) noexcept {
   if (!may_be_late(request, pair)) return false;
-  if (!serves_late(pose_b_in_a, request, pair) || !prove_carried(meshes, pair, spending)) return false;
-  write_late(pose_b_in_a, pair);
+  if (!serves_late(pose_b_in_a, pair) || !prove_carried(meshes, pair, spending)) return false;
+  write_late(pose_b_in_a, request, pair);
+  ++dbg[1];
   spending.reserve_for_contacts(pair.endings.late);
-  if (pair.late->work(pose_b_in_a, request, pair, spending) && serves_late(pose_b_in_a, request, pair)) {
-    write_late(pose_b_in_a, pair);
+  if (pair.late->work(pose_b_in_a, request, pair, spending) && serves_late(pose_b_in_a, pair)) {
+    write_late(pose_b_in_a, request, pair);
   }
   return true;
 }

@@ -117,6 +117,12 @@ inline constexpr double resting_motion = 1e-5;
 /// Of the smaller body's size: contacts that are late (PairOptions::late_contacts) are carried along while bodies move
 /// by less.
 inline constexpr double late_motion = 0.02;
+/// The same: one of them that has come apart by no more is kept for when it touches again.
+inline constexpr double late_gap = 2e-3;
+/// The same, across its normal.
+inline constexpr double late_slip = 5e-3;
+/// The same: contacts nearer to each other are one.
+inline constexpr double late_spacing = 0.02;
 /// Cosine below which a surface is a wall, whose slope tells nothing of where an overlap gets deeper.
 inline constexpr double steep = 0.05;
 /// An overlap that changes by less than this part of itself across the patch is level.
