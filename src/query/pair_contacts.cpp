@@ -79,6 +79,15 @@ void limit_to_believed(const PosedMeshes& meshes, double slack, Pair::Implementa
   }
 }
 
+/// The same of contacts made in haste, whose direction is a guess: what bodies have come along it says little if it was
+/// not seen from run to run.
+void limit_in_haste(const PosedMeshes& meshes, Pair::Implementation& pair) noexcept {
+  limit_to_believed(meshes, 1.0, pair);
+  if (pair.known_depth.is_fresh()) return;
+  const double known = pair.known_depth.known() ? pair.known_depth.depth() : 0.0;
+  for (Contact& contact : own_contacts(pair)) contact.depth = std::min(contact.depth, known + unmeasured_depth(pair));
+}
+
 /// What a finished patch of a part of the rim says of the depth is taken for known as far as motion allows it.
 void note_part(const PosedMeshes& meshes, Pair::Implementation& pair) noexcept {
   double deepest = 0.0;
@@ -88,6 +97,25 @@ void note_part(const PosedMeshes& meshes, Pair::Implementation& pair) noexcept {
         std::max(deepest, std::min(contact.depth, pair.known_depth.believed(place, contact.normal, meshes.pose())));
   }
   pair.known_depth.note(meshes.pose(), deepest);
+}
+
+/// What contacts say that were made in haste, of a few pairs of triangles. They err now and then, so that each moves
+/// what is taken for known only by a share. Where two that follow each other push elsewhere, nothing has been seen to
+/// come nearer: what is known fades, or bodies that slide along each other would be taken for deeper and deeper.
+void note_in_haste(const PosedMeshes& meshes, double measured, std::size_t made, Pair::Implementation& pair) noexcept {
+  const Vec3 normal = pair.answer.contacts.front().normal;
+  const bool agrees = normal.dot(pair.hasty_normal) > tolerances::hasty_agreement;
+  pair.hasty_normal = normal;
+  double followed = pair.known_depth.depth();
+  if (agrees && pair.known_depth.is_fresh()) {
+    followed = 0.0;
+    for (const Contact& contact : pair.answer.contacts.first(made)) {
+      const Vec3 place = contact.position - meshes.origin_a();
+      followed = std::max(followed, pair.known_depth.followed(place, contact.normal, meshes.pose()));
+    }
+  }
+  const double towards = std::min({measured, followed, agrees ? followed : unmeasured_depth(pair)});
+  pair.known_depth.note(meshes.pose(), followed + tolerances::hasty_say * (towards - followed));
 }
 
 /// Bodies that were never seen apart, and never measured, or elsewhere only, may be as deep as they are; but what they
@@ -113,6 +141,28 @@ bool knows_nothing_here(bool moved_little, const Pair::Implementation& pair) noe
          (!moved_little && deepest_of(pair.answer.contacts) <= unmeasured_depth(pair) * (1.0 + 1e-9));
 }
 
+/// The memory of contacts made in haste, at the start of a run that makes some.
+void begin_in_haste(const math::Pose& pose_b_in_a, double smaller, Pair::Implementation& pair) noexcept {
+  ++pair.hasty_runs;
+  pair.haste.begin(pose_b_in_a, tolerances::hasty_slack * smaller);
+}
+
+/// Adds the places that runs before found to this run's contacts. `normal`: of all, or null where each has its own.
+void add_remembered(const math::Pose& pose_b_in_a, const Vec3* normal, const Request& request,
+                    Pair::Implementation& pair) noexcept {
+  const double near = tolerances::hasty_spacing * std::min(pair.a->mesh().size(), pair.b->mesh().size());
+  const std::size_t room = std::min(static_cast<std::size_t>(request.max_contacts), pair.contacts.size());
+  const std::size_t all =
+      pair.haste.add_to(std::span(pair.contacts).first(room), pair.answer.contacts.size(), normal, pose_b_in_a, near);
+  pair.answer.contacts = std::span(pair.contacts).first(all);
+}
+
+/// Keeps the places of the first `made` contacts for later runs.
+void remember(const math::Pose& pose_b_in_a, std::size_t made, Pair::Implementation& pair) noexcept {
+  const double near = tolerances::hasty_spacing * std::min(pair.a->mesh().size(), pair.b->mesh().size());
+  pair.haste.remember(std::span(pair.contacts).first(made), pose_b_in_a, near);
+}
+
 /// Whether contacts may be made over several runs.
 bool may_be_late(const Request& request, const Pair::Implementation& pair) noexcept {
   return pair.late != nullptr && request.max_contacts > 1 && !request.polygon_free &&
@@ -120,8 +170,9 @@ bool may_be_late(const Request& request, const Pair::Implementation& pair) noexc
 }
 
 /// What single pairs of triangles say, when there is no time for a patch.
-void make_rough_contacts(const PosedMeshes& meshes, const Vec3* known_normal, bool moved_little, const Request& request,
-                         Pair::Implementation& pair, Spending& spending) noexcept {
+void make_rough_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Vec3* known_normal,
+                         bool moved_little, const Request& request, Pair::Implementation& pair,
+                         Spending& spending) noexcept {
   const Vec3 centre_b = meshes.pose().translation + meshes.origin_a();
   const Vec3 by_place = (meshes.origin_a() - centre_b).stableNormalized();
   const Vec3 towards_a =
@@ -130,13 +181,27 @@ void make_rough_contacts(const PosedMeshes& meshes, const Vec3* known_normal, bo
   const double kept_us = may_be_late(request, pair) ? 0.5 * spending.left_us() : 0.0;
   const auto room =
       std::span(pair.contacts).first(std::min(static_cast<std::size_t>(request.max_contacts), pair.contacts.size()));
-  const std::size_t count =
-      rough_contacts(meshes, pair.hits.pairs(), pair.a->is_solid() && pair.b->is_solid(), towards_a, known_normal, room,
+  HastyMemory* const memory = may_be_late(request, pair) ? &pair.haste : nullptr;
+  const double little = tolerances::hasty_alike * std::min(pair.a->mesh().size(), pair.b->mesh().size());
+  Vec3 common;
+  const RoughContacts made =
+      rough_contacts(meshes, pair.hits.pairs(), pair.a->is_solid() && pair.b->is_solid(), towards_a, known_normal,
+                     memory, memory != nullptr ? pair.hasty_runs : 0, little, common, room,
                      [&] { return spending.may_make_contacts() && spending.left_us() >= kept_us; });
+  const std::size_t count = made.count;
   pair.answer.contacts = room.first(count);
-  limit_to_believed(meshes, 1.0, pair);
+  const double measured = made.measured;
+  if (memory != nullptr) add_remembered(pose_b_in_a, made.direction, request, pair);
+  limit_in_haste(meshes, pair);
+  if (memory != nullptr) remember(pose_b_in_a, count, pair);
   pair.answer.contacts_complete = false;
-  if (request.max_contacts > 1 && count > 0 && knows_nothing_here(moved_little, pair)) note_first_contact(meshes, pair);
+  if (request.max_contacts > 1 && count > 0) {
+    if (knows_nothing_here(moved_little, pair)) {
+      note_first_contact(meshes, pair);
+    } else {
+      note_in_haste(meshes, measured, count, pair);
+    }
+  }
   pair.answer.contact_pairs = static_cast<std::uint32_t>(count);
 }
 
@@ -201,12 +266,13 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   const bool moved_little = most_depth - pair.known_depth.depth() <= tolerances::coherent_motion * smaller;
   note_side(meshes, pair);
   if (may_be_late(request, pair)) {
+    begin_in_haste(pose_b_in_a, smaller, pair);
     if (serves_late(pose_b_in_a, pair)) {
       ++dbg[7];
       write_late(pose_b_in_a, request, pair);
     } else {
       ++dbg[0];
-      make_rough_contacts(meshes, known_normal, moved_little, request, pair, spending);
+      make_rough_contacts(meshes, pose_b_in_a, known_normal, moved_little, request, pair, spending);
     }
     spending.reserve_for_contacts(pair.endings.late);
     if (pair.late->work(pose_b_in_a, request, pair, spending) && serves_late(pose_b_in_a, pair)) {
@@ -216,7 +282,7 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   }
   if (!spending.may_make_contacts()) {
     (single ? pair.endings.single : pair.endings.patch).note(0);  // or it would never be tried again
-    make_rough_contacts(meshes, known_normal, moved_little, request, pair, spending);
+    make_rough_contacts(meshes, pose_b_in_a, known_normal, moved_little, request, pair, spending);
     return;
   }
   PatchInput input;

@@ -18,7 +18,7 @@ namespace odds::query {
 class Spending {
  public:
   /// `ending_ns`: what of the time is kept for the answer that follows a search without a proof, or with one that came
-  /// last; of a short time only three tenths, but `least_ending_ns`.
+  /// last. Of a short time no more than three tenths are kept for any ending, but `least_ending_ns`.
   /// `contacts_ns`: the same for contacts, once there is a hit to make them from.
   explicit Spending(const Budget& budget, std::int64_t ending_ns = EndingReserves{}.search.ns(),
                     std::int64_t contacts_ns = 0) noexcept
@@ -31,7 +31,7 @@ class Spending {
       timed_ = true;
       const double ns = std::clamp(budget.microseconds * 1e3, 0.0, 1e15);
       deadline_ns_ = start_ns_ + static_cast<std::int64_t>(ns);
-      search_ending_ns_ = std::min(ending_ns, std::max(least_ending_ns, allowance_ns() * 3 / 10));
+      search_ending_ns_ = kept_ns(ending_ns);
       search_deadline_ns_ = last_moment_ns_ = deadline_ns_ - search_ending_ns_;
     }
   }
@@ -56,8 +56,9 @@ class Spending {
   /// From now on the search ends early enough for contacts to be made from what it found.
   void keep_time_for_contacts() noexcept {
     if (!timed_) return;
-    const auto share_ns = static_cast<std::int64_t>(search_share * static_cast<double>(allowance_ns()));
-    last_moment_ns_ = std::min(last_moment_ns_, deadline_ns_ - (caches_are_cold() ? 2 : 1) * contacts_ns_);
+    const auto share_ns = static_cast<std::int64_t>((allowance_ns() < short_ns ? short_search_share : search_share) *
+                                                    static_cast<double>(allowance_ns()));
+    last_moment_ns_ = std::min(last_moment_ns_, deadline_ns_ - kept_ns(contacts_ns_));
     search_deadline_ns_ = std::min({search_deadline_ns_, start_ns_ + share_ns, last_moment_ns_});
   }
 
@@ -93,11 +94,16 @@ class Spending {
     if (!timed_) return;
     if (contacts_ended_) note_contacts_ending(poll());
     contacts_reserve_ = &reserve;
-    last_moment_ns_ = deadline_ns_ - (caches_are_cold() ? 2 : 1) * reserve.ns();
+    last_moment_ns_ = deadline_ns_ - kept_ns(reserve.ns());
     contacts_deadline_ns_ = last_moment_ns_ - hasty_ns;
   }
   [[nodiscard]] bool may_make_contacts() noexcept { return may_go_on_with_contacts(contacts_deadline_ns_); }
   [[nodiscard]] bool may_finish_contacts() noexcept { return may_go_on_with_contacts(last_moment_ns_); }
+  /// Microseconds for contacts before they have to be made hastily; infinite without a deadline.
+  [[nodiscard]] double left_for_contacts_us() noexcept {
+    if (!timed_) return std::numeric_limits<double>::infinity();
+    return static_cast<double>(contacts_deadline_ns_ - poll()) * 1e-3;
+  }
   /// Microseconds until the deadline, which may be past; infinite without one.
   [[nodiscard]] double left_us() noexcept {
     if (!timed_) return std::numeric_limits<double>::infinity();
@@ -128,6 +134,9 @@ class Spending {
 
   /// Of the time, for the search, once a hit was found and contacts are wanted.
   static constexpr double search_share = 0.5;
+  /// The same of a time that is short for contacts, which are made of a few hits then.
+  static constexpr double short_search_share = 0.4;
+  static constexpr std::int64_t short_ns = 50'000;
 
  private:
   /// Some three pieces of work.
@@ -148,10 +157,15 @@ class Spending {
   /// Whoever had the processor had its caches too: what is still to come takes up to twice as long.
   [[nodiscard]] bool caches_are_cold() const noexcept { return ledger_.stalls() > 0; }
 
+  [[nodiscard]] std::int64_t kept_ns(std::int64_t ending_ns) const noexcept {
+    return std::min((caches_are_cold() ? 2 : 1) * ending_ns, std::max(least_ending_ns, allowance_ns() * 3 / 10));
+  }
+
   void end_earlier() noexcept {
     search_deadline_ns_ -= search_ending_ns_;
     if (contacts_ended_) return;
-    const std::int64_t earlier_ns = contacts_reserve_ != nullptr ? contacts_reserve_->ns() : search_ending_ns_;
+    const std::int64_t earlier_ns =
+        contacts_reserve_ != nullptr ? kept_ns(contacts_reserve_->ns()) / 2 : search_ending_ns_;
     last_moment_ns_ -= earlier_ns;
     contacts_deadline_ns_ -= earlier_ns;
   }

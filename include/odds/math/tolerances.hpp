@@ -101,6 +101,18 @@ inline constexpr double lump_depth = 1000.0;
 /// then holds up what rests on it, and a wrong direction moves a body by no more than this in a few steps.
 /// Test: StarvedCrate.DoesNotSinkIn, StarvedCrate.IsNeverThrown.
 inline constexpr double unmeasured_depth = 1e-4;
+/// How much contacts made in haste say of a depth that is believed, of the difference: a tenth, so that one in ten that
+/// errs is outvoted.
+inline constexpr double hasty_say = 0.1;
+/// Of the smaller body's size: by so much a place of contact that was found in haste may part sideways before it is
+/// forgotten, and so near to each other two are one.
+inline constexpr double hasty_slack = 2e-3;
+inline constexpr double hasty_spacing = 0.02;
+/// Of the smaller body's size: overlaps of two triangles below it say nothing of which way they part. Faces that are
+/// flush overlap by nothing along each other's normals, but neither is a way out.
+inline constexpr double hasty_alike = 0.003;
+/// Cosine between the normals of two such that say the same: 30 degrees.
+inline constexpr double hasty_agreement = 0.87;
 /// How many times what is believed of a depth from motion, or need not be measured, a run may say that has looked at as
 /// many pairs as are kept: they may be taken for one lump, but runs at one pose must come to what they find there.
 /// Tests: BoltInItsNut.IsHeldByAsMuchAsItIsDeep, BoltInItsNut.ExactRunsForgetThePoseBefore.

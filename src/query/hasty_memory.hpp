@@ -1,0 +1,139 @@
+// What contacts that were made in haste, run after run, say together.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "odds/math/pose.hpp"
+#include "odds/math/tolerances.hpp"
+#include "odds/query/answer.hpp"
+#include "odds/query/contact_patch.hpp"
+
+namespace odds::query {
+
+/// What one pair of triangles that cross says of the direction in which the bodies part: along the normal of one of
+/// them, into A, as much rather as the two overlap less along it. Of a face that lies on a face, whatever the sides
+/// say.
+struct Vote {
+  Vec3 direction = Vec3::Zero();  ///< unit, or zero where neither has a normal
+  double weight = 0.0;            ///< of the part of rim that they cross in
+
+  /// `overlap_b`, `overlap_a`: along B's normal and against A's, metres; `length` of the crossing; `little`: overlaps
+  /// below it are alike.
+  [[nodiscard]] static Vote of(const Vec3& normal_a, const Vec3& normal_b, double overlap_a, double overlap_b,
+                               double length, double little) noexcept {
+    const double by_a = 1.0 / (overlap_a + little);
+    const double by_b = 1.0 / (overlap_b + little);
+    const Vec3 sum = by_b * normal_b - by_a * normal_a;
+    const double size = sum.norm();
+    if (!(size > 1e-6 * (by_a + by_b))) return {};
+    return {sum / size, (length + little) * std::max(by_a, by_b)};
+  }
+};
+
+/// A run without time for a patch sees a few pieces of the rim, which lean to their side of it and bear at one corner.
+/// Over some dozens of runs others are seen, what sides say sideways cancels out, and the corners support the body
+/// together. All in A's mesh frame, metres.
+class HastyMemory {
+ public:
+  void forget() noexcept {
+    lean_.setZero();
+    weight_ = 0.0;
+    count_ = 0;
+  }
+
+  /// A run begins with B at `pose` in A; `slack`: by so much a remembered place may part sideways.
+  void begin(const math::Pose& pose, double slack) noexcept {
+    lean_ *= kept;
+    weight_ *= kept;
+    std::size_t left = 0;
+    for (std::size_t i = 0; i < count_; ++i) {
+      Place& place = places_[i];
+      if (++place.runs > oldest || !((pose * place.on_b - place.on_a).norm() <= slack)) continue;
+      places_[left++] = place;
+    }
+    count_ = left;
+  }
+  /// `sum` of votes' directions times weights, and of the weights.
+  void see(const Vec3& sum, double weight) noexcept {
+    if (!sum.allFinite() || !(weight > 0.0)) return;
+    lean_ += sum;
+    weight_ += weight;
+  }
+
+  /// Whether anything was seen.
+  [[nodiscard]] bool has_seen() const noexcept { return weight_ > 0.0; }
+  /// Whether what was seen points one way; else there are contacts that push against each other.
+  [[nodiscard]] bool is_of_one_mind() const noexcept { return lean_.norm() > one_mind * weight_; }
+  /// Unit, into A. Precondition: is_of_one_mind().
+  [[nodiscard]] Vec3 direction() const noexcept { return lean_.normalized(); }
+
+  /// Adds the places of contacts; a new one near to a remembered one takes its turn.
+  void remember(std::span<const Contact> contacts, const math::Pose& pose, double near) noexcept {
+    const math::Pose back = pose.inverse();
+    for (const Contact& contact : contacts) {
+      std::size_t at = count_;
+      for (std::size_t i = 0; i < count_ && at == count_; ++i) {
+        if ((places_[i].on_a - contact.position).norm() <= near) at = i;
+      }
+      if (at == places_.size()) at = eldest();
+      places_[at] = {contact.position,
+                     back * contact.position,
+                     contact.normal,
+                     contact.depth,
+                     contact.triangle_a,
+                     contact.triangle_b,
+                     0};
+      count_ = std::max(count_, at + 1);
+    }
+  }
+
+  /// Appends to the `made` first of `contacts` those remembered places that are not near one of them, with `normal`, or
+  /// their own where it is null. Returns how many there are then.
+  [[nodiscard]] std::size_t add_to(std::span<Contact> contacts, std::size_t made, const Vec3* normal,
+                                   const math::Pose& pose, double near) const noexcept {
+    for (std::size_t i = 0; i < count_ && made < contacts.size(); ++i) {
+      const Place& place = places_[i];
+      const Vec3 now = pose * place.on_b;
+      const auto is_near = [&](const Contact& contact) noexcept { return (contact.position - now).norm() <= near; };
+      if (std::any_of(contacts.begin(), contacts.begin() + static_cast<std::ptrdiff_t>(made), is_near)) continue;
+      const Vec3 direction = normal != nullptr ? *normal : place.normal;
+      const double depth = place.depth + direction.dot(now - place.on_a);
+      if (!(depth >= 0.0)) continue;  // it has parted there
+      contacts[made++] = {now, direction, depth, place.triangle_a, place.triangle_b};
+    }
+    return made;
+  }
+
+ private:
+  struct Place {
+    Vec3 on_a = Vec3::Zero();  ///< where it was found
+    Vec3 on_b = Vec3::Zero();  ///< the same point of B, in B's frame
+    Vec3 normal = Vec3::UnitZ();
+    double depth = 0.0;
+    std::uint32_t triangle_a = 0;
+    std::uint32_t triangle_b = 0;
+    std::uint32_t runs = 0;  ///< since it was found
+  };
+
+  static constexpr double kept = 0.95;
+  static constexpr double one_mind = 0.4;
+  static constexpr std::uint32_t oldest = 200;
+
+  [[nodiscard]] std::size_t eldest() const noexcept {
+    std::size_t at = 0;
+    for (std::size_t i = 1; i < count_; ++i) {
+      if (places_[i].runs > places_[at].runs) at = i;
+    }
+    return at;
+  }
+
+  Vec3 lean_ = Vec3::Zero();
+  double weight_ = 0.0;
+  std::array<Place, most_contacts> places_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace odds::query
