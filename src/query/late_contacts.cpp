@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "odds/math/tolerances.hpp"
 #include "query/pair_memory.hpp"
 
 namespace odds::query {
@@ -88,7 +89,7 @@ bool LateContacts::work(const math::Pose& pose_b_in_a, const Request& request, P
   copy_what_is_known(*worker_, pair);
   pair.carried = worker_->carried;
   const double size = std::min(pair.a->mesh().size(), pair.b->mesh().size());
-  manifold_.keep(answer.contacts, pose_, size, answer.contact_pairs);
+  manifold_.keep(answer.contacts, pose_, size, tolerances::unmeasured_depth * size, answer.contact_pairs);
   return true;
 }
 

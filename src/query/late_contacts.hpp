@@ -26,6 +26,8 @@ class LateContacts {
   /// Drops the question that is being worked on, and all contacts.
   void forget() noexcept;
   /// Contacts of poses before, to be carried along.
+  /// A run begins.
+  void age() noexcept { manifold_.age(); }
   [[nodiscard]] const LateManifold& manifold() const noexcept { return manifold_; }
   /// Whether one is.
   [[nodiscard]] bool is_at_work() const noexcept { return scratch_ != nullptr; }

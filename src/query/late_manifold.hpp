@@ -16,27 +16,33 @@ namespace odds::query {
 
 /// Bodies that rest on each other rock by nanometres, and touch on one edge now, on another one then. A patch that is
 /// late by ten runs knows one of them; so those of the patches before it stay where they have come apart by little, and
-/// push again as soon as they touch. Each follows the bodies' motion. In A's mesh frame; `size`: of the smaller body,
+/// push again as soon as they touch. What came deep while nobody knew is pushed out gently: a solver would take back in
+/// a step or two what took ten, and throw the body. Each follows the bodies' motion. In A's mesh frame; `size`: of the smaller body,
 /// metres. No allocation.
 class LateManifold {
  public:
   void forget() noexcept { count_ = 0; }
 
   /// All contacts that there are at `pose`, of B's mesh frame in A's, deepest first, and how many pairs of triangles
-  /// they were made from.
-  void keep(std::span<const Contact> contacts, const math::Pose& pose, double size, std::uint32_t made_from) noexcept {
+  /// they were made from. `least`: a depth that is given at once, metres.
+  void keep(std::span<const Contact> contacts, const math::Pose& pose, double size, double least,
+            std::uint32_t made_from) noexcept {
     std::size_t kept = std::min<std::size_t>(contacts.size(), most_contacts);
-    std::array<HeldContact, most> now;
-    for (std::size_t i = 0; i < kept; ++i) now[i] = HeldContact(contacts[i], pose);
+    std::array<Entry, most> now;
+    for (std::size_t i = 0; i < kept; ++i) {
+      now[i].held = HeldContact(contacts[i], pose);
+      double given = least;
+      for (std::size_t k = 0; k < count_; ++k) {
+        if (is_same(held_[k].held, now[i].held, size)) given = std::max(given, held_[k].given(pose));
+      }
+      now[i].withheld = std::max(contacts[i].depth - given, 0.0);
+    }
     for (std::size_t i = 0; i < count_ && kept < most; ++i) {
-      const auto [depth, slip] = held_[i].parted(pose);
+      const auto [depth, slip] = held_[i].held.parted(pose);
       // What overlaps would be among the contacts if it did; what is one of them has its successor.
       if (depth > 0.0 || depth < -tolerances::late_gap * size || slip > tolerances::late_slip * size) continue;
-      const Vec3 place = held_[i].on_a();
-      const bool is_known =
-          std::any_of(now.begin(), now.begin() + static_cast<std::ptrdiff_t>(kept), [&](const HeldContact& other) {
-            return (other.on_a() - place).norm() <= tolerances::late_spacing * size;
-          });
+      const bool is_known = std::any_of(now.begin(), now.begin() + static_cast<std::ptrdiff_t>(kept),
+                                        [&](const Entry& other) { return is_same(other.held, held_[i].held, size); });
       if (!is_known) now[kept++] = held_[i];
     }
     held_ = now;
@@ -44,22 +50,28 @@ class LateManifold {
     pose_ = pose;
     made_from_ = made_from;
   }
+  /// A run begins.
+  void age() noexcept {
+    for (Entry& entry : held_) entry.withheld *= tolerances::late_patience;
+  }
 
   /// Whether no point within `size` of the first contact has moved farther than they are carried, and one of them at
   /// least overlaps.
   [[nodiscard]] bool serves(const math::Pose& pose, double size) const noexcept {
     if (count_ == 0) return false;
-    if (!(math::motion_bound_about(held_[0].on_b(), pose_, pose, size) <= tolerances::late_motion * size)) return false;
+    if (!(math::motion_bound_about(held_[0].held.on_b(), pose_, pose, size) <= tolerances::late_motion * size)) return false;
     return std::any_of(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(count_),
-                       [&pose](const HeldContact& held) { return held.parted(pose).depth > 0.0; });
+                       [&pose](const Entry& entry) { return entry.held.parted(pose).depth > 0.0; });
   }
 
   /// Writes those that overlap at `pose`, as many as there is room for, the latest first. Returns how many.
   [[nodiscard]] std::size_t write(const math::Pose& pose, std::span<Contact> contacts) const noexcept {
     std::size_t written = 0;
     for (std::size_t i = 0; i < count_ && written < contacts.size(); ++i) {
-      const Contact now = held_[i].at(pose);
-      if (now.depth > 0.0) contacts[written++] = now;
+      Contact now = held_[i].held.at(pose);
+      if (!(now.depth > 0.0)) continue;
+      now.depth = held_[i].given(pose);
+      contacts[written++] = now;
     }
     return written;
   }
@@ -68,7 +80,20 @@ class LateManifold {
  private:
   static constexpr std::size_t most = 2 * most_contacts;
 
-  std::array<HeldContact, most> held_;
+  struct Entry {
+    HeldContact held;
+    double withheld = 0.0;  ///< metres of its depth, for now
+
+    [[nodiscard]] double given(const math::Pose& pose) const noexcept {
+      return std::max(held.parted(pose).depth - withheld, 0.0);
+    }
+  };
+  [[nodiscard]] static bool is_same(const HeldContact& x, const HeldContact& y, double size) noexcept {
+    return (x.on_a() - y.on_a()).norm() <= tolerances::late_spacing * size &&
+           x.normal().dot(y.normal()) > tolerances::hasty_agreement;
+  }
+
+  std::array<Entry, most> held_;
   std::size_t count_ = 0;
   std::uint32_t made_from_ = 0;
   math::Pose pose_;

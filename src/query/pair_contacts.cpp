@@ -266,7 +266,9 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   const bool moved_little = most_depth - pair.known_depth.depth() <= tolerances::coherent_motion * smaller;
   note_side(meshes, pair);
   if (may_be_late(request, pair)) {
+    const double l0 = spending.left_us();
     begin_in_haste(pose_b_in_a, smaller, pair);
+    struct P { double l0; Spending& s; double l1; ~P() { static double a=0,b=0,c=0; static int n=0; a+=l0; b+=l1; c+=s.left_us(); if (++n % 2000 == 0) std::fprintf(stderr,"TIME left at entry %.2f after rough %.2f end %.2f\n",a/2000,b/2000,c/2000),a=b=c=0; } } pp{l0, spending, 0};
     if (serves_late(pose_b_in_a, pair)) {
       ++dbg[7];
       write_late(pose_b_in_a, request, pair);
@@ -274,6 +276,7 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
       ++dbg[0];
       make_rough_contacts(meshes, pose_b_in_a, known_normal, moved_little, request, pair, spending);
     }
+    pp.l1 = spending.left_us();
     spending.reserve_for_contacts(pair.endings.late);
     if (pair.late->work(pose_b_in_a, request, pair, spending) && serves_late(pose_b_in_a, pair)) {
       write_late(pose_b_in_a, request, pair);

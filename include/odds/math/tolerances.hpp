@@ -135,6 +135,8 @@ inline constexpr double late_gap = 2e-3;
 inline constexpr double late_slip = 5e-3;
 /// The same: contacts nearer to each other are one.
 inline constexpr double late_spacing = 0.02;
+/// What is left after a run of a depth that is withheld at first, of a contact that is found late.
+inline constexpr double late_patience = 0.985;
 /// Cosine below which a surface is a wall, whose slope tells nothing of where an overlap gets deeper.
 inline constexpr double steep = 0.05;
 /// An overlap that changes by less than this part of itself across the patch is level.
