@@ -14,6 +14,8 @@ namespace {
 constexpr std::uint32_t stack_bytes = 256 * 1024;
 /// Questions that are worked on at a time, of all pairs together.
 constexpr std::uint32_t most_at_work = 16;
+/// A guess takes as long as a run has left for work: so many runs share one.
+constexpr int runs_of_a_guess = 4;
 /// A time that no worker sees the end of.
 constexpr double ever_us = 1e9;
 
@@ -38,7 +40,7 @@ LateContacts::LateContacts(const std::shared_ptr<const Shape>& a, const std::sha
 
 long dbg[10];
 LateContacts::~LateContacts() {
-  if (dbg[0] + dbg[1] > 100) std::fprintf(stderr, "DBG rough %ld late %ld work calls %ld finished %ld ok %ld noTime %ld noScratch %ld lateAfterSearch %ld\n", dbg[0], dbg[1], dbg[2], dbg[3], dbg[4], dbg[5], dbg[6], dbg[7]), std::fill_n(dbg, 10, 0L);
+  if (dbg[0] + dbg[1] > 100) std::fprintf(stderr, "DBG rough %ld late %ld work calls %ld finished %ld ok %ld noTime %ld noScratch %ld lateAfterSearch %ld guess %ld\n", dbg[0], dbg[1], dbg[2], dbg[3], dbg[4], dbg[5], dbg[6], dbg[7], dbg[8]), std::fill_n(dbg, 10, 0L);
   forget();
   pool_->remove_pair();
 }
@@ -46,6 +48,23 @@ LateContacts::~LateContacts() {
 void LateContacts::forget() noexcept {
   drop();
   manifold_.forget();
+  guessed_ = 0;
+}
+
+void LateContacts::keep_guess(std::span<const Contact> contacts, const math::Pose& pose_b_in_a) noexcept {
+  guessed_ = std::min(contacts.size(), guess_.size());
+  for (std::size_t i = 0; i < guessed_; ++i) guess_[i] = HeldContact(contacts[i], pose_b_in_a);
+  guess_runs_ = 0;
+}
+
+std::size_t LateContacts::write_guess(const math::Pose& pose_b_in_a, std::span<Contact> contacts) noexcept {
+  if (++guess_runs_ >= runs_of_a_guess) return 0;
+  std::size_t written = 0;
+  for (std::size_t i = 0; i < guessed_ && written < contacts.size(); ++i) {
+    const Contact now = guess_[i].at(pose_b_in_a);
+    if (now.depth > 0.0) contacts[written++] = now;
+  }
+  return written;
 }
 
 void LateContacts::drop() noexcept {

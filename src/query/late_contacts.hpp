@@ -1,8 +1,11 @@
 // Contacts that a run has no time for, made over the runs that follow.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 
 #include "odds/query/pair.hpp"
 #include "query/late_manifold.hpp"
@@ -36,6 +39,12 @@ class LateContacts {
   bool work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair,
             Spending& spending) noexcept;
 
+  [[nodiscard]] bool has_guess() const noexcept { return guessed_ > 0; }
+  /// Guesses of this run, for the next ones.
+  void keep_guess(std::span<const Contact> contacts, const math::Pose& pose_b_in_a) noexcept;
+  /// Writes those of one of the last runs, moved along, while work goes on that may use the time; returns how many.
+  [[nodiscard]] std::size_t write_guess(const math::Pose& pose_b_in_a, std::span<Contact> contacts) noexcept;
+
  private:
   void drop() noexcept;
   static void answer(void* self) noexcept;
@@ -49,6 +58,9 @@ class LateContacts {
   Spending* spending_ = nullptr;
   bool dropped_ = false;  ///< it is to end as soon as it can
   LateManifold manifold_;
+  std::array<HeldContact, most_contacts> guess_;
+  std::size_t guessed_ = 0;
+  int guess_runs_ = 0;
   math::Pose pose_;
   Request request_;
   std::int64_t time_ns_ = 0;  ///< the worker's own, which never runs out

@@ -245,11 +245,23 @@ void write_late(const math::Pose& pose_b_in_a, const Request& request, Pair::Imp
   pair.answer.contact_pairs = pair.late->manifold().made_from();
 }
 
+/// The guess of a run before, if it will do.
+bool write_guess(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair) noexcept {
+  const std::span<Contact> room =
+      std::span(pair.contacts).first(std::min(static_cast<std::size_t>(request.max_contacts), pair.contacts.size()));
+  const std::size_t written = pair.late->write_guess(pose_b_in_a, room);
+  if (written == 0) return false;
+  pair.answer.contacts = room.first(written);
+  pair.answer.contacts_complete = false;
+  pair.answer.contact_pairs = static_cast<std::uint32_t>(written);
+  return true;
+}
+
 }  // namespace
 
 std::uint32_t wanted_hits(const Request& request, const Pair::Implementation& pair) noexcept {
   if (request.max_contacts <= 1) return 1;
-  if (may_be_late(request, pair)) return pair.late->is_at_work() ? 1 : most_contacts;
+  if (may_be_late(request, pair)) return pair.late->has_guess() ? 1 : most_contacts;
   if (!std::isfinite(request.budget.microseconds)) return no_feature;
   return hits_in(request.budget.microseconds, hits_per_microsecond);
 }
@@ -272,10 +284,11 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
     if (serves_late(pose_b_in_a, pair)) {
       ++dbg[7];
       write_late(pose_b_in_a, request, pair);
-    } else {
+    } else if (!write_guess(pose_b_in_a, request, pair)) {
       ++dbg[0];
       make_rough_contacts(meshes, pose_b_in_a, known_normal, moved_little, request, pair, spending);
-    }
+      pair.late->keep_guess(pair.answer.contacts, pose_b_in_a);
+    } else ++dbg[8];
     pp.l1 = spending.left_us();
     spending.reserve_for_contacts(pair.endings.late);
     if (pair.late->work(pose_b_in_a, request, pair, spending) && serves_late(pose_b_in_a, pair)) {
