@@ -20,12 +20,20 @@ struct Vote {
   Vec3 direction = Vec3::Zero();  ///< unit, or zero where neither has a normal
   double weight = 0.0;            ///< of the part of rim that they cross in
 
+  /// Of a direction where another one is expected, squared cosine, or where none is (zero).
+  [[nodiscard]] static double likelihood(const Vec3& direction, const Vec3& expected) noexcept {
+    if (expected.isZero()) return 1.0;
+    const double along = unlikely + std::max(0.0, direction.dot(expected));
+    return along * along;
+  }
+  static constexpr double unlikely = 0.05;
+
   /// `overlap_b`, `overlap_a`: along B's normal and against A's, metres; `length` of the crossing; `little`: overlaps
   /// below it are alike.
   [[nodiscard]] static Vote of(const Vec3& normal_a, const Vec3& normal_b, double overlap_a, double overlap_b,
-                               double length, double little) noexcept {
-    const double by_a = 1.0 / (overlap_a + little);
-    const double by_b = 1.0 / (overlap_b + little);
+                               double length, double little, const Vec3& expected) noexcept {
+    const double by_a = likelihood(-normal_a, expected) / (overlap_a + little);
+    const double by_b = likelihood(normal_b, expected) / (overlap_b + little);
     const Vec3 sum = by_b * normal_b - by_a * normal_a;
     const double size = sum.norm();
     if (!(size > 1e-6 * (by_a + by_b))) return {};

@@ -26,7 +26,7 @@ class KnownDepth {
   void age() noexcept { ++runs_; }
   /// Whether the last run or the one before noted it: what bodies have come since is a matter of two steps. Else they
   /// may have been anywhere in between.
-  [[nodiscard]] bool is_fresh() const noexcept { return runs_ <= 2; }
+  [[nodiscard]] bool is_fresh() const noexcept { return runs_ <= 5; }
   [[nodiscard]] bool known() const noexcept { return known_; }
   /// What was noted, metres.
   [[nodiscard]] double depth() const noexcept { return depth_; }

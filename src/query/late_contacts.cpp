@@ -14,8 +14,6 @@ namespace {
 constexpr std::uint32_t stack_bytes = 256 * 1024;
 /// Questions that are worked on at a time, of all pairs together.
 constexpr std::uint32_t most_at_work = 16;
-/// A guess takes as long as a run has left for work: so many runs share one.
-constexpr int runs_of_a_guess = 4;
 /// A time that no worker sees the end of.
 constexpr double ever_us = 1e9;
 
@@ -97,8 +95,11 @@ bool LateContacts::work(const math::Pose& pose_b_in_a, const Request& request, P
     scratch_->fiber->start(&LateContacts::answer, this);
   }
   spending_ = &spending;
+  static double wt; static long wn, wp; const double w0 = spending.left_us(); const auto t0 = time_ns_;
   scratch_->fiber->resume();
   spending_ = nullptr;
+  wt += w0 - spending.left_us(); wp += (time_ns_ - t0) / 100; ++wn;
+  if (scratch_->fiber->is_done()) { std::fprintf(stderr, "JOB %.1f us %ld polls %ld runs hits %zu\n", wt, wp, wn, worker_->hits.size()); wt = 0; wn = wp = 0; }
   if (!scratch_->fiber->is_done()) return false;
   end();
   ++dbg[3];

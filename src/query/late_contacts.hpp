@@ -39,13 +39,17 @@ class LateContacts {
   bool work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair,
             Spending& spending) noexcept;
 
-  [[nodiscard]] bool has_guess() const noexcept { return guessed_ > 0; }
+  /// Whether the next run may use a guess of one before.
+  [[nodiscard]] bool has_guess() const noexcept { return guessed_ > 0 && guess_runs_ + 1 < runs_of_a_guess; }
   /// Guesses of this run, for the next ones.
   void keep_guess(std::span<const Contact> contacts, const math::Pose& pose_b_in_a) noexcept;
   /// Writes those of one of the last runs, moved along, while work goes on that may use the time; returns how many.
   [[nodiscard]] std::size_t write_guess(const math::Pose& pose_b_in_a, std::span<Contact> contacts) noexcept;
 
  private:
+  /// A guess takes as long as a run has left for work: so many runs share one.
+  static constexpr int runs_of_a_guess = 4;
+
   void drop() noexcept;
   static void answer(void* self) noexcept;
   static std::int64_t read_clock(void* self) noexcept;

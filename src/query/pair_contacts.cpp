@@ -184,9 +184,10 @@ void make_rough_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_
   HastyMemory* const memory = may_be_late(request, pair) ? &pair.haste : nullptr;
   const double little = tolerances::hasty_alike * std::min(pair.a->mesh().size(), pair.b->mesh().size());
   Vec3 common;
+  const Vec3 expected = pair.previous_normal.isZero() ? pair.came : pair.previous_normal;
   const RoughContacts made =
       rough_contacts(meshes, pair.hits.pairs(), pair.a->is_solid() && pair.b->is_solid(), towards_a, known_normal,
-                     memory, memory != nullptr ? pair.hasty_runs : 0, little, common, room,
+                     memory, memory != nullptr ? pair.hasty_runs : 0, little, expected, common, room,
                      [&] { return spending.may_make_contacts() && spending.left_us() >= kept_us; });
   const std::size_t count = made.count;
   pair.answer.contacts = room.first(count);
@@ -290,6 +291,7 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
       pair.late->keep_guess(pair.answer.contacts, pose_b_in_a);
     } else ++dbg[8];
     pp.l1 = spending.left_us();
+    if (getenv("TR")) { const auto& c = pair.answer.contacts; std::fprintf(stderr, "TR run %u %s n %zu", pair.hasty_runs, pair.answer.contacts_late ? "late" : "guess", c.size()); if (!c.empty()) std::fprintf(stderr, " nrm %.2f %.2f %.2f d %.4f mm at %.1f %.1f %.1f", c[0].normal.x(), c[0].normal.y(), c[0].normal.z(), c[0].depth*1e3, c[0].position.x()*1e3, c[0].position.y()*1e3, c[0].position.z()*1e3); std::fprintf(stderr, " came %.2f %.2f %.2f prev %.2f t %.4f %.4f %.4f mm left %.2f\n", pair.came.x(), pair.came.y(), pair.came.z(), pair.previous_normal.z(), pose_b_in_a.translation.x()*1e3, pose_b_in_a.translation.y()*1e3, pose_b_in_a.translation.z()*1e3, pp.l1); }
     spending.reserve_for_contacts(pair.endings.late);
     if (pair.late->work(pose_b_in_a, request, pair, spending) && serves_late(pose_b_in_a, pair)) {
       write_late(pose_b_in_a, request, pair);

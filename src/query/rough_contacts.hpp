@@ -133,14 +133,14 @@ struct Crossing {
 
 /// See Vote. `towards_a`: the side of surfaces that have none.
 [[nodiscard]] inline Vote vote_of(const Crossing& crossing, bool both_solid, const Vec3& towards_a,
-                                  double little) noexcept {
+                                  double little, const Vec3& expected) noexcept {
   const auto turned = [&](const Vec3& normal) noexcept {
     return !both_solid && normal.dot(towards_a) < 0.0 ? Vec3(-normal) : normal;
   };
   const Vec3 by_b = turned(crossing.normal_b);
   const Vec3 by_a = turned(-crossing.normal_a);
   return Vote::of(-by_a, by_b, crossing.overlap_along(by_a), crossing.overlap_along(by_b),
-                  (crossing.segment.end - crossing.segment.begin).norm(), little);
+                  (crossing.segment.end - crossing.segment.begin).norm(), little, expected);
 }
 
 struct RoughContacts {
@@ -158,7 +158,7 @@ struct RoughContacts {
 template <class MayGoOn>
 RoughContacts rough_contacts(const PosedMeshes& meshes, std::span<const TrianglePair> hits, bool both_solid,
                              const Vec3& towards_a, const Vec3* known, HastyMemory* memory, std::size_t first,
-                             double little, Vec3& common, std::span<Contact> written, MayGoOn may_go_on) noexcept {
+                             double little, const Vec3& expected, Vec3& common, std::span<Contact> written, MayGoOn may_go_on) noexcept {
   std::array<Crossing, most_contacts> crossings;  // also for one contact: a direction is made of several
   std::array<TrianglePair, most_contacts> chosen;
   const std::size_t most = std::min(hits.size(), crossings.size());
@@ -175,7 +175,7 @@ RoughContacts rough_contacts(const PosedMeshes& meshes, std::span<const Triangle
   const std::span<const Crossing> made = std::span(crossings).first(count);
   if (memory != nullptr) {
     for (const Crossing& crossing : made) {
-      const Vote vote = vote_of(crossing, both_solid, towards_a, little);
+      const Vote vote = vote_of(crossing, both_solid, towards_a, little, expected);
       memory->see(vote.weight * vote.direction, vote.weight);
     }
   }
@@ -197,7 +197,7 @@ RoughContacts rough_contacts(const PosedMeshes& meshes, std::span<const Triangle
     written[i] = {made[i].middle() + meshes.origin_a(), direction, memory != nullptr ? depths[i] : depth, chosen[i].a,
                   chosen[i].b};
     if (!own) continue;
-    const Vote vote = vote_of(made[i], both_solid, towards_a, little);
+    const Vote vote = vote_of(made[i], both_solid, towards_a, little, expected);
     if (!(vote.weight > 0.0)) continue;
     written[i].normal = vote.direction;
     written[i].depth = std::min(wide, made[i].overlap_along(written[i].normal));
