@@ -83,9 +83,8 @@ void limit_to_believed(const PosedMeshes& meshes, double slack, Pair::Implementa
 /// not seen from run to run.
 void limit_in_haste(const PosedMeshes& meshes, Pair::Implementation& pair) noexcept {
   limit_to_believed(meshes, 1.0, pair);
-  if (pair.known_depth.is_fresh()) return;
-  const double known = pair.known_depth.known() ? pair.known_depth.depth() : 0.0;
-  for (Contact& contact : own_contacts(pair)) contact.depth = std::min(contact.depth, known + unmeasured_depth(pair));
+  const double most = pair.late ? unmeasured_depth(pair) : 1e9;
+  for (Contact& contact : own_contacts(pair)) contact.depth = std::min(contact.depth, most);
 }
 
 /// What a finished patch of a part of the rim says of the depth is taken for known as far as motion allows it.

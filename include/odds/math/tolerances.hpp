@@ -128,7 +128,7 @@ inline constexpr double way_it_came = 0.25;
 inline constexpr double resting_motion = 1e-5;
 /// Of the smaller body's size: contacts that are late (PairOptions::late_contacts) are carried along while bodies move
 /// by less.
-inline constexpr double late_motion = 0.02;
+inline constexpr double late_motion = 2e-3;
 /// The same: one of them that has come apart by no more is kept for when it touches again.
 inline constexpr double late_gap = 2e-3;
 /// The same, across its normal.
