@@ -51,8 +51,8 @@ class LateManifold {
     made_from_ = made_from;
   }
   /// A run begins.
-  void age() noexcept {
-    for (Entry& entry : held_) entry.withheld *= tolerances::late_patience;
+  void age(double size) noexcept {
+    for (Entry& entry : held_) entry.withheld = std::max(entry.withheld - tolerances::late_rise * size, 0.0);
   }
 
   /// Whether no point within `size` of the first contact has moved farther than they are carried, and one of them at
@@ -61,15 +61,19 @@ class LateManifold {
     if (count_ == 0) return false;
     if (!(math::motion_bound_about(held_[0].held.on_b(), pose_, pose, size) <= tolerances::late_motion * size)) return false;
     return std::any_of(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(count_),
-                       [&pose](const Entry& entry) { return entry.held.parted(pose).depth > 0.0; });
+                       [&](const Entry& entry) {
+                         const auto [depth, slip] = entry.held.parted(pose);
+                         return depth > 0.0 && slip <= tolerances::late_slip * size;
+                       });
   }
 
   /// Writes those that overlap at `pose`, as many as there is room for, the latest first. Returns how many.
-  [[nodiscard]] std::size_t write(const math::Pose& pose, std::span<Contact> contacts) const noexcept {
+  [[nodiscard]] std::size_t write(const math::Pose& pose, double size, std::span<Contact> contacts) const noexcept {
     std::size_t written = 0;
     for (std::size_t i = 0; i < count_ && written < contacts.size(); ++i) {
+      const auto [depth, slip] = held_[i].held.parted(pose);
+      if (!(depth > 0.0) || slip > tolerances::late_slip * size) continue;
       Contact now = held_[i].held.at(pose);
-      if (!(now.depth > 0.0)) continue;
       now.depth = held_[i].given(pose);
       contacts[written++] = now;
     }

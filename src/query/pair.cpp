@@ -251,7 +251,7 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
   answer = {};
   pair.hits.clear();
   pair.known_depth.age();
-  if (pair.late) pair.late->age();
+  if (pair.late) pair.late->age(std::min(pair.a->mesh().size(), pair.b->mesh().size()));
   const PosedMeshes meshes(pair.a->mesh(), pair.b->mesh(), a.origin(), b.origin(), pose_b_in_a);
   forget_if_elsewhere(meshes, pair);
   search_and_answer(a, b, meshes, pose_b_in_a, request, pair, spending);

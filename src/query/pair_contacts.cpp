@@ -239,7 +239,7 @@ bool serves_late(const math::Pose& pose_b_in_a, const Pair::Implementation& pair
 void write_late(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair) noexcept {
   const std::span<Contact> room =
       std::span(pair.contacts).first(std::min(static_cast<std::size_t>(request.max_contacts), pair.contacts.size()));
-  pair.answer.contacts = room.first(pair.late->manifold().write(pose_b_in_a, room));
+  pair.answer.contacts = room.first(pair.late->manifold().write(pose_b_in_a, std::min(pair.a->mesh().size(), pair.b->mesh().size()), room));
   pair.answer.contacts_complete = false;
   pair.answer.contacts_late = true;
   pair.answer.contact_pairs = pair.late->manifold().made_from();

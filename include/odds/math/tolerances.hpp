@@ -128,15 +128,16 @@ inline constexpr double way_it_came = 0.25;
 inline constexpr double resting_motion = 1e-5;
 /// Of the smaller body's size: contacts that are late (PairOptions::late_contacts) are carried along while bodies move
 /// by less.
-inline constexpr double late_motion = 2e-3;
+inline constexpr double late_motion = 0.02;
 /// The same: one of them that has come apart by no more is kept for when it touches again.
 inline constexpr double late_gap = 2e-3;
 /// The same, across its normal.
 inline constexpr double late_slip = 5e-3;
 /// The same: contacts nearer to each other are one.
 inline constexpr double late_spacing = 0.02;
-/// What is left after a run of a depth that is withheld at first, of a contact that is found late.
-inline constexpr double late_patience = 0.985;
+/// Of the smaller body's size, a run: how fast a depth that is withheld at first, of a contact that is found late, is
+/// given after all, and so how fast at most it pushes bodies apart.
+inline constexpr double late_rise = 2e-5;
 /// Cosine below which a surface is a wall, whose slope tells nothing of where an overlap gets deeper.
 inline constexpr double steep = 0.05;
 /// An overlap that changes by less than this part of itself across the patch is level.
