@@ -107,9 +107,9 @@ bool LateContacts::work(const math::Pose& pose_b_in_a, const Request& request, P
   if (answer.contacts.empty() || !answer.contacts_complete) return false;
   ++dbg[4];
   copy_what_is_known(*worker_, pair);
-  pair.carried = worker_->carried;
   const double size = std::min(pair.a->mesh().size(), pair.b->mesh().size());
   manifold_.keep(answer.contacts, pose_, size, tolerances::unmeasured_depth * size, answer.contact_pairs);
+  if (manifold_.gives_all()) pair.carried = worker_->carried;  // else what is carried would push at once
   return true;
 }
 

@@ -50,6 +50,11 @@ class LateManifold {
     pose_ = pose;
     made_from_ = made_from;
   }
+  /// Whether nothing is withheld.
+  [[nodiscard]] bool gives_all() const noexcept {
+    return std::all_of(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(count_),
+                       [](const Entry& entry) { return !(entry.withheld > 0.0); });
+  }
   /// A run begins.
   void age(double size) noexcept {
     for (Entry& entry : held_) entry.withheld = std::max(entry.withheld - tolerances::late_rise * size, 0.0);
