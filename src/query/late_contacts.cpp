@@ -49,6 +49,10 @@ void LateContacts::forget() noexcept {
   guessed_ = 0;
 }
 
+std::span<const TrianglePair> LateContacts::hits() const noexcept {
+  return is_at_work() ? worker_->hits.pairs() : std::span<const TrianglePair>();
+}
+
 void LateContacts::keep_guess(std::span<const Contact> contacts, const math::Pose& pose_b_in_a) noexcept {
   guessed_ = std::min(contacts.size(), guess_.size());
   for (std::size_t i = 0; i < guessed_; ++i) guess_[i] = HeldContact(contacts[i], pose_b_in_a);
@@ -59,8 +63,10 @@ std::size_t LateContacts::write_guess(const math::Pose& pose_b_in_a, std::span<C
   if (++guess_runs_ >= runs_of_a_guess) return 0;
   std::size_t written = 0;
   for (std::size_t i = 0; i < guessed_ && written < contacts.size(); ++i) {
-    const Contact now = guess_[i].at(pose_b_in_a);
-    if (now.depth > 0.0) contacts[written++] = now;
+    Contact now = guess_[i].at(pose_b_in_a);
+    if (!(now.depth > 0.0)) continue;
+    now.depth = std::min(now.depth, guess_[i].depth());
+    contacts[written++] = now;
   }
   return written;
 }

@@ -39,6 +39,8 @@ class LateContacts {
   bool work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair,
             Spending& spending) noexcept;
 
+  /// Pairs of triangles that the work has found to meet so far, at the pose that it is about; more than a run finds.
+  [[nodiscard]] std::span<const TrianglePair> hits() const noexcept;
   /// Whether the next run may use a guess of one before.
   [[nodiscard]] bool has_guess() const noexcept { return guessed_ > 0 && guess_runs_ + 1 < runs_of_a_guess; }
   /// Guesses of this run, for the next ones.

@@ -72,15 +72,28 @@ class LateManifold {
                        });
   }
 
-  /// Writes those that overlap at `pose`, as many as there is room for, the latest first. Returns how many.
+  /// Writes those that overlap at `pose`, as many as there is room for, the deepest first: one that is left out while
+  /// the bodies come deeper there would push all at once when it is not. Returns how many.
   [[nodiscard]] std::size_t write(const math::Pose& pose, double size, std::span<Contact> contacts) const noexcept {
-    std::size_t written = 0;
-    for (std::size_t i = 0; i < count_ && written < contacts.size(); ++i) {
+    struct Candidate {
+      double depth;
+      std::size_t entry;
+    };
+    std::array<Candidate, most> candidates;
+    std::size_t overlapping = 0;
+    for (std::size_t i = 0; i < count_; ++i) {
       const auto [depth, slip] = held_[i].held.parted(pose);
-      if (!(depth > 0.0) || slip > tolerances::late_slip * size) continue;
-      Contact now = held_[i].held.at(pose);
-      now.depth = held_[i].given(pose);
-      contacts[written++] = now;
+      if (depth > 0.0 && slip <= tolerances::late_slip * size) candidates[overlapping++] = {depth, i};
+    }
+    const std::size_t written = std::min(overlapping, contacts.size());
+    const auto begin = candidates.begin();
+    std::partial_sort(begin, begin + static_cast<std::ptrdiff_t>(written),
+                      begin + static_cast<std::ptrdiff_t>(overlapping),
+                      [](const Candidate& x, const Candidate& y) { return x.depth > y.depth; });
+    for (std::size_t i = 0; i < written; ++i) {
+      const Entry& entry = held_[candidates[i].entry];
+      contacts[i] = entry.held.at(pose);
+      contacts[i].depth = entry.given(pose);
     }
     return written;
   }

@@ -245,6 +245,18 @@ void write_late(const math::Pose& pose_b_in_a, const Request& request, Pair::Imp
   pair.answer.contact_pairs = pair.late->manifold().made_from();
 }
 
+/// A search that ends early has found hits on one side only. Some of those of the work under way, which has looked
+/// everywhere, still are hits.
+void add_hits_of_work(const PosedMeshes& meshes, Pair::Implementation& pair, Spending& spending) noexcept {
+  const std::span<const TrianglePair> hits = pair.late->hits();
+  constexpr std::size_t most_tried = 4;
+  for (std::size_t i = 0; i < std::min(most_tried, hits.size()) && spending.may_make_contacts(); ++i) {
+    const TrianglePair tried = hits[(i * hits.size() / most_tried + 5 * pair.hasty_runs) % hits.size()];
+    spending.spend_triangle_pairs(1);
+    if (meshes.meet(tried)) pair.hits.add(tried);
+  }
+}
+
 /// The guess of a run before, if it will do.
 bool write_guess(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair) noexcept {
   const std::span<Contact> room =
@@ -286,6 +298,7 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
       write_late(pose_b_in_a, request, pair);
     } else if (!write_guess(pose_b_in_a, request, pair)) {
       ++dbg[0];
+      add_hits_of_work(meshes, pair, spending);
       make_rough_contacts(meshes, pose_b_in_a, known_normal, moved_little, request, pair, spending);
       pair.late->keep_guess(pair.answer.contacts, pose_b_in_a);
     } else ++dbg[8];

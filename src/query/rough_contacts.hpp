@@ -132,8 +132,8 @@ struct Crossing {
 }
 
 /// See Vote. `towards_a`: the side of surfaces that have none.
-[[nodiscard]] inline Vote vote_of(const Crossing& crossing, bool both_solid, const Vec3& towards_a,
-                                  double little, const Vec3& expected) noexcept {
+[[nodiscard]] inline Vote vote_of(const Crossing& crossing, bool both_solid, const Vec3& towards_a, double little,
+                                  const Vec3& expected) noexcept {
   const auto turned = [&](const Vec3& normal) noexcept {
     return !both_solid && normal.dot(towards_a) < 0.0 ? Vec3(-normal) : normal;
   };
@@ -158,7 +158,8 @@ struct RoughContacts {
 template <class MayGoOn>
 RoughContacts rough_contacts(const PosedMeshes& meshes, std::span<const TrianglePair> hits, bool both_solid,
                              const Vec3& towards_a, const Vec3* known, HastyMemory* memory, std::size_t first,
-                             double little, const Vec3& expected, Vec3& common, std::span<Contact> written, MayGoOn may_go_on) noexcept {
+                             double little, const Vec3& expected, Vec3& common, std::span<Contact> written,
+                             MayGoOn may_go_on) noexcept {
   std::array<Crossing, most_contacts> crossings;  // also for one contact: a direction is made of several
   std::array<TrianglePair, most_contacts> chosen;
   const std::size_t most = std::min(hits.size(), crossings.size());

@@ -38,6 +38,8 @@ class HeldContact {
     now.depth = std::max(contact_.normal.dot(on_b - on_a_), 0.0);
     return now;
   }
+  /// As it was found, metres.
+  [[nodiscard]] double depth() const noexcept { return contact_.depth; }
   [[nodiscard]] const Vec3& normal() const noexcept { return contact_.normal; }
   /// Its point of A's surface, in A's mesh frame.
   [[nodiscard]] const Vec3& on_a() const noexcept { return on_a_; }
