@@ -49,6 +49,10 @@ void LateContacts::forget() noexcept {
   guessed_ = 0;
 }
 
+void LateContacts::age(const math::Pose& pose_b_in_a, double size) noexcept {
+  manifold_.age(pose_b_in_a, size, tolerances::unmeasured_depth * size);
+}
+
 std::span<const TrianglePair> LateContacts::hits() const noexcept {
   return is_at_work() ? worker_->hits.pairs() : std::span<const TrianglePair>();
 }
@@ -115,7 +119,7 @@ bool LateContacts::work(const math::Pose& pose_b_in_a, const Request& request, P
   copy_what_is_known(*worker_, pair);
   const double size = std::min(pair.a->mesh().size(), pair.b->mesh().size());
   manifold_.keep(answer.contacts, pose_, size, tolerances::unmeasured_depth * size, answer.contact_pairs);
-  if (manifold_.gives_all()) pair.carried = worker_->carried;  // else what is carried would push at once
+  if (manifold_.gives_all(pose_)) pair.carried = worker_->carried;  // else what is carried would push at once
   return true;
 }
 

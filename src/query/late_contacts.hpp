@@ -30,7 +30,7 @@ class LateContacts {
   void forget() noexcept;
   /// Contacts of poses before, to be carried along.
   /// A run begins.
-  void age(double size) noexcept { manifold_.age(size); }
+  void age(const math::Pose& pose_b_in_a, double size) noexcept;
   [[nodiscard]] const LateManifold& manifold() const noexcept { return manifold_; }
   /// Whether one is.
   [[nodiscard]] bool is_at_work() const noexcept { return scratch_ != nullptr; }

@@ -33,9 +33,9 @@ class LateManifold {
       now[i].held = HeldContact(contacts[i], pose);
       double given = least;
       for (std::size_t k = 0; k < count_; ++k) {
-        if (is_same(held_[k].held, now[i].held, size)) given = std::max(given, held_[k].given(pose));
+        if (is_same(held_[k].held, now[i].held, size)) given = std::max(given, held_[k].given);
       }
-      now[i].withheld = std::max(contacts[i].depth - given, 0.0);
+      now[i].given = std::min(contacts[i].depth, given);
     }
     for (std::size_t i = 0; i < count_ && kept < most; ++i) {
       const auto [depth, slip] = held_[i].held.parted(pose);
@@ -50,14 +50,17 @@ class LateManifold {
     pose_ = pose;
     made_from_ = made_from;
   }
-  /// Whether nothing is withheld.
-  [[nodiscard]] bool gives_all() const noexcept {
+  /// Whether all of each depth is given.
+  [[nodiscard]] bool gives_all(const math::Pose& pose) const noexcept {
     return std::all_of(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(count_),
-                       [](const Entry& entry) { return !(entry.withheld > 0.0); });
+                       [&pose](const Entry& entry) { return entry.given >= entry.held.parted(pose).depth; });
   }
-  /// A run begins.
-  void age(double size) noexcept {
-    for (Entry& entry : held_) entry.withheld = std::max(entry.withheld - tolerances::late_rise * size, 0.0);
+  /// A run begins, at `pose`.
+  void age(const math::Pose& pose, double size, double least) noexcept {
+    for (Entry& entry : std::span(held_).first(count_)) {
+      const double depth = std::max(entry.held.parted(pose).depth, 0.0);
+      entry.given = std::min(depth, std::max(entry.given + tolerances::late_rise * size, least));
+    }
   }
 
   /// Whether no point within `size` of the first contact has moved farther than they are carried, and one of them at
@@ -93,7 +96,7 @@ class LateManifold {
     for (std::size_t i = 0; i < written; ++i) {
       const Entry& entry = held_[candidates[i].entry];
       contacts[i] = entry.held.at(pose);
-      contacts[i].depth = entry.given(pose);
+      contacts[i].depth = entry.given;
     }
     return written;
   }
@@ -104,11 +107,7 @@ class LateManifold {
 
   struct Entry {
     HeldContact held;
-    double withheld = 0.0;  ///< metres of its depth, for now
-
-    [[nodiscard]] double given(const math::Pose& pose) const noexcept {
-      return std::max(held.parted(pose).depth - withheld, 0.0);
-    }
+    double given = 0.0;  ///< metres of its depth
   };
   [[nodiscard]] static bool is_same(const HeldContact& x, const HeldContact& y, double size) noexcept {
     return (x.on_a() - y.on_a()).norm() <= tolerances::late_spacing * size &&
