@@ -50,6 +50,10 @@ class CarriedContacts {
     for (std::size_t i = 0; i < count_; ++i) held_[i] = HeldContact(contacts[i], pose);
     wanted_ = wanted;
     pose_ = pose;
+    keep_proofs(hits);
+  }
+  /// Others than those of the contacts: any pair of triangles that meets proves a hit.
+  void keep_proofs(std::span<const TrianglePair> hits) noexcept {
     proof_count_ = std::min(hits.size(), most_proofs);
     for (std::size_t i = 0; i < proof_count_; ++i) proofs_[i] = hits[i * hits.size() / proof_count_];
   }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cstdint>
 #include <limits>
 
 #include "odds/math/motion.hpp"
@@ -20,13 +19,7 @@ class KnownDepth {
     pose_ = pose;
     depth_ = depth;
     known_ = true;
-    runs_ = 0;
   }
-  /// Another run of the pair begins.
-  void age() noexcept { ++runs_; }
-  /// Whether the last run or the one before noted it: what bodies have come since is a matter of two steps. Else they
-  /// may have been anywhere in between.
-  [[nodiscard]] bool is_fresh() const noexcept { return runs_ <= 5; }
   [[nodiscard]] bool known() const noexcept { return known_; }
   /// What was noted, metres.
   [[nodiscard]] double depth() const noexcept { return depth_; }
@@ -48,17 +41,12 @@ class KnownDepth {
     const double slid = (come - along * normal).norm();
     return std::max(depth_ + along + slope * slid, 0.0);
   }
-  /// The same without slopes: for steps in a row, over which they would add up.
-  [[nodiscard]] double followed(const Vec3& place, const Vec3& normal, const math::Pose& pose) const noexcept {
-    return known_ ? std::max(depth_ + normal.dot(motion_of(place, pose)), 0.0) : 0.0;
-  }
 
  private:
   static constexpr double slope = 0.05;
 
   math::Pose pose_;
   double depth_ = 0.0;
-  std::uint32_t runs_ = 0;  ///< since it was noted
   bool known_ = false;
 };
 

@@ -1,9 +1,9 @@
 #include "query/late_contacts.hpp"
 
-#include <cstdio>
 #include <algorithm>
 #include <limits>
 
+#include "odds/math/motion.hpp"
 #include "odds/math/tolerances.hpp"
 #include "query/pair_memory.hpp"
 
@@ -36,9 +36,7 @@ LateContacts::LateContacts(const std::shared_ptr<const Shape>& a, const std::sha
   pool_->add_pair();
 }
 
-long dbg[10];
 LateContacts::~LateContacts() {
-  if (dbg[0] + dbg[1] > 100) std::fprintf(stderr, "DBG rough %ld late %ld work calls %ld finished %ld ok %ld noTime %ld noScratch %ld lateAfterSearch %ld guess %ld\n", dbg[0], dbg[1], dbg[2], dbg[3], dbg[4], dbg[5], dbg[6], dbg[7], dbg[8]), std::fill_n(dbg, 10, 0L);
   forget();
   pool_->remove_pair();
 }
@@ -47,6 +45,7 @@ void LateContacts::forget() noexcept {
   drop();
   manifold_.forget();
   guessed_ = 0;
+  starved_ = false;
 }
 
 void LateContacts::age(const math::Pose& pose_b_in_a, double size) noexcept {
@@ -60,11 +59,11 @@ std::span<const TrianglePair> LateContacts::hits() const noexcept {
 void LateContacts::keep_guess(std::span<const Contact> contacts, const math::Pose& pose_b_in_a) noexcept {
   guessed_ = std::min(contacts.size(), guess_.size());
   for (std::size_t i = 0; i < guessed_; ++i) guess_[i] = HeldContact(contacts[i], pose_b_in_a);
-  guess_runs_ = 0;
 }
 
 std::size_t LateContacts::write_guess(const math::Pose& pose_b_in_a, std::span<Contact> contacts) noexcept {
-  if (++guess_runs_ >= runs_of_a_guess) return 0;
+  if (!shares_guess()) return 0;
+  starved_ = false;
   std::size_t written = 0;
   for (std::size_t i = 0; i < guessed_ && written < contacts.size(); ++i) {
     Contact now = guess_[i].at(pose_b_in_a);
@@ -84,11 +83,11 @@ void LateContacts::drop() noexcept {
 
 bool LateContacts::work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair,
                         Spending& spending) noexcept {
-  if (!spending.may_make_contacts()) { ++dbg[5]; return false; }
-  ++dbg[2];
+  starved_ = !spending.may_make_contacts();
+  if (starved_) return false;
   if (!is_at_work()) {
     scratch_ = pool_->take(last_);
-    if (scratch_ == nullptr) { ++dbg[6]; return false; }
+    if (scratch_ == nullptr) return false;
     worker_->scratch.use(scratch_);
     pose_ = pose_b_in_a;
     request_ = {};
@@ -105,21 +104,22 @@ bool LateContacts::work(const math::Pose& pose_b_in_a, const Request& request, P
     scratch_->fiber->start(&LateContacts::answer, this);
   }
   spending_ = &spending;
-  static double wt; static long wn, wp; const double w0 = spending.left_us(); const auto t0 = time_ns_;
   scratch_->fiber->resume();
   spending_ = nullptr;
-  wt += w0 - spending.left_us(); wp += (time_ns_ - t0) / 100; ++wn;
-  if (scratch_->fiber->is_done()) { std::fprintf(stderr, "JOB %.1f us %ld polls %ld runs hits %zu\n", wt, wp, wn, worker_->hits.size()); wt = 0; wn = wp = 0; }
   if (!scratch_->fiber->is_done()) return false;
   end();
-  ++dbg[3];
   const Answer& answer = worker_->answer;
   if (answer.contacts.empty() || !answer.contacts_complete) return false;
-  ++dbg[4];
-  copy_what_is_known(*worker_, pair);
   const double size = std::min(pair.a->mesh().size(), pair.b->mesh().size());
+  const Vec3 on_b = pose_.inverse() * answer.contacts.front().position;
+  if (!(math::motion_bound_about(on_b, pose_, pose_b_in_a, size) <= tolerances::late_motion * size)) return false;
+  copy_what_is_known(*worker_, pair);
   manifold_.keep(answer.contacts, pose_, size, tolerances::unmeasured_depth * size, answer.contact_pairs);
-  if (manifold_.gives_all(pose_)) pair.carried = worker_->carried;  // else what is carried would push at once
+  if (manifold_.gives_all(pose_)) {
+    pair.carried = worker_->carried;
+  } else {  // what is carried would push at once
+    pair.carried.keep_proofs(worker_->hits.pairs());
+  }
   return true;
 }
 

@@ -41,17 +41,14 @@ class LateContacts {
 
   /// Pairs of triangles that the work has found to meet so far, at the pose that it is about; more than a run finds.
   [[nodiscard]] std::span<const TrianglePair> hits() const noexcept;
-  /// Whether the next run may use a guess of one before.
-  [[nodiscard]] bool has_guess() const noexcept { return guessed_ > 0 && guess_runs_ + 1 < runs_of_a_guess; }
-  /// Guesses of this run, for the next ones.
+  /// Whether this run takes over the guess of the last one, which has left no time for the work.
+  [[nodiscard]] bool shares_guess() const noexcept { return starved_ && guessed_ > 0; }
+  /// Contacts that this run has guessed.
   void keep_guess(std::span<const Contact> contacts, const math::Pose& pose_b_in_a) noexcept;
-  /// Writes those of one of the last runs, moved along, while work goes on that may use the time; returns how many.
+  /// If shares_guess(): writes those that still overlap, moved along. Returns how many.
   [[nodiscard]] std::size_t write_guess(const math::Pose& pose_b_in_a, std::span<Contact> contacts) noexcept;
 
  private:
-  /// A guess takes as long as a run has left for work: so many runs share one.
-  static constexpr int runs_of_a_guess = 4;
-
   void drop() noexcept;
   static void answer(void* self) noexcept;
   static std::int64_t read_clock(void* self) noexcept;
@@ -66,7 +63,7 @@ class LateContacts {
   LateManifold manifold_;
   std::array<HeldContact, most_contacts> guess_;
   std::size_t guessed_ = 0;
-  int guess_runs_ = 0;
+  bool starved_ = false;  ///< the last run left no time for the work
   math::Pose pose_;
   Request request_;
   std::int64_t time_ns_ = 0;  ///< the worker's own, which never runs out

@@ -17,8 +17,8 @@ namespace odds::query {
 /// Bodies that rest on each other rock by nanometres, and touch on one edge now, on another one then. A patch that is
 /// late by ten runs knows one of them; so those of the patches before it stay where they have come apart by little, and
 /// push again as soon as they touch. What came deep while nobody knew is pushed out gently: a solver would take back in
-/// a step or two what took ten, and throw the body. Each follows the bodies' motion. In A's mesh frame; `size`: of the smaller body,
-/// metres. No allocation.
+/// a step or two what took ten, and throw the body. Each follows the bodies' motion. In A's mesh frame; `size`: of the
+/// smaller body, metres. No allocation.
 class LateManifold {
  public:
   void forget() noexcept { count_ = 0; }
@@ -67,12 +67,12 @@ class LateManifold {
   /// least overlaps.
   [[nodiscard]] bool serves(const math::Pose& pose, double size) const noexcept {
     if (count_ == 0) return false;
-    if (!(math::motion_bound_about(held_[0].held.on_b(), pose_, pose, size) <= tolerances::late_motion * size)) return false;
-    return std::any_of(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(count_),
-                       [&](const Entry& entry) {
-                         const auto [depth, slip] = entry.held.parted(pose);
-                         return depth > 0.0 && slip <= tolerances::late_slip * size;
-                       });
+    if (!(math::motion_bound_about(held_[0].held.on_b(), pose_, pose, size) <= tolerances::late_motion * size))
+      return false;
+    return std::any_of(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(count_), [&](const Entry& entry) {
+      const auto [depth, slip] = entry.held.parted(pose);
+      return depth > 0.0 && slip <= tolerances::late_slip * size;
+    });
   }
 
   /// Writes those that overlap at `pose`, as many as there is room for, the deepest first: one that is left out while

@@ -14,6 +14,7 @@
 #include "query/pair_within.hpp"
 #include "query/search.hpp"
 #include "query/shape_data.hpp"
+#include "query/short_budget.hpp"
 #include "query/way_apart.hpp"
 
 namespace odds::query {
@@ -250,7 +251,6 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
   Answer& answer = pair.answer;
   answer = {};
   pair.hits.clear();
-  pair.known_depth.age();
   if (pair.late) pair.late->age(pose_b_in_a, std::min(pair.a->mesh().size(), pair.b->mesh().size()));
   const PosedMeshes meshes(pair.a->mesh(), pair.b->mesh(), a.origin(), b.origin(), pose_b_in_a);
   forget_if_elsewhere(meshes, pair);
@@ -261,7 +261,6 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
     pair.near.forget();
   }
   answer.cost = spending.close();
-  if (getenv("TD") && pair.late) { double d = 0; for (auto& c : answer.contacts) d = std::max(d, c.depth); if (d > 2e-3) std::fprintf(stderr, "DEEP %.2f mm late %d carried %d hits %zu within %d n %zu pairs %u tick\n", d * 1e3, answer.contacts_late, answer.contacts_carried, pair.hits.size(), static_cast<int>(pair.within), answer.contacts.size(), answer.contact_pairs); }
   if (spending.ending_ns() > 0 && pair.hits.empty()) pair.endings.search.note(spending.ending_ns());
 }
 
@@ -376,6 +375,8 @@ void Pair::reset() noexcept {
   implementation_->carried.forget();
   implementation_->near.forget();
   implementation_->has_witness = false;
+  implementation_->haste.forget();
+  implementation_->hasty_runs = 0;
   if (implementation_->late) implementation_->late->forget();
   implementation_->within = Within::neither;
   implementation_->within_is_of_front = false;

@@ -7,9 +7,9 @@
 #include "odds/math/tolerances.hpp"
 #include "odds/query/ray.hpp"
 #include "query/rough_contacts.hpp"
+#include "query/short_budget.hpp"
 
 namespace odds::query {
-extern long dbg[10];
 namespace {
 
 // A pair of triangles in a patch takes 0.3 us, half of it to be found; rays and choice some 25 us whatever their
@@ -23,8 +23,6 @@ constexpr double most_hits = 65536.0;
 // For a direction that is looked for in haste, before what is there is written.
 constexpr std::int64_t hasty_ns = 2500;
 constexpr std::int64_t hasty_single_ns = 1000;
-/// Budgets of less have no time for a patch beside the search.
-constexpr double late_below_us = 50.0;
 constexpr std::uint32_t pairs_of_a_depth = 12;  ///< a patch of fewer may show anything less than how deep bodies are
 
 /// Pairs of triangles that a patch has time for.
@@ -79,14 +77,6 @@ void limit_to_believed(const PosedMeshes& meshes, double slack, Pair::Implementa
   }
 }
 
-/// The same of contacts made in haste, whose direction is a guess: what bodies have come along it says little if it was
-/// not seen from run to run.
-void limit_in_haste(const PosedMeshes& meshes, Pair::Implementation& pair) noexcept {
-  limit_to_believed(meshes, 1.0, pair);
-  const double most = pair.late ? unmeasured_depth(pair) : 1e9;
-  for (Contact& contact : own_contacts(pair)) contact.depth = std::min(contact.depth, most);
-}
-
 /// What a finished patch of a part of the rim says of the depth is taken for known as far as motion allows it.
 void note_part(const PosedMeshes& meshes, Pair::Implementation& pair) noexcept {
   double deepest = 0.0;
@@ -96,25 +86,6 @@ void note_part(const PosedMeshes& meshes, Pair::Implementation& pair) noexcept {
         std::max(deepest, std::min(contact.depth, pair.known_depth.believed(place, contact.normal, meshes.pose())));
   }
   pair.known_depth.note(meshes.pose(), deepest);
-}
-
-/// What contacts say that were made in haste, of a few pairs of triangles. They err now and then, so that each moves
-/// what is taken for known only by a share. Where two that follow each other push elsewhere, nothing has been seen to
-/// come nearer: what is known fades, or bodies that slide along each other would be taken for deeper and deeper.
-void note_in_haste(const PosedMeshes& meshes, double measured, std::size_t made, Pair::Implementation& pair) noexcept {
-  const Vec3 normal = pair.answer.contacts.front().normal;
-  const bool agrees = normal.dot(pair.hasty_normal) > tolerances::hasty_agreement;
-  pair.hasty_normal = normal;
-  double followed = pair.known_depth.depth();
-  if (agrees && pair.known_depth.is_fresh()) {
-    followed = 0.0;
-    for (const Contact& contact : pair.answer.contacts.first(made)) {
-      const Vec3 place = contact.position - meshes.origin_a();
-      followed = std::max(followed, pair.known_depth.followed(place, contact.normal, meshes.pose()));
-    }
-  }
-  const double towards = std::min({measured, followed, agrees ? followed : unmeasured_depth(pair)});
-  pair.known_depth.note(meshes.pose(), followed + tolerances::hasty_say * (towards - followed));
 }
 
 /// Bodies that were never seen apart, and never measured, or elsewhere only, may be as deep as they are; but what they
@@ -140,68 +111,22 @@ bool knows_nothing_here(bool moved_little, const Pair::Implementation& pair) noe
          (!moved_little && deepest_of(pair.answer.contacts) <= unmeasured_depth(pair) * (1.0 + 1e-9));
 }
 
-/// The memory of contacts made in haste, at the start of a run that makes some.
-void begin_in_haste(const math::Pose& pose_b_in_a, double smaller, Pair::Implementation& pair) noexcept {
-  ++pair.hasty_runs;
-  pair.haste.begin(pose_b_in_a, tolerances::hasty_slack * smaller);
-}
-
-/// Adds the places that runs before found to this run's contacts. `normal`: of all, or null where each has its own.
-void add_remembered(const math::Pose& pose_b_in_a, const Vec3* normal, const Request& request,
-                    Pair::Implementation& pair) noexcept {
-  const double near = tolerances::hasty_spacing * std::min(pair.a->mesh().size(), pair.b->mesh().size());
-  const std::size_t room = std::min(static_cast<std::size_t>(request.max_contacts), pair.contacts.size());
-  const std::size_t all =
-      pair.haste.add_to(std::span(pair.contacts).first(room), pair.answer.contacts.size(), normal, pose_b_in_a, near);
-  pair.answer.contacts = std::span(pair.contacts).first(all);
-}
-
-/// Keeps the places of the first `made` contacts for later runs.
-void remember(const math::Pose& pose_b_in_a, std::size_t made, Pair::Implementation& pair) noexcept {
-  const double near = tolerances::hasty_spacing * std::min(pair.a->mesh().size(), pair.b->mesh().size());
-  pair.haste.remember(std::span(pair.contacts).first(made), pose_b_in_a, near);
-}
-
-/// Whether contacts may be made over several runs.
-bool may_be_late(const Request& request, const Pair::Implementation& pair) noexcept {
-  return pair.late != nullptr && request.max_contacts > 1 && !request.polygon_free &&
-         request.budget.microseconds < late_below_us;
-}
-
 /// What single pairs of triangles say, when there is no time for a patch.
-void make_rough_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Vec3* known_normal,
-                         bool moved_little, const Request& request, Pair::Implementation& pair,
-                         Spending& spending) noexcept {
+void make_rough_contacts(const PosedMeshes& meshes, const Vec3* known_normal, bool moved_little, const Request& request,
+                         Pair::Implementation& pair, Spending& spending) noexcept {
   const Vec3 centre_b = meshes.pose().translation + meshes.origin_a();
   const Vec3 by_place = (meshes.origin_a() - centre_b).stableNormalized();
   const Vec3 towards_a =
       pair.previous_normal.isZero() ? Vec3(by_place + tolerances::came_side * pair.came) : pair.previous_normal;
   spending.reserve_for_contacts(pair.endings.rough);
-  const double kept_us = may_be_late(request, pair) ? 0.5 * spending.left_us() : 0.0;
   const auto room =
       std::span(pair.contacts).first(std::min(static_cast<std::size_t>(request.max_contacts), pair.contacts.size()));
-  HastyMemory* const memory = may_be_late(request, pair) ? &pair.haste : nullptr;
-  const double little = tolerances::hasty_alike * std::min(pair.a->mesh().size(), pair.b->mesh().size());
-  Vec3 common;
-  const Vec3 expected = pair.previous_normal.isZero() ? pair.came : pair.previous_normal;
-  const RoughContacts made =
-      rough_contacts(meshes, pair.hits.pairs(), pair.a->is_solid() && pair.b->is_solid(), towards_a, known_normal,
-                     memory, memory != nullptr ? pair.hasty_runs : 0, little, expected, common, room,
-                     [&] { return spending.may_make_contacts() && spending.left_us() >= kept_us; });
-  const std::size_t count = made.count;
+  const std::size_t count = rough_contacts(meshes, pair.hits.pairs(), pair.a->is_solid() && pair.b->is_solid(),
+                                           towards_a, known_normal, room, [&] { return spending.may_make_contacts(); });
   pair.answer.contacts = room.first(count);
-  const double measured = made.measured;
-  if (memory != nullptr) add_remembered(pose_b_in_a, made.direction, request, pair);
-  limit_in_haste(meshes, pair);
-  if (memory != nullptr) remember(pose_b_in_a, count, pair);
+  limit_to_believed(meshes, 1.0, pair);
   pair.answer.contacts_complete = false;
-  if (request.max_contacts > 1 && count > 0) {
-    if (knows_nothing_here(moved_little, pair)) {
-      note_first_contact(meshes, pair);
-    } else {
-      note_in_haste(meshes, measured, count, pair);
-    }
-  }
+  if (request.max_contacts > 1 && count > 0 && knows_nothing_here(moved_little, pair)) note_first_contact(meshes, pair);
   pair.answer.contact_pairs = static_cast<std::uint32_t>(count);
 }
 
@@ -215,65 +140,11 @@ double believed_depth(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, 
   return std::max(unmeasured, pair.known_depth.believed(place, *known_normal, meshes.pose()));
 }
 
-/// Whether one of the pairs of triangles that met where the contacts are from meets now: a hit.
-bool prove_carried(const PosedMeshes& meshes, Pair::Implementation& pair, Spending& spending) noexcept {
-  for (TrianglePair& proof : pair.carried.proofs()) {
-    if (!spending.allows(1) || !spending.may_go_on_after(2)) return false;
-    spending.spend_triangle_pairs(1);
-    if (!meshes.meet(proof)) continue;
-    std::swap(proof, pair.carried.proofs().front());  // the next run's first
-    pair.hits.add(pair.carried.proofs().front());
-    pair.answer.verdict = Verdict::hit;
-    pair.answer.probability = 1.0;
-    return true;
-  }
-  return false;
-}
-
-/// Whether the contacts of earlier poses are of use now, far as the bodies may have moved.
-bool serves_late(const math::Pose& pose_b_in_a, const Pair::Implementation& pair) noexcept {
-  return pair.late->manifold().serves(pose_b_in_a, std::min(pair.a->mesh().size(), pair.b->mesh().size()));
-}
-
-/// Those of them that overlap.
-void write_late(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair) noexcept {
-  const std::span<Contact> room =
-      std::span(pair.contacts).first(std::min(static_cast<std::size_t>(request.max_contacts), pair.contacts.size()));
-  pair.answer.contacts = room.first(pair.late->manifold().write(pose_b_in_a, std::min(pair.a->mesh().size(), pair.b->mesh().size()), room));
-  pair.answer.contacts_complete = false;
-  pair.answer.contacts_late = true;
-  pair.answer.contact_pairs = pair.late->manifold().made_from();
-}
-
-/// A search that ends early has found hits on one side only. Some of those of the work under way, which has looked
-/// everywhere, still are hits.
-void add_hits_of_work(const PosedMeshes& meshes, Pair::Implementation& pair, Spending& spending) noexcept {
-  const std::span<const TrianglePair> hits = pair.late->hits();
-  constexpr std::size_t most_tried = 4;
-  for (std::size_t i = 0; i < std::min(most_tried, hits.size()) && spending.may_make_contacts(); ++i) {
-    const TrianglePair tried = hits[(i * hits.size() / most_tried + 5 * pair.hasty_runs) % hits.size()];
-    spending.spend_triangle_pairs(1);
-    if (meshes.meet(tried)) pair.hits.add(tried);
-  }
-}
-
-/// The guess of a run before, if it will do.
-bool write_guess(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair) noexcept {
-  const std::span<Contact> room =
-      std::span(pair.contacts).first(std::min(static_cast<std::size_t>(request.max_contacts), pair.contacts.size()));
-  const std::size_t written = pair.late->write_guess(pose_b_in_a, room);
-  if (written == 0) return false;
-  pair.answer.contacts = room.first(written);
-  pair.answer.contacts_complete = false;
-  pair.answer.contact_pairs = static_cast<std::uint32_t>(written);
-  return true;
-}
-
 }  // namespace
 
 std::uint32_t wanted_hits(const Request& request, const Pair::Implementation& pair) noexcept {
   if (request.max_contacts <= 1) return 1;
-  if (may_be_late(request, pair)) return pair.late->has_guess() ? 1 : most_contacts;
+  if (is_short(request, pair)) return hits_of_a_guess(pair);
   if (!std::isfinite(request.budget.microseconds)) return no_feature;
   return hits_in(request.budget.microseconds, hits_per_microsecond);
 }
@@ -289,30 +160,13 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   const Vec3* known_normal = pair.known_direction.at(pose_b_in_a, smaller);
   const bool moved_little = most_depth - pair.known_depth.depth() <= tolerances::coherent_motion * smaller;
   note_side(meshes, pair);
-  if (may_be_late(request, pair)) {
-    const double l0 = spending.left_us();
-    begin_in_haste(pose_b_in_a, smaller, pair);
-    struct P { double l0; Spending& s; double l1; ~P() { static double a=0,b=0,c=0; static int n=0; a+=l0; b+=l1; c+=s.left_us(); if (++n % 2000 == 0) std::fprintf(stderr,"TIME left at entry %.2f after rough %.2f end %.2f\n",a/2000,b/2000,c/2000),a=b=c=0; } } pp{l0, spending, 0};
-    if (serves_late(pose_b_in_a, pair)) {
-      ++dbg[7];
-      write_late(pose_b_in_a, request, pair);
-    } else if (!write_guess(pose_b_in_a, request, pair)) {
-      ++dbg[0];
-      add_hits_of_work(meshes, pair, spending);
-      make_rough_contacts(meshes, pose_b_in_a, known_normal, moved_little, request, pair, spending);
-      pair.late->keep_guess(pair.answer.contacts, pose_b_in_a);
-    } else ++dbg[8];
-    pp.l1 = spending.left_us();
-    if (getenv("TR")) { const auto& c = pair.answer.contacts; std::fprintf(stderr, "TR run %u %s n %zu", pair.hasty_runs, pair.answer.contacts_late ? "late" : "guess", c.size()); if (!c.empty()) std::fprintf(stderr, " nrm %.2f %.2f %.2f d %.4f mm at %.1f %.1f %.1f", c[0].normal.x(), c[0].normal.y(), c[0].normal.z(), c[0].depth*1e3, c[0].position.x()*1e3, c[0].position.y()*1e3, c[0].position.z()*1e3); std::fprintf(stderr, " came %.2f %.2f %.2f prev %.2f t %.4f %.4f %.4f mm left %.2f\n", pair.came.x(), pair.came.y(), pair.came.z(), pair.previous_normal.z(), pose_b_in_a.translation.x()*1e3, pose_b_in_a.translation.y()*1e3, pose_b_in_a.translation.z()*1e3, pp.l1); }
-    spending.reserve_for_contacts(pair.endings.late);
-    if (pair.late->work(pose_b_in_a, request, pair, spending) && serves_late(pose_b_in_a, pair)) {
-      write_late(pose_b_in_a, request, pair);
-    }
+  if (is_short(request, pair)) {
+    make_contacts_over_runs(meshes, pose_b_in_a, known_normal, request, pair, spending);
     return;
   }
   if (!spending.may_make_contacts()) {
     (single ? pair.endings.single : pair.endings.patch).note(0);  // or it would never be tried again
-    make_rough_contacts(meshes, pose_b_in_a, known_normal, moved_little, request, pair, spending);
+    make_rough_contacts(meshes, known_normal, moved_little, request, pair, spending);
     return;
   }
   PatchInput input;
@@ -398,6 +252,20 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   pair.previous_position = pair.answer.contacts.front().position;
 }
 
+bool prove_carried(const PosedMeshes& meshes, Pair::Implementation& pair, Spending& spending) noexcept {
+  for (TrianglePair& proof : pair.carried.proofs()) {
+    if (!spending.allows(1) || !spending.may_go_on_after(2)) return false;
+    spending.spend_triangle_pairs(1);
+    if (!meshes.meet(proof)) continue;
+    std::swap(proof, pair.carried.proofs().front());  // the next run's first
+    pair.hits.add(pair.carried.proofs().front());
+    pair.answer.verdict = Verdict::hit;
+    pair.answer.probability = 1.0;
+    return true;
+  }
+  return false;
+}
+
 bool carry_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request,
                     Pair::Implementation& pair, Spending& spending) noexcept {
   if (request.max_contacts <= 1 || request.polygon_free) return false;
@@ -408,19 +276,6 @@ bool carry_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, co
   pair.answer.contacts_carried = true;
   pair.answer.contacts_complete = pair.carried.part_of() == 0;
   pair.answer.contact_pairs = pair.carried.part_of();
-  return true;
-}
-
-bool carry_late_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request,
-                         Pair::Implementation& pair, Spending& spending) noexcept {
-  if (!may_be_late(request, pair)) return false;
-  if (!serves_late(pose_b_in_a, pair) || !prove_carried(meshes, pair, spending)) return false;
-  write_late(pose_b_in_a, request, pair);
-  ++dbg[1];
-  spending.reserve_for_contacts(pair.endings.late);
-  if (pair.late->work(pose_b_in_a, request, pair, spending) && serves_late(pose_b_in_a, pair)) {
-    write_late(pose_b_in_a, request, pair);
-  }
   return true;
 }
 

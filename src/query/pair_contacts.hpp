@@ -22,9 +22,8 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
 [[nodiscard]] bool carry_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request,
                                   Pair::Implementation& pair, Spending& spending) noexcept;
 
-/// Of a short budget: those of an earlier run, where the bodies have moved farther, while the work on those of now goes
-/// on. False if they will not do.
-[[nodiscard]] bool carry_late_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request,
-                                       Pair::Implementation& pair, Spending& spending) noexcept;
+/// Whether one of the pairs of triangles that met where the contacts of an earlier run are from meets now: then the
+/// answer is a hit.
+[[nodiscard]] bool prove_carried(const PosedMeshes& meshes, Pair::Implementation& pair, Spending& spending) noexcept;
 
 }  // namespace odds::query

@@ -74,9 +74,8 @@ struct Pair::Implementation {
   Recalibration recalibration;            ///< of stated probabilities
   Vec3 previous_normal = Vec3::Zero();    ///< of the last run's first contact, in A's frame; zero: none
   Vec3 previous_position = Vec3::Zero();  ///< of that contact
-  HastyMemory haste;
-  std::uint32_t hasty_runs = 0;
-  Vec3 hasty_normal = Vec3::Zero();  ///< of the last first contact that was made in haste, in A's frame; or zero
+  HastyMemory haste;                      ///< of contacts that are guessed
+  std::uint32_t hasty_runs = 0;           ///< that guessed or might have
   Vec3 came = Vec3::Zero();  ///< how B came to where it met A since they were apart, unit, A's frame; zero: unknown
   std::optional<math::Pose> apart_at;  ///< PosedMeshes::pose() when they were apart last; none: they touched since
   std::optional<math::Pose> known_at;  ///< the same of the last run, or of a later word that they were apart

@@ -10,7 +10,6 @@
 #include "odds/primitive/triangle_triangle.hpp"
 #include "odds/query/answer.hpp"
 #include "odds/query/contact_patch.hpp"
-#include "query/hasty_memory.hpp"
 #include "query/posed_meshes.hpp"
 
 namespace odds::query {
@@ -131,35 +130,13 @@ struct Crossing {
   return (upper - lower).norm();
 }
 
-/// See Vote. `towards_a`: the side of surfaces that have none.
-[[nodiscard]] inline Vote vote_of(const Crossing& crossing, bool both_solid, const Vec3& towards_a, double little,
-                                  const Vec3& expected) noexcept {
-  const auto turned = [&](const Vec3& normal) noexcept {
-    return !both_solid && normal.dot(towards_a) < 0.0 ? Vec3(-normal) : normal;
-  };
-  const Vec3 by_b = turned(crossing.normal_b);
-  const Vec3 by_a = turned(-crossing.normal_a);
-  return Vote::of(-by_a, by_b, crossing.overlap_along(by_a), crossing.overlap_along(by_b),
-                  (crossing.segment.end - crossing.segment.begin).norm(), little, expected);
-}
-
-struct RoughContacts {
-  std::size_t count = 0;
-  const Vec3* direction = nullptr;  ///< of all, or null where each has its own
-  double measured = 0.0;            ///< the median of their depths; without a memory the least
-};
-
 /// As many contacts as there is room for, spread over the hits, all with one direction and one depth: the least overlap
 /// of some pairs of triangles along it, at most the extent of what was cut. In A's mesh frame. About 0.4 us for each
-/// pair; `may_go_on()` is asked before every one after the first. `known`: the direction, or null. `memory`, or null:
-/// is told what these say, and decides on the direction once it has seen enough; where it has seen contacts that push
-/// against each other, each has its own. `first`: with which of the hits to begin. `little`: see Vote. `common`
-/// receives the direction.
+/// pair; `may_go_on()` is asked before every one after the first. `known`: the direction, or null. Returns how many.
 template <class MayGoOn>
-RoughContacts rough_contacts(const PosedMeshes& meshes, std::span<const TrianglePair> hits, bool both_solid,
-                             const Vec3& towards_a, const Vec3* known, HastyMemory* memory, std::size_t first,
-                             double little, const Vec3& expected, Vec3& common, std::span<Contact> written,
-                             MayGoOn may_go_on) noexcept {
+std::size_t rough_contacts(const PosedMeshes& meshes, std::span<const TrianglePair> hits, bool both_solid,
+                           const Vec3& towards_a, const Vec3* known, std::span<Contact> written,
+                           MayGoOn may_go_on) noexcept {
   std::array<Crossing, most_contacts> crossings;  // also for one contact: a direction is made of several
   std::array<TrianglePair, most_contacts> chosen;
   const std::size_t most = std::min(hits.size(), crossings.size());
@@ -169,47 +146,21 @@ RoughContacts rough_contacts(const PosedMeshes& meshes, std::span<const Triangle
   for (const std::size_t eighth : eighths) {
     if (eighth >= most) continue;
     if (count > 0 && !may_go_on()) break;
-    chosen[count] = hits[(eighth * hits.size() / most + first) % hits.size()];
+    chosen[count] = hits[eighth * hits.size() / most];
     crossings[count] = Crossing::of(meshes, chosen[count]);
     ++count;
   }
   const std::span<const Crossing> made = std::span(crossings).first(count);
-  if (memory != nullptr) {
-    for (const Crossing& crossing : made) {
-      const Vote vote = vote_of(crossing, both_solid, towards_a, little, expected);
-      memory->see(vote.weight * vote.direction, vote.weight);
-    }
-  }
-  const bool decides = known == nullptr && memory != nullptr && memory->has_seen();
-  const bool own = decides && !memory->is_of_one_mind();
-  const Vec3 guess = decides && !own ? memory->direction() : rough_direction(made, both_solid, towards_a);
-  const Vec3 direction = known != nullptr ? *known : snapped_to_face(made, both_solid, guess);
+  const Vec3 direction =
+      known != nullptr ? *known : snapped_to_face(made, both_solid, rough_direction(made, both_solid, towards_a));
   // A corner that has just come through is not deeper than its rim is wide, though the triangles reach on.
   double depth = extent_of(made);
-  const double wide = depth;
-  std::array<double, most_contacts> depths{};
-  for (std::size_t i = 0; i < count; ++i) {
-    depths[i] = std::min(wide, made[i].overlap_along(direction));
-    depth = std::min(depth, depths[i]);
-  }
-  const std::size_t seen = count;
+  for (const Crossing& crossing : made) depth = std::min(depth, crossing.overlap_along(direction));
   count = std::min(count, written.size());
   for (std::size_t i = 0; i < count; ++i) {
-    written[i] = {made[i].middle() + meshes.origin_a(), direction, memory != nullptr ? depths[i] : depth, chosen[i].a,
-                  chosen[i].b};
-    if (!own) continue;
-    const Vote vote = vote_of(made[i], both_solid, towards_a, little, expected);
-    if (!(vote.weight > 0.0)) continue;
-    written[i].normal = vote.direction;
-    written[i].depth = std::min(wide, made[i].overlap_along(written[i].normal));
+    written[i] = {made[i].middle() + meshes.origin_a(), direction, depth, chosen[i].a, chosen[i].b};
   }
-  if (memory != nullptr && seen > 0) {
-    const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(seen / 2);
-    std::nth_element(depths.begin(), middle, depths.begin() + static_cast<std::ptrdiff_t>(seen));
-    depth = *middle;
-  }
-  common = direction;
-  return {count, own ? nullptr : &common, depth};
+  return count;
 }
 
 }  // namespace odds::query

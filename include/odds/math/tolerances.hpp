@@ -101,9 +101,6 @@ inline constexpr double lump_depth = 1000.0;
 /// then holds up what rests on it, and a wrong direction moves a body by no more than this in a few steps.
 /// Test: StarvedCrate.DoesNotSinkIn, StarvedCrate.IsNeverThrown.
 inline constexpr double unmeasured_depth = 1e-4;
-/// How much contacts made in haste say of a depth that is believed, of the difference: a tenth, so that one in ten that
-/// errs is outvoted.
-inline constexpr double hasty_say = 0.1;
 /// Of the smaller body's size: by so much a place of contact that was found in haste may part sideways before it is
 /// forgotten, and so near to each other two are one.
 inline constexpr double hasty_slack = 2e-3;
@@ -130,11 +127,11 @@ inline constexpr double resting_motion = 1e-5;
 /// by less.
 inline constexpr double late_motion = 0.02;
 /// The same: one of them that has come apart by no more is kept for when it touches again.
-inline constexpr double late_gap = 2e-3;
+inline constexpr double late_gap = 5e-3;
 /// The same, across its normal.
 inline constexpr double late_slip = 5e-3;
 /// The same: contacts nearer to each other are one.
-inline constexpr double late_spacing = 0.02;
+inline constexpr double late_spacing = 0.05;
 /// Of the smaller body's size, a run: how fast a depth that is withheld at first, of a contact that is found late, is
 /// given after all, and so how fast at most it pushes bodies apart.
 inline constexpr double late_rise = 2e-5;

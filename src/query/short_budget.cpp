@@ -1,0 +1,215 @@
+#include "query/short_budget.hpp"
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include "odds/math/tolerances.hpp"
+#include "query/pair_contacts.hpp"
+#include "query/rough_contacts.hpp"
+
+namespace odds::query {
+namespace {
+
+/// Budgets of less have no time for a patch beside the search.
+constexpr double short_us = 50.0;
+/// Of what a run has left, for a guess; the rest is for the work on contacts.
+constexpr double share_of_a_guess = 0.5;
+/// Hits of the work under way that are tried in a run.
+constexpr std::size_t most_tried = 4;
+
+double smaller_size(const Pair::Implementation& pair) noexcept {
+  return std::min(pair.a->mesh().size(), pair.b->mesh().size());
+}
+
+/// Memory for as many contacts as are asked for.
+std::span<Contact> room_for_contacts(const Request& request, Pair::Implementation& pair) noexcept {
+  return std::span(pair.contacts).first(std::min(static_cast<std::size_t>(request.max_contacts), pair.contacts.size()));
+}
+
+/// A search that ends early has found hits on one side only. Some of those of the work under way, which has looked
+/// everywhere, still are hits.
+void add_hits_of_work(const PosedMeshes& meshes, Pair::Implementation& pair, Spending& spending) noexcept {
+  const std::span<const TrianglePair> hits = pair.late->hits();
+  for (std::size_t i = 0; i < std::min(most_tried, hits.size()) && spending.may_make_contacts(); ++i) {
+    const TrianglePair tried = hits[(i * hits.size() / most_tried + 5 * pair.hasty_runs) % hits.size()];
+    spending.spend_triangle_pairs(1);
+    if (meshes.meet(tried)) pair.hits.add(tried);
+  }
+}
+
+/// Some of the pair's hits, others in each run, spread over their list, as they cross.
+struct Sample {
+  std::array<Crossing, most_contacts> crossings;
+  std::array<TrianglePair, most_contacts> hits;
+  std::size_t count = 0;
+
+  [[nodiscard]] std::span<const Crossing> made() const noexcept { return std::span(crossings).first(count); }
+};
+
+template <class MayGoOn>
+Sample sample_of(const PosedMeshes& meshes, std::span<const TrianglePair> hits, std::size_t first,
+                 MayGoOn may_go_on) noexcept {
+  Sample sample;
+  const std::size_t most = std::min(hits.size(), sample.hits.size());
+  // First those that are far apart in the list: if time is short, they are all there is.
+  constexpr std::array<std::size_t, most_contacts> eighths{0, 4, 2, 6, 1, 5, 3, 7};
+  for (const std::size_t eighth : eighths) {
+    if (eighth >= most) continue;
+    if (sample.count > 0 && !may_go_on()) break;
+    sample.hits[sample.count] = hits[(eighth * hits.size() / most + first) % hits.size()];
+    sample.crossings[sample.count] = Crossing::of(meshes, sample.hits[sample.count]);
+    ++sample.count;
+  }
+  return sample;
+}
+
+/// What a crossing says of the direction in which the bodies part.
+class Judge {
+ public:
+  Judge(const PosedMeshes& meshes, const Pair::Implementation& pair) noexcept
+      : both_solid_(pair.a->is_solid() && pair.b->is_solid()),
+        expected_(pair.previous_normal.isZero() ? pair.came : pair.previous_normal),
+        little_(tolerances::hasty_alike * smaller_size(pair)) {
+    const Vec3 by_place = (-meshes.pose().translation).stableNormalized();
+    towards_a_ =
+        pair.previous_normal.isZero() ? Vec3(by_place + tolerances::came_side * pair.came) : pair.previous_normal;
+  }
+
+  [[nodiscard]] Vote vote_of(const Crossing& crossing) const noexcept {
+    const Vec3 by_b = turned(crossing.normal_b);
+    const Vec3 by_a = turned(-crossing.normal_a);
+    return Vote::of(-by_a, by_b, crossing.overlap_along(by_a), crossing.overlap_along(by_b),
+                    (crossing.segment.end - crossing.segment.begin).norm(), little_, expected_);
+  }
+  [[nodiscard]] Vec3 direction_of(std::span<const Crossing> made, const HastyMemory& memory) const noexcept {
+    const Vec3 guess = memory.has_seen() && memory.is_of_one_mind() ? memory.direction()
+                                                                    : rough_direction(made, both_solid_, towards_a_);
+    return snapped_to_face(made, both_solid_, guess);
+  }
+
+ private:
+  /// Surfaces of a body that is not solid have two sides.
+  [[nodiscard]] Vec3 turned(const Vec3& normal) const noexcept {
+    return !both_solid_ && normal.dot(towards_a_) < 0.0 ? Vec3(-normal) : normal;
+  }
+
+  bool both_solid_;
+  Vec3 expected_;
+  double little_;
+  Vec3 towards_a_;
+};
+
+/// Contacts from single pairs of triangles. They hold, but hardly push: a wrong one moves a body by no more than what
+/// nobody need have measured.
+void guess_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Vec3* known_normal,
+                    const Request& request, Pair::Implementation& pair, Spending& spending) noexcept {
+  const double kept_us = (1.0 - share_of_a_guess) * spending.left_us();
+  const Sample sample = sample_of(meshes, pair.hits.pairs(), pair.hasty_runs,
+                                  [&] { return spending.may_make_contacts() && spending.left_us() >= kept_us; });
+  const Judge judge(meshes, pair);
+  for (const Crossing& crossing : sample.made()) {
+    const Vote vote = judge.vote_of(crossing);
+    pair.haste.see(vote.weight * vote.direction, vote.weight);
+  }
+  const bool each_its_own = known_normal == nullptr && pair.haste.has_seen() && !pair.haste.is_of_one_mind();
+  const Vec3 direction = known_normal != nullptr ? *known_normal : judge.direction_of(sample.made(), pair.haste);
+  const double size = smaller_size(pair);
+  // A corner that has just come through is not deeper than its rim is wide, though the triangles reach on.
+  const double most_depth = std::min(tolerances::unmeasured_depth * size, extent_of(sample.made()));
+  const std::span<Contact> room = room_for_contacts(request, pair);
+  const std::size_t count = std::min(sample.count, room.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    const Crossing& crossing = sample.crossings[i];
+    Vec3 normal = direction;
+    if (each_its_own) {
+      const Vote vote = judge.vote_of(crossing);
+      if (vote.weight > 0.0) normal = vote.direction;
+    }
+    room[i] = {crossing.middle() + meshes.origin_a(), normal, std::min(most_depth, crossing.overlap_along(normal)),
+               sample.hits[i].a, sample.hits[i].b};
+  }
+  const double near = tolerances::hasty_spacing * size;
+  const std::size_t all = pair.haste.add_to(room, count, each_its_own ? nullptr : &direction, pose_b_in_a, near);
+  double deepest = 0.0;
+  for (Contact& contact : room.first(all)) {
+    contact.depth = std::min(contact.depth, tolerances::unmeasured_depth * size);
+    deepest = std::max(deepest, contact.depth);
+  }
+  pair.haste.remember(room.first(count), pose_b_in_a, near);
+  if (!pair.known_depth.known()) pair.known_depth.note(meshes.pose(), deepest);
+  pair.answer.contacts = room.first(all);
+  pair.answer.contact_pairs = static_cast<std::uint32_t>(sample.count);
+}
+
+/// The guess of the run before, if it has left no time for the work and will do.
+bool share_guess(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair) noexcept {
+  const std::span<Contact> room = room_for_contacts(request, pair);
+  const std::size_t written = pair.late->write_guess(pose_b_in_a, room);
+  if (written == 0) return false;
+  pair.answer.contacts = room.first(written);
+  pair.answer.contact_pairs = static_cast<std::uint32_t>(written);
+  return true;
+}
+
+/// Whether the contacts of earlier poses are of use now, far as the bodies may have moved.
+bool serves_late(const math::Pose& pose_b_in_a, const Pair::Implementation& pair) noexcept {
+  return pair.late->manifold().serves(pose_b_in_a, smaller_size(pair));
+}
+
+/// Those of them that overlap.
+void write_late(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair) noexcept {
+  const LateManifold& manifold = pair.late->manifold();
+  const std::span<Contact> room = room_for_contacts(request, pair);
+  pair.answer.contacts = room.first(manifold.write(pose_b_in_a, smaller_size(pair), room));
+  pair.answer.contacts_late = true;
+  pair.answer.contact_pairs = manifold.made_from();
+}
+
+/// For what time is left.
+void work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair,
+          Spending& spending) noexcept {
+  spending.reserve_for_contacts(pair.endings.late);
+  if (pair.late->work(pose_b_in_a, request, pair, spending) && serves_late(pose_b_in_a, pair)) {
+    write_late(pose_b_in_a, request, pair);
+  }
+}
+
+}  // namespace
+
+bool is_short(const Request& request, const Pair::Implementation& pair) noexcept {
+  return pair.late != nullptr && request.max_contacts > 1 && !request.polygon_free &&
+         request.budget.microseconds < short_us;
+}
+
+std::uint32_t hits_of_a_guess(const Pair::Implementation& pair) noexcept {
+  return pair.late->shares_guess() ? 1 : most_contacts;
+}
+
+bool carry_late_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request,
+                         Pair::Implementation& pair, Spending& spending) noexcept {
+  if (!is_short(request, pair) || !serves_late(pose_b_in_a, pair)) return false;
+  if (!prove_carried(meshes, pair, spending)) return false;
+  pair.answer.contacts_complete = false;
+  write_late(pose_b_in_a, request, pair);
+  work(pose_b_in_a, request, pair, spending);
+  return true;
+}
+
+void make_contacts_over_runs(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Vec3* known_normal,
+                             const Request& request, Pair::Implementation& pair, Spending& spending) noexcept {
+  pair.answer.contacts_complete = false;
+  ++pair.hasty_runs;
+  pair.haste.begin(pose_b_in_a, tolerances::hasty_slack * smaller_size(pair));
+  if (serves_late(pose_b_in_a, pair)) {
+    write_late(pose_b_in_a, request, pair);
+  } else if (!share_guess(pose_b_in_a, request, pair)) {
+    spending.reserve_for_contacts(pair.endings.rough);
+    add_hits_of_work(meshes, pair, spending);
+    guess_contacts(meshes, pose_b_in_a, known_normal, request, pair, spending);
+    pair.late->keep_guess(pair.answer.contacts, pose_b_in_a);
+  }
+  work(pose_b_in_a, request, pair, spending);
+}
+
+}  // namespace odds::query
