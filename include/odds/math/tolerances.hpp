@@ -88,7 +88,8 @@ inline constexpr double round_overlap = 0.12;
 /// Cosine below which two patches push against each other. Test: ContactPatch.CrossedPlatesPartTheShortWay.
 inline constexpr double opposed = -0.3;
 /// A patch whose depth is below this part of the rim's extent, and below that part of the deepest patch's, bears
-/// nothing: rounding has left it between faces that are flush. Test: FlushBricks.ThatStandExactlyOnEachOtherPushUpwards.
+/// nothing: rounding has left it between faces that are flush. Test:
+/// FlushBricks.ThatStandExactlyOnEachOtherPushUpwards.
 inline constexpr double bears_nothing = 1e-8;
 inline constexpr double shallow_patch = 1e-3;  ///< see bears_nothing
 /// By how much the patch with the last run's normal is preferred as the first, so that the order does not flicker.
@@ -101,14 +102,16 @@ inline constexpr double lump_depth = 1000.0;
 /// then holds up what rests on it, and a wrong direction moves a body by no more than this in a few steps.
 /// Test: StarvedCrate.DoesNotSinkIn, StarvedCrate.IsNeverThrown.
 inline constexpr double unmeasured_depth = 1e-4;
-/// Of the smaller body's size: by so much a place of contact that was found in haste may part sideways before it is
-/// forgotten, and so near to each other two are one.
+/// Of the smaller body's size: by so much a place of contact that was guessed may part sideways before it is
+/// forgotten, and so near to each other two are one. Test: HastyMemory.AddsThePlacesOfRunsBefore.
 inline constexpr double hasty_slack = 2e-3;
 inline constexpr double hasty_spacing = 0.02;
 /// Of the smaller body's size: overlaps of two triangles below it say nothing of which way they part. Faces that are
-/// flush overlap by nothing along each other's normals, but neither is a way out.
+/// flush overlap by nothing along each other's normals, but neither is a way out. Test:
+/// Vote.OfFlushFacesIsWhatIsExpected.
 inline constexpr double hasty_alike = 0.003;
-/// Cosine between the normals of two such that say the same: 30 degrees.
+/// Cosine between the normals of two contacts that may be the same one: 30 degrees.
+/// Test: LateManifold.ASuccessorGivesWhatItsPredecessorGave.
 inline constexpr double hasty_agreement = 0.87;
 /// How many times what is believed of a depth from motion, or need not be measured, a run may say that has looked at as
 /// many pairs as are kept: they may be taken for one lump, but runs at one pose must come to what they find there.
@@ -124,16 +127,18 @@ inline constexpr double way_it_came = 0.25;
 /// Stacks drifted as little with it as without, and ten times as far with 1e-4. Test: Bricks.CreepingAddsUp.
 inline constexpr double resting_motion = 1e-5;
 /// Of the smaller body's size: contacts that are late (PairOptions::late_contacts) are carried along while bodies move
-/// by less.
+/// by less. Test: LateManifold.FollowsTheBodies.
 inline constexpr double late_motion = 0.02;
-/// The same: one of them that has come apart by no more is kept for when it touches again.
+/// The same: one of them that has come apart by no more is kept for when it touches again; and across its normal.
+/// Of 72 starved stacks (`odds_ode_scenes --only stacks --budgets 5,10,20 --bricks 2,5 --gaps 0.1`) four more stand
+/// with this gap than with 2e-3. Test: LateManifold.ForgetsWhatHasGone.
 inline constexpr double late_gap = 5e-3;
-/// The same, across its normal.
 inline constexpr double late_slip = 5e-3;
-/// The same: contacts nearer to each other are one.
+/// The same: contacts nearer to each other are one. Test: LateManifold.ASuccessorGivesWhatItsPredecessorGave.
 inline constexpr double late_spacing = 0.05;
-/// Of the smaller body's size, a run: how fast a depth that is withheld at first, of a contact that is found late, is
-/// given after all, and so how fast at most it pushes bodies apart.
+/// Of the smaller body's size, a run: how fast a depth is given that a late contact has at first, and so how fast at
+/// most it pushes bodies apart. With 1e-4 one stack that fell had won 129 J, for 15 at most.
+/// Test: LateManifold.GivesADepthNoFasterThanItsRate, ShortBudget.GivesTheWholeDepthInTheEnd.
 inline constexpr double late_rise = 2e-5;
 /// Cosine below which a surface is a wall, whose slope tells nothing of where an overlap gets deeper.
 inline constexpr double steep = 0.05;

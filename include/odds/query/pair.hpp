@@ -41,7 +41,8 @@ struct PairOptions {
 /// makes a system call (the clock is read from user space). One pair per thread; shapes may be shared. With the default
 /// options a pair keeps 0.4 MB, less of small meshes; a megabyte more is shared by all pairs with the same capacities,
 /// once for each pair but no more than 32 times (or as many as the processor runs threads: of more than that at once,
-/// one waits for another).
+/// one waits for another), and as much again, no more than 16 times, for contacts that are made over several runs
+/// (PairOptions::late_contacts; of more at once, some are guessed until others are made).
 class Pair {
  public:
   struct Implementation;  // private to src/query

@@ -1,0 +1,133 @@
+// Contacts that come late follow the bodies, stay where they have come apart by little, and push gently at first.
+#include "query/late_manifold.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace odds::query {
+namespace {
+
+constexpr double size = 0.5;
+constexpr double least = 5e-5;
+const Vec3 up = Vec3::UnitZ();
+
+Contact contact_at(double x, double y, double depth) {
+  Contact contact;
+  contact.position = {x, y, 0.0};
+  contact.normal = up;
+  contact.depth = depth;
+  return contact;
+}
+
+/// B, which lies below, has come nearer by `deeper` and has been turned about y by `tilt`.
+math::Pose moved(double deeper, double tilt = 0.0) {
+  math::Pose pose;
+  pose.rotation = Eigen::AngleAxisd(tilt, Vec3::UnitY()).toRotationMatrix();
+  pose.translation = deeper * up;
+  return pose;
+}
+
+std::vector<Contact> written(const LateManifold& manifold, const math::Pose& pose, std::size_t room = 8) {
+  std::vector<Contact> contacts(room);
+  contacts.resize(manifold.write(pose, size, contacts));
+  return contacts;
+}
+
+TEST(LateManifold, FollowsTheBodies) {
+  LateManifold manifold;
+  EXPECT_FALSE(manifold.serves({}, size));
+  manifold.keep(std::vector{contact_at(0.1, 0.1, 1e-5)}, {}, size, least, 12);
+  EXPECT_EQ(manifold.made_from(), 12u);
+  manifold.age(moved(1e-5), size, least);
+  const auto now = written(manifold, moved(1e-5));
+  ASSERT_EQ(now.size(), 1u);
+  EXPECT_NEAR(now[0].depth, 2e-5, 1e-12);
+  EXPECT_FALSE(manifold.serves(moved(-2e-5), size)) << "it has come apart";
+  EXPECT_TRUE(manifold.serves(moved(0.9 * tolerances::late_motion * size), size));
+  EXPECT_FALSE(manifold.serves(moved(1.1 * tolerances::late_motion * size), size)) << "too far from where it was made";
+  manifold.forget();
+  EXPECT_FALSE(manifold.serves({}, size));
+}
+
+// A body that rocks from one edge to the other: the patch of one pose has the contacts of one edge only.
+TEST(LateManifold, TheOtherEdgeHoldsAtOnce) {
+  LateManifold manifold;
+  manifold.keep(std::vector{contact_at(-0.1, 0.1, 1e-5), contact_at(-0.1, -0.1, 1e-5)}, moved(0), size, least, 12);
+  const math::Pose rocked = moved(0, -2e-4);
+  manifold.age(rocked, size, least);
+  manifold.keep(std::vector{contact_at(0.1, 0.1, 1e-5), contact_at(0.1, -0.1, 1e-5)}, rocked, size, least, 12);
+  EXPECT_EQ(written(manifold, rocked).size(), 2u);
+  manifold.age(moved(0), size, least);
+  const auto back = written(manifold, moved(0));
+  ASSERT_EQ(back.size(), 2u);
+  for (const Contact& contact : back) EXPECT_LT(contact.position.x(), 0.0);
+  const math::Pose level = moved(5e-5, -1e-4);
+  manifold.age(level, size, least);
+  EXPECT_EQ(written(manifold, level).size(), 4u);
+}
+
+TEST(LateManifold, ForgetsWhatHasGone) {
+  for (const bool slides : {false, true}) {
+    const double limit = (slides ? tolerances::late_slip : tolerances::late_gap) * size;
+    for (const double share : {0.9, 1.1}) {
+      LateManifold manifold;
+      manifold.keep(std::vector{contact_at(-0.1, 0.0, 1e-5)}, {}, size, least, 12);
+      math::Pose pose = moved(slides ? -2e-5 : -1e-5 - share * limit);
+      if (slides) pose.translation.y() = share * limit;
+      manifold.keep(std::vector{contact_at(0.1, 0.0, 1e-5)}, pose, size, least, 12);
+      math::Pose again = pose;
+      again.translation.z() = 1e-5;
+      manifold.age(again, size, least);
+      EXPECT_EQ(written(manifold, again).size(), share < 1.0 ? 2u : 1u) << slides;
+    }
+  }
+}
+
+TEST(LateManifold, TheDeepestComeFirst) {
+  LateManifold manifold;
+  std::vector<Contact> contacts;
+  for (int i = 0; i < 8; ++i) contacts.push_back(contact_at(0.05 * (i - 4), 0.1, 1e-6 * (i + 1)));
+  manifold.keep(contacts, {}, size, least, 12);
+  const auto now = written(manifold, {}, 3);
+  ASSERT_EQ(now.size(), 3u);
+  EXPECT_NEAR(now[0].depth, 8e-6, 1e-12);
+  EXPECT_NEAR(now[2].depth, 6e-6, 1e-12);
+}
+
+// What came deep while nobody knew is not thrown out in a step.
+TEST(LateManifold, GivesADepthNoFasterThanItsRate) {
+  LateManifold manifold;
+  const double deep = 0.01;
+  manifold.keep(std::vector{contact_at(0.0, 0.0, deep)}, {}, size, least, 12);
+  EXPECT_FALSE(manifold.gives_all({}));
+  double before = written(manifold, {})[0].depth;
+  EXPECT_LE(before, least);
+  int runs = 0;
+  for (; !manifold.gives_all({}) && runs < 10000; ++runs) {
+    manifold.age({}, size, least);
+    const double now = written(manifold, {})[0].depth;
+    EXPECT_LE(now, std::max(before, least) + 1.001 * tolerances::late_rise * size);
+    EXPECT_GE(now, before);
+    before = now;
+  }
+  EXPECT_NEAR(before, deep, 1e-12) << "all of it in the end";
+  EXPECT_NEAR(runs, deep / (tolerances::late_rise * size), 10.0);
+}
+
+// The patch that follows says the same: no step back to a small depth, no step up to a greater one.
+TEST(LateManifold, ASuccessorGivesWhatItsPredecessorGave) {
+  LateManifold manifold;
+  manifold.keep(std::vector{contact_at(0.0, 0.0, 1e-3)}, {}, size, least, 12);
+  for (int i = 0; i < 50; ++i) manifold.age({}, size, least);
+  const double before = written(manifold, {})[0].depth;
+  EXPECT_GT(before, 2.0 * least);
+  manifold.keep(std::vector{contact_at(0.4 * tolerances::late_spacing * size, 0.0, 5e-3)}, {}, size, least, 12);
+  EXPECT_DOUBLE_EQ(written(manifold, {})[0].depth, before);
+  EXPECT_EQ(written(manifold, {}).size(), 1u) << "instead of it, not beside it";
+  manifold.keep(std::vector{contact_at(3.0 * tolerances::late_spacing * size, 0.0, 5e-3)}, {}, size, least, 12);
+  EXPECT_LE(written(manifold, {})[0].depth, least) << "elsewhere it is another contact";
+}
+
+}  // namespace
+}  // namespace odds::query

@@ -1,0 +1,224 @@
+// Budgets that are too short for a contact patch: the work goes on from run to run.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <optional>
+#include <thread>
+
+#include "odds/math/tolerances.hpp"
+#include "odds/mesh/made/by_name.hpp"
+#include "odds/query/pair.hpp"
+#include "support/allocation_counter.hpp"
+#include "support/shapes.hpp"
+
+namespace odds::query {
+namespace {
+
+std::shared_ptr<const Shape> knot() {
+  auto mesh = mesh::made::make_shape("made:torus_knot:triangles=6000");
+  return Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(mesh).value())).value();
+}
+
+std::shared_ptr<const Shape> ball() { return Shape::build(testing::wavy_sphere(24, 0.0)).value(); }
+
+math::Pose at(double x, double y = 0.0) {
+  math::Pose pose;
+  pose.translation = {x, y, 0.0};
+  return pose;
+}
+
+/// Two balls of radius 1 that overlap by `depth`.
+math::Pose deep(double depth) { return at(2.0 - depth); }
+
+constexpr int most_runs = 2000;
+
+Request short_request(realtime::ManualClock& clock, double microseconds = 5.0) {
+  Request request;
+  request.method = Method::incremental;
+  request.max_contacts = 4;
+  request.budget = Budget::time(microseconds);
+  request.budget.clock = clock.clock();
+  return request;
+}
+
+/// Runs until contacts are late; how many that took, none if they never were.
+std::optional<int> runs_until_late(Pair& pair, const math::Pose& pose, const Request& request) {
+  for (int run = 1; run <= most_runs; ++run) {
+    const Answer& answer = pair.run(pose, request);
+    EXPECT_TRUE(answer.contacts.size() <= 4u);
+    for (const Contact& contact : answer.contacts) {
+      EXPECT_TRUE(contact.position.allFinite() && std::isfinite(contact.depth));
+      EXPECT_NEAR(contact.normal.norm(), 1.0, 1e-9);
+    }
+    if (answer.contacts_late) return run;
+  }
+  return std::nullopt;
+}
+
+TEST(ShortBudget, BringsTheContactsOfAnExactRunLate) {
+  for (const double microseconds : {3.0, 5.0, 10.0, 20.0, 49.0}) {
+    realtime::ManualClock clock(50);
+    const auto shape = ball();
+    auto pair = std::move(Pair::make(shape, shape)).value();
+    const math::Pose pose = deep(1e-3);
+    const auto runs = runs_until_late(pair, pose, short_request(clock, microseconds));
+    ASSERT_TRUE(runs.has_value()) << microseconds;
+    auto careful = std::move(Pair::make(shape, shape)).value();
+    Request all;
+    all.method = Method::exact;
+    all.max_contacts = 4;
+    const Answer& exact = careful.run(pose, all);
+    const Answer& late = pair.run(pose, short_request(clock, microseconds));
+    ASSERT_FALSE(late.contacts.empty());
+    EXPECT_EQ(late.verdict, Verdict::hit);
+    EXPECT_EQ(late.basis, Basis::proved);
+    EXPECT_EQ(late.contacts.size(), exact.contacts.size());
+    for (const Contact& contact : late.contacts) {
+      const bool is_there = std::any_of(exact.contacts.begin(), exact.contacts.end(), [&](const Contact& other) {
+        return (other.position - contact.position).norm() < 1e-9 && other.normal.dot(contact.normal) > 1.0 - 1e-12;
+      });
+      EXPECT_TRUE(is_there) << microseconds << " us";
+    }
+  }
+}
+
+// A longer budget has more for the work: fewer runs.
+TEST(ShortBudget, TakesFewerRunsWithMoreTime) {
+  int before = most_runs;
+  for (const double microseconds : {4.0, 10.0, 30.0}) {
+    realtime::ManualClock clock(50);
+    const auto shape = knot();
+    auto pair = std::move(Pair::make(shape, shape)).value();
+    const auto runs = runs_until_late(pair, at(0.3 * shape->mesh().size()), short_request(clock, microseconds));
+    ASSERT_TRUE(runs.has_value());
+    EXPECT_LE(*runs, before);
+    before = *runs;
+  }
+  EXPECT_GT(before, 1);
+}
+
+TEST(ShortBudget, GivesTheWholeDepthInTheEnd) {
+  realtime::ManualClock clock(50);
+  const auto shape = ball();
+  auto pair = std::move(Pair::make(shape, shape)).value();
+  const math::Pose pose = deep(2e-3);
+  double depth = 0.0;
+  for (int run = 0; run < most_runs; ++run) {
+    const Answer& answer = pair.run(pose, short_request(clock, 10.0));
+    const double now = answer.contacts.empty() ? 0.0 : answer.contacts.front().depth;
+    const double most = tolerances::unmeasured_depth * shape->mesh().size();
+    EXPECT_LE(now, std::max(depth + 1.01 * tolerances::late_rise * shape->mesh().size(), 1.01 * most)) << run;
+    depth = std::max(depth, now);
+  }
+  EXPECT_NEAR(depth, 2e-3, 4e-4) << "the tessellated balls' own";
+}
+
+// A guess holds, but does not push a body away.
+TEST(ShortBudget, GuessesAreNeverDeep) {
+  realtime::ManualClock clock(50);
+  const auto shape = knot();
+  auto pair = std::move(Pair::make(shape, shape)).value();
+  const double size = shape->mesh().size();
+  int guesses = 0;
+  for (int run = 0; run < 200; ++run) {
+    const Answer& answer = pair.run(at(0.3 * size, 0.02 * run * size), short_request(clock, 4.0));
+    if (answer.contacts_late || answer.contacts_complete) continue;
+    for (const Contact& contact : answer.contacts) {
+      ++guesses;
+      EXPECT_LE(contact.depth, tolerances::unmeasured_depth * size * 1.000001);
+    }
+  }
+  EXPECT_GT(guesses, 10);
+}
+
+TEST(ShortBudget, CanBeToldNotTo) {
+  realtime::ManualClock clock(50);
+  const auto shape = ball();
+  auto pair = std::move(Pair::make(shape, shape, {.late_contacts = false})).value();
+  EXPECT_FALSE(runs_until_late(pair, deep(1e-3), short_request(clock)).has_value());
+}
+
+TEST(ShortBudget, IsNotOneOfWork) {
+  const auto shape = ball();
+  auto pair = std::move(Pair::make(shape, shape)).value();
+  Request request;
+  request.method = Method::incremental;
+  request.max_contacts = 4;
+  request.budget = Budget::work(40);
+  EXPECT_FALSE(runs_until_late(pair, deep(1e-3), request).has_value());
+}
+
+// Contacts of where the bodies were are no use where they are.
+TEST(ShortBudget, ForgetsWhereTheBodiesWere) {
+  realtime::ManualClock clock(50);
+  const auto shape = ball();
+  auto pair = std::move(Pair::make(shape, shape)).value();
+  ASSERT_TRUE(runs_until_late(pair, deep(1e-3), short_request(clock)).has_value());
+  const math::Pose elsewhere = at(0.0, 2.0 - 1e-3);
+  for (int run = 0; run < most_runs; ++run) {
+    const Answer& answer = pair.run(elsewhere, short_request(clock));
+    for (const Contact& contact : answer.contacts) {
+      EXPECT_GT(contact.position.y(), 0.5) << "of run " << run;
+    }
+    if (answer.contacts_late) return;
+  }
+  FAIL() << "no contacts there";
+}
+
+TEST(ShortBudget, MayBeGivenUpAtAnyMoment) {
+  const auto shape = knot();
+  for (int runs = 0; runs < 40; runs += 3) {
+    realtime::ManualClock clock(50);
+    auto pair = std::move(Pair::make(shape, shape)).value();
+    const math::Pose pose = at(0.3 * shape->mesh().size());
+    for (int run = 0; run < runs; ++run) static_cast<void>(pair.run(pose, short_request(clock)));
+    if (runs % 2 == 0) continue;  // destroyed in the middle of it
+    pair.reset();
+    EXPECT_FALSE(pair.run(pose, short_request(clock)).contacts_late);
+    Pair moved = std::move(pair);
+    EXPECT_TRUE(runs_until_late(moved, pose, short_request(clock)).has_value());
+  }
+}
+
+TEST(ShortBudget, MoreQuestionsThanThereIsMemoryForTakeTurns) {
+  realtime::ManualClock clock(50);
+  const auto shape = ball();
+  std::vector<Pair> pairs;
+  for (int i = 0; i < 40; ++i) pairs.push_back(std::move(Pair::make(shape, shape)).value());
+  std::vector<bool> late(pairs.size(), false);
+  const support::AllocationCounter counter;
+  for (int run = 0; run < most_runs; ++run) {
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      late[i] = pairs[i].run(deep(1e-3), short_request(clock)).contacts_late || late[i];
+    }
+  }
+  EXPECT_EQ(counter.allocations(), 0u);
+  EXPECT_EQ(std::count(late.begin(), late.end(), true), 40);
+}
+
+TEST(ShortBudget, EachRunMayBeInAnotherThread) {
+  const auto shape = knot();
+  auto pair = std::move(Pair::make(shape, shape)).value();
+  realtime::ManualClock clock(50);
+  const math::Pose pose = at(0.3 * shape->mesh().size());
+  bool late = false;
+  for (int run = 0; run < most_runs && !late; ++run) {
+    std::thread([&] { late = pair.run(pose, short_request(clock)).contacts_late; }).join();
+  }
+  EXPECT_TRUE(late);
+}
+
+TEST(ShortBudget, EndsInTime) {
+  const auto shape = knot();
+  auto pair = std::move(Pair::make(shape, shape)).value();
+  constexpr std::int64_t step_ns = 50;
+  realtime::ManualClock clock(step_ns);
+  for (int run = 0; run < 600; ++run) {
+    const double offset = 0.3 + 1e-4 * run;
+    const Answer& answer = pair.run(at(offset * shape->mesh().size()), short_request(clock, 4.0 + run % 20));
+    EXPECT_LE(answer.cost.overshoot_us, 10.0 * step_ns * 1e-3);
+  }
+}
+
+}  // namespace
+}  // namespace odds::query
