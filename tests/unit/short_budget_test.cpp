@@ -15,7 +15,7 @@ namespace odds::query {
 namespace {
 
 std::shared_ptr<const Shape> knot() {
-  auto mesh = mesh::made::make_shape("made:torus_knot:triangles=6000");
+  auto mesh = mesh::made::make_shape("made:torus_knot:along=200,across=12");
   return Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(mesh).value())).value();
 }
 
