@@ -31,7 +31,7 @@ class LateContacts {
   /// Contacts of poses before, to be carried along.
   /// A run begins.
   void age(const math::Pose& pose_b_in_a, double size) noexcept;
-  [[nodiscard]] const LateManifold& manifold() const noexcept { return manifold_; }
+  [[nodiscard]] LateManifold& manifold() noexcept { return manifold_; }
   /// Whether one is.
   [[nodiscard]] bool is_at_work() const noexcept { return scratch_ != nullptr; }
   /// Goes on with the question while `spending.may_make_contacts()`; without one, asks that of this run first: `pair`

@@ -36,6 +36,7 @@ class LateManifold {
         if (is_same(held_[k].held, now[i].held, size)) given = std::max(given, held_[k].given);
       }
       now[i].given = std::min(contacts[i].depth, given);
+      now[i].depth = contacts[i].depth;
     }
     for (std::size_t i = 0; i < count_ && kept < most; ++i) {
       const auto [depth, slip] = held_[i].held.parted(pose);
@@ -55,12 +56,16 @@ class LateManifold {
     return std::all_of(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(count_),
                        [&pose](const Entry& entry) { return entry.given >= entry.held.parted(pose).depth; });
   }
-  /// A run begins, at `pose`.
+  /// A run begins, at `pose`. What the bodies have come deeper while the contacts held them is given at once: they did
+  /// so against the push.
   void age(const math::Pose& pose, double size, double least) noexcept {
     for (Entry& entry : std::span(held_).first(count_)) {
       const double depth = std::max(entry.held.parted(pose).depth, 0.0);
-      entry.given = std::min(depth, std::max(entry.given + tolerances::late_rise * size, least));
+      const double deeper = holds_ ? std::max(depth - entry.depth, 0.0) : 0.0;
+      entry.given = std::min(depth, std::max(entry.given + deeper + tolerances::late_rise * size, least));
+      entry.depth = depth;
     }
+    holds_ = false;
   }
 
   /// Whether no point within `size` of the first contact has moved farther than they are carried, and one of them at
@@ -77,7 +82,8 @@ class LateManifold {
 
   /// Writes those that overlap at `pose`, as many as there is room for, the deepest first: one that is left out while
   /// the bodies come deeper there would push all at once when it is not. Returns how many.
-  [[nodiscard]] std::size_t write(const math::Pose& pose, double size, std::span<Contact> contacts) const noexcept {
+  [[nodiscard]] std::size_t write(const math::Pose& pose, double size, std::span<Contact> contacts) noexcept {
+    holds_ = true;
     struct Candidate {
       double depth;
       std::size_t entry;
@@ -107,7 +113,8 @@ class LateManifold {
 
   struct Entry {
     HeldContact held;
-    double given = 0.0;  ///< metres of its depth
+    double depth = 0.0;  ///< at the last run, metres
+    double given = 0.0;  ///< of that
   };
   [[nodiscard]] static bool is_same(const HeldContact& x, const HeldContact& y, double size) noexcept {
     return (x.on_a() - y.on_a()).norm() <= tolerances::late_spacing * size &&
@@ -117,6 +124,7 @@ class LateManifold {
   std::array<Entry, most> held_;
   std::size_t count_ = 0;
   std::uint32_t made_from_ = 0;
+  bool holds_ = false;  ///< since the last run began
   math::Pose pose_;
 };
 

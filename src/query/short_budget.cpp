@@ -159,7 +159,7 @@ bool serves_late(const math::Pose& pose_b_in_a, const Pair::Implementation& pair
 
 /// Those of them that overlap.
 void write_late(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair) noexcept {
-  const LateManifold& manifold = pair.late->manifold();
+  LateManifold& manifold = pair.late->manifold();
   const std::span<Contact> room = room_for_contacts(request, pair);
   pair.answer.contacts = room.first(manifold.write(pose_b_in_a, smaller_size(pair), room));
   pair.answer.contacts_late = true;
