@@ -26,6 +26,7 @@ query::Request request_for(const Settings& settings, int limit) noexcept {
   request.max_contacts = limit;
   request.carry_motion = settings.carry_motion;
   request.margin = settings.margin_m;
+  request.late_contacts = settings.late_contacts;
   request.solids = true;
   return request;
 }

@@ -45,6 +45,7 @@ Settings combine(const Settings& a, const Settings& b) noexcept {
   both.max_contacts = std::min(a.max_contacts, b.max_contacts);
   both.carry_motion = std::min(a.carry_motion, b.carry_motion);
   both.margin_m = std::max(a.margin_m, b.margin_m);
+  both.late_contacts = a.late_contacts && b.late_contacts;
   both.method = std::min(a.method, b.method);
   both.estimator = std::min(a.estimator, b.estimator);
   both.undecided_policy = std::max(a.undecided_policy, b.undecided_policy);

@@ -26,6 +26,7 @@ struct Settings {
   int max_contacts = 8;
   double carry_motion = tolerances::resting_motion;
   double margin_m = 0.0;
+  bool late_contacts = true;
   query::Method method = query::Method::incremental;
   query::EstimatorKind estimator = query::EstimatorKind::kinematic;
   int undecided_policy = ODDS_UNDECIDED_HIT;

@@ -30,7 +30,7 @@ std::unique_ptr<PairEntry> make_entry(GeomData& a, GeomData& b, bool warmed) {
   auto entry = std::make_unique<PairEntry>();
   entry->a = &a;
   entry->b = &b;
-  auto pair = query::Pair::make(a.mesh->shape, b.mesh->shape);
+  auto pair = query::Pair::make(a.mesh->shape, b.mesh->shape, {.late_contacts = true});
   if (pair.ok()) {
     entry->pair.emplace(std::move(pair).value());
     if (warmed) warm(*entry->pair);

@@ -91,6 +91,14 @@ dReal dGeomOddsMeshGetCarryMotion(dGeomID geom) noexcept {
   return get<dReal>(geom, __func__, [](const Settings& s) { return s.carry_motion; });
 }
 
+int dGeomOddsMeshSetLateContacts(dGeomID geom, int on) noexcept {
+  return set(geom, __func__, on == 0 || on == 1, "it must be 0 or 1", [=](Settings& s) { s.late_contacts = on == 1; });
+}
+
+int dGeomOddsMeshGetLateContacts(dGeomID geom) noexcept {
+  return get<int>(geom, __func__, [](const Settings& s) { return s.late_contacts ? 1 : 0; });
+}
+
 int dGeomOddsMeshSetMargin(dGeomID geom, dReal metres) noexcept {
   return set(geom, __func__, metres >= 0 && metres < dInfinity, "the margin must be >= 0 metres, and finite",
              [=](Settings& s) { s.margin_m = metres; });

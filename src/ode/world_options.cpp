@@ -51,7 +51,8 @@ bool configure(dGeomID geom, const query::Request& q) noexcept {
          dGeomOddsMeshSetWorkBudget(geom, units) != 0 && dGeomOddsMeshSetPMin(geom, q.p_min) != 0 &&
          dGeomOddsMeshSetKMin(geom, static_cast<int>(q.k_min)) != 0 &&
          dGeomOddsMeshSetMaxContacts(geom, q.max_contacts) != 0 && dGeomOddsMeshSetMethod(geom, method) != 0 &&
-         dGeomOddsMeshSetEstimator(geom, estimator) != 0 && dGeomOddsMeshSetCarryMotion(geom, q.carry_motion) != 0;
+         dGeomOddsMeshSetEstimator(geom, estimator) != 0 && dGeomOddsMeshSetCarryMotion(geom, q.carry_motion) != 0 &&
+         dGeomOddsMeshSetLateContacts(geom, 0) != 0;  // its contacts are springs: what is not deep has no force
 }
 
 void reserve_solver(dWorldID world, const WorldOptions& options, std::uint32_t dynamic_bodies) noexcept {

@@ -178,7 +178,7 @@ void work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implement
 }  // namespace
 
 bool is_short(const Request& request, const Pair::Implementation& pair) noexcept {
-  return pair.late != nullptr && request.max_contacts > 1 && !request.polygon_free &&
+  return pair.late != nullptr && request.late_contacts && request.max_contacts > 1 && !request.polygon_free &&
          request.budget.microseconds < short_us;
 }
 

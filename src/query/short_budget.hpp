@@ -9,7 +9,7 @@
 
 namespace odds::query {
 
-/// Whether contacts are made over several runs (PairOptions::late_contacts).
+/// Whether contacts are made over several runs (Request::late_contacts).
 [[nodiscard]] bool is_short(const Request& request, const Pair::Implementation& pair) noexcept;
 
 /// Hits that a search of such a run is asked for.

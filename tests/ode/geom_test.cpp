@@ -129,6 +129,10 @@ TEST_F(GeomTest, SettingsHaveTheDocumentedDefaultsAndKeepWhatIsSet) {
   EXPECT_EQ(dGeomOddsMeshSetMaxContacts(geom, 4), 1);
   EXPECT_EQ(dGeomOddsMeshGetCarryMotion(geom), 1e-5);
   EXPECT_EQ(dGeomOddsMeshSetCarryMotion(geom, 1e-4), 1);
+  EXPECT_EQ(dGeomOddsMeshGetLateContacts(geom), 1);
+  EXPECT_EQ(dGeomOddsMeshSetLateContacts(geom, 0), 1);
+  EXPECT_EQ(dGeomOddsMeshGetLateContacts(geom), 0);
+  for (const int bad : {-1, 2}) EXPECT_EQ(dGeomOddsMeshSetLateContacts(geom, bad), 0);
   EXPECT_EQ(dGeomOddsMeshSetMethod(geom, ODDS_METHOD_EXACT), 1);
   EXPECT_EQ(dGeomOddsMeshSetEstimator(geom, ODDS_ESTIMATOR_CELLS), 1);
   EXPECT_EQ(dGeomOddsMeshSetUndecidedPolicy(geom, ODDS_UNDECIDED_NO_CONTACT, 0.7), 1);

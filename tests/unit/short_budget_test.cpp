@@ -59,7 +59,7 @@ TEST(ShortBudget, BringsTheContactsOfAnExactRunLate) {
   for (const double microseconds : {3.0, 5.0, 10.0, 20.0, 49.0}) {
     realtime::ManualClock clock(50);
     const auto shape = ball();
-    auto pair = std::move(Pair::make(shape, shape)).value();
+    auto pair = std::move(Pair::make(shape, shape, {.late_contacts = true})).value();
     const math::Pose pose = deep(1e-3);
     const auto runs = runs_until_late(pair, pose, short_request(clock, microseconds));
     ASSERT_TRUE(runs.has_value()) << microseconds;
@@ -88,7 +88,7 @@ TEST(ShortBudget, TakesFewerRunsWithMoreTime) {
   for (const double microseconds : {4.0, 10.0, 30.0}) {
     realtime::ManualClock clock(50);
     const auto shape = knot();
-    auto pair = std::move(Pair::make(shape, shape)).value();
+    auto pair = std::move(Pair::make(shape, shape, {.late_contacts = true})).value();
     const auto runs = runs_until_late(pair, at(0.3 * shape->mesh().size()), short_request(clock, microseconds));
     ASSERT_TRUE(runs.has_value());
     EXPECT_LE(*runs, before);
@@ -100,7 +100,7 @@ TEST(ShortBudget, TakesFewerRunsWithMoreTime) {
 TEST(ShortBudget, GivesTheWholeDepthInTheEnd) {
   realtime::ManualClock clock(50);
   const auto shape = ball();
-  auto pair = std::move(Pair::make(shape, shape)).value();
+  auto pair = std::move(Pair::make(shape, shape, {.late_contacts = true})).value();
   const math::Pose pose = deep(2e-3);
   double depth = 0.0;
   for (int run = 0; run < most_runs; ++run) {
@@ -117,7 +117,7 @@ TEST(ShortBudget, GivesTheWholeDepthInTheEnd) {
 TEST(ShortBudget, GuessesAreNeverDeep) {
   realtime::ManualClock clock(50);
   const auto shape = knot();
-  auto pair = std::move(Pair::make(shape, shape)).value();
+  auto pair = std::move(Pair::make(shape, shape, {.late_contacts = true})).value();
   const double size = shape->mesh().size();
   int guesses = 0;
   for (int run = 0; run < 200; ++run) {
@@ -134,13 +134,17 @@ TEST(ShortBudget, GuessesAreNeverDeep) {
 TEST(ShortBudget, CanBeToldNotTo) {
   realtime::ManualClock clock(50);
   const auto shape = ball();
-  auto pair = std::move(Pair::make(shape, shape, {.late_contacts = false})).value();
-  EXPECT_FALSE(runs_until_late(pair, deep(1e-3), short_request(clock)).has_value());
+  auto without_memory = std::move(Pair::make(shape, shape)).value();
+  EXPECT_FALSE(runs_until_late(without_memory, deep(1e-3), short_request(clock)).has_value());
+  auto pair = std::move(Pair::make(shape, shape, {.late_contacts = true})).value();
+  Request request = short_request(clock);
+  request.late_contacts = false;
+  EXPECT_FALSE(runs_until_late(pair, deep(1e-3), request).has_value());
 }
 
 TEST(ShortBudget, IsNotOneOfWork) {
   const auto shape = ball();
-  auto pair = std::move(Pair::make(shape, shape)).value();
+  auto pair = std::move(Pair::make(shape, shape, {.late_contacts = true})).value();
   Request request;
   request.method = Method::incremental;
   request.max_contacts = 4;
@@ -152,7 +156,7 @@ TEST(ShortBudget, IsNotOneOfWork) {
 TEST(ShortBudget, ForgetsWhereTheBodiesWere) {
   realtime::ManualClock clock(50);
   const auto shape = ball();
-  auto pair = std::move(Pair::make(shape, shape)).value();
+  auto pair = std::move(Pair::make(shape, shape, {.late_contacts = true})).value();
   ASSERT_TRUE(runs_until_late(pair, deep(1e-3), short_request(clock)).has_value());
   const math::Pose elsewhere = at(0.0, 2.0 - 1e-3);
   for (int run = 0; run < most_runs; ++run) {
@@ -169,7 +173,7 @@ TEST(ShortBudget, MayBeGivenUpAtAnyMoment) {
   const auto shape = knot();
   for (int runs = 0; runs < 40; runs += 3) {
     realtime::ManualClock clock(50);
-    auto pair = std::move(Pair::make(shape, shape)).value();
+    auto pair = std::move(Pair::make(shape, shape, {.late_contacts = true})).value();
     const math::Pose pose = at(0.3 * shape->mesh().size());
     for (int run = 0; run < runs; ++run) static_cast<void>(pair.run(pose, short_request(clock)));
     if (runs % 2 == 0) continue;  // destroyed in the middle of it
@@ -184,7 +188,7 @@ TEST(ShortBudget, MoreQuestionsThanThereIsMemoryForTakeTurns) {
   realtime::ManualClock clock(50);
   const auto shape = ball();
   std::vector<Pair> pairs;
-  for (int i = 0; i < 40; ++i) pairs.push_back(std::move(Pair::make(shape, shape)).value());
+  for (int i = 0; i < 40; ++i) pairs.push_back(std::move(Pair::make(shape, shape, {.late_contacts = true})).value());
   std::vector<bool> late(pairs.size(), false);
   const support::AllocationCounter counter;
   for (int run = 0; run < most_runs; ++run) {
@@ -198,7 +202,7 @@ TEST(ShortBudget, MoreQuestionsThanThereIsMemoryForTakeTurns) {
 
 TEST(ShortBudget, EachRunMayBeInAnotherThread) {
   const auto shape = knot();
-  auto pair = std::move(Pair::make(shape, shape)).value();
+  auto pair = std::move(Pair::make(shape, shape, {.late_contacts = true})).value();
   realtime::ManualClock clock(50);
   const math::Pose pose = at(0.3 * shape->mesh().size());
   bool late = false;
@@ -210,7 +214,7 @@ TEST(ShortBudget, EachRunMayBeInAnotherThread) {
 
 TEST(ShortBudget, EndsInTime) {
   const auto shape = knot();
-  auto pair = std::move(Pair::make(shape, shape)).value();
+  auto pair = std::move(Pair::make(shape, shape, {.late_contacts = true})).value();
   constexpr std::int64_t step_ns = 50;
   realtime::ManualClock clock(step_ns);
   for (int run = 0; run < 600; ++run) {

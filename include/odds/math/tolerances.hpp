@@ -126,7 +126,7 @@ inline constexpr double way_it_came = 0.25;
 /// Of the smaller body's size: bodies in ODE that have moved by less keep their contacts (Request::carry_motion).
 /// Stacks drifted as little with it as without, and ten times as far with 1e-4. Test: Bricks.CreepingAddsUp.
 inline constexpr double resting_motion = 1e-5;
-/// Of the smaller body's size: contacts that are late (PairOptions::late_contacts) are carried along while bodies move
+/// Of the smaller body's size: contacts that are late (Request::late_contacts) are carried along while bodies move
 /// by less. Test: LateManifold.FollowsTheBodies.
 inline constexpr double late_motion = 0.02;
 /// The same: one of them that has come apart by no more is kept for when it touches again; and across its normal.

@@ -148,6 +148,13 @@ int dGeomOddsMeshGetMaxContacts(dGeomID geom) ODDS_NOTHROW;
 int dGeomOddsMeshSetCarryMotion(dGeomID geom, dReal part) ODDS_NOTHROW;
 dReal dGeomOddsMeshGetCarryMotion(dGeomID geom) ODDS_NOTHROW;
 
+/* 1 (default): contacts of two meshes that a budget below 50 us has no time for are made over several collisions, and
+ * carried along with the bodies: complete, but some steps late; guessed until then, and hardly deep. Bodies stand, and
+ * nothing is thrown. 0: made of what each collision has time for: rougher, but as deep as the bodies, for fast things
+ * and contacts that are springs (an odds::ode::World has 0). Of a pair: 1 only if it is set on both. */
+int dGeomOddsMeshSetLateContacts(dGeomID geom, int on) ODDS_NOTHROW;
+int dGeomOddsMeshGetLateContacts(dGeomID geom) ODDS_NOTHROW;
+
 /* Two meshes that touched in the last collision keep their contacts while they are apart by no more than this, metres,
  * >= 0; of a pair the greater one holds. Default 0: none. Their depth is minus the gap. Hand every contact to
  * oddsMakeSpeculative, which lets bodies come nearer by the gap in a step and no faster (a speculative contact; ODE by itself

@@ -84,7 +84,7 @@ struct Answer {
   std::uint32_t contact_pairs = 0;
   bool contacts_carried = false;  ///< they are those of an earlier run, moved along (Request::carry_motion)
   /// They are all those of a pose some runs ago, which a short budget had no time for at once, moved along with the
-  /// bodies since (PairOptions::late_contacts).
+  /// bodies since (Request::late_contacts).
   bool contacts_late = false;
   bool has_cell_pair = false;  ///< whether `cell_pair` is set: some pair of nodes remained undecided
   Contact cell_pair;           ///< where the surfaces most probably meet: centroids, mean normals, depth estimate

@@ -31,18 +31,16 @@ struct PairOptions {
   /// Poses on which `make` learns how true the general odds are for this very pair; 0: none. About 0.2 ms each; 240 and
   /// more are worth it. The pair keeps what it learnt.
   std::uint32_t calibration_poses = 0;
-  /// Whether contacts (more than one) that budgets of less than 50 us have no time for are made over the runs that
-  /// follow, in what is left of their budgets, and carried along with the bodies: complete, but of a pose some runs ago
-  /// (Answer::contacts_late). Without, they are guessed from single pairs of triangles (Answer::contacts_complete).
-  bool late_contacts = true;
+  /// Memory for Request::late_contacts: 1.3 MB, shared by all pairs with the same capacities, once for each pair but no
+  /// more than 16 times; of more that would use it at once, some guess meanwhile.
+  bool late_contacts = false;
 };
 
 /// A workspace for queries between two shapes. All memory is taken in `make`; `run` never allocates, locks, throws or
 /// makes a system call (the clock is read from user space). One pair per thread; shapes may be shared. With the default
 /// options a pair keeps 0.4 MB, less of small meshes; a megabyte more is shared by all pairs with the same capacities,
 /// once for each pair but no more than 32 times (or as many as the processor runs threads: of more than that at once,
-/// one waits for another), and as much again, no more than 16 times, for contacts that are made over several runs
-/// (PairOptions::late_contacts; of more at once, some are guessed until others are made).
+/// one waits for another).
 class Pair {
  public:
   struct Implementation;  // private to src/query
