@@ -28,7 +28,7 @@ math::Pose moved(double deeper, double tilt = 0.0) {
   return pose;
 }
 
-std::vector<Contact> written(const LateManifold& manifold, const math::Pose& pose, std::size_t room = 8) {
+std::vector<Contact> written(LateManifold& manifold, const math::Pose& pose, std::size_t room = 8) {
   std::vector<Contact> contacts(room);
   contacts.resize(manifold.write(pose, size, contacts));
   return contacts;
@@ -113,6 +113,23 @@ TEST(LateManifold, GivesADepthNoFasterThanItsRate) {
   }
   EXPECT_NEAR(before, deep, 1e-12) << "all of it in the end";
   EXPECT_NEAR(runs, deep / (tolerances::late_rise * size), 10.0);
+}
+
+// What presses bodies together against their contacts finds a resistance that grows with the depth, as ever; but what
+// comes deeper while nothing holds it comes slowly into account.
+TEST(LateManifold, GivesWhatIsPressedInAgainstItAtOnce) {
+  for (const bool held : {true, false}) {
+    LateManifold manifold;
+    manifold.keep(std::vector{contact_at(0.0, 0.0, 1e-5)}, {}, size, least, 12);
+    if (held) static_cast<void>(written(manifold, {}));
+    manifold.age(moved(1e-3), size, least);
+    const double given = written(manifold, moved(1e-3))[0].depth;
+    if (held) {
+      EXPECT_NEAR(given, 1e-3 + 1e-5, 1e-9);
+    } else {
+      EXPECT_LE(given, std::max(least, 1e-5 + 1.001 * tolerances::late_rise * size));
+    }
+  }
 }
 
 // The patch that follows says the same: no step back to a small depth, no step up to a greater one.
