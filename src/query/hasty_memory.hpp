@@ -53,7 +53,10 @@ class HastyMemory {
   }
 
   /// A run begins with B at `pose` in A; `slack`: by so much a remembered place may part sideways.
-  void begin(const math::Pose& pose, double slack) noexcept {
+  /// `far`: bodies that have moved by more since the last one touch elsewhere. Metres.
+  void begin(const math::Pose& pose, double slack, double far) noexcept {
+    if (!((pose.translation - pose_.translation).norm() <= far)) forget();
+    pose_ = pose;
     lean_ *= kept;
     weight_ *= kept;
     std::size_t left = 0;
@@ -138,6 +141,7 @@ class HastyMemory {
     return at;
   }
 
+  math::Pose pose_;  ///< of the last run that began
   Vec3 lean_ = Vec3::Zero();
   double weight_ = 0.0;
   std::array<Place, most_contacts> places_;

@@ -46,6 +46,8 @@ void LateContacts::forget() noexcept {
   manifold_.forget();
   guessed_ = 0;
   starved_ = false;
+  too_many_ = false;
+  clear_runs_ = 0;
 }
 
 void LateContacts::age(const math::Pose& pose_b_in_a, double size) noexcept {
@@ -58,12 +60,16 @@ std::span<const TrianglePair> LateContacts::hits() const noexcept {
 
 void LateContacts::keep_guess(std::span<const Contact> contacts, const math::Pose& pose_b_in_a) noexcept {
   guessed_ = std::min(contacts.size(), guess_.size());
+  guess_pose_ = pose_b_in_a;
   for (std::size_t i = 0; i < guessed_; ++i) guess_[i] = HeldContact(contacts[i], pose_b_in_a);
 }
 
-std::size_t LateContacts::write_guess(const math::Pose& pose_b_in_a, std::span<Contact> contacts) noexcept {
+std::size_t LateContacts::write_guess(const math::Pose& pose_b_in_a, double size,
+                                      std::span<Contact> contacts) noexcept {
   if (!shares_guess()) return 0;
   starved_ = false;
+  const double motion = math::motion_bound_about(guess_[0].on_b(), guess_pose_, pose_b_in_a, size);
+  if (!(motion <= tolerances::hasty_slack * size)) return 0;
   std::size_t written = 0;
   for (std::size_t i = 0; i < guessed_ && written < contacts.size(); ++i) {
     Contact now = guess_[i].at(pose_b_in_a);
@@ -81,27 +87,41 @@ void LateContacts::drop() noexcept {
   end();
 }
 
+bool LateContacts::is_far(const math::Pose& pose_b_in_a, double size) const noexcept {
+  return !(math::motion_bound_about(place_on_b_, pose_, pose_b_in_a, size) <= tolerances::late_motion * size);
+}
+
+void LateContacts::ask(const math::Pose& pose_b_in_a, const Request& request,
+                       const Pair::Implementation& pair) noexcept {
+  worker_->scratch.use(scratch_);
+  pose_ = pose_b_in_a;
+  place_on_b_ = pose_.inverse() *
+                (pair.answer.contacts.empty() ? Vec3(Vec3::Zero()) : Vec3(pair.answer.contacts.front().position));
+  request_ = {};
+  request_.method = Method::exact;
+  request_.budget.microseconds = ever_us;
+  request_.budget.clock = {&LateContacts::read_clock, this};
+  request_.max_contacts = request.max_contacts;
+  worker_->carried.forget();
+  copy_what_is_known(pair, *worker_);
+  worker_->known_at = pair.known_at;
+  worker_->apart_last = pair.apart_last;
+  parted_ = false;
+  dropped_ = false;
+  time_ns_ = 0;
+  scratch_->fiber->start(&LateContacts::answer, this);
+}
+
 bool LateContacts::work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair,
                         Spending& spending) noexcept {
+  const double size = std::min(pair.a->mesh().size(), pair.b->mesh().size());
   starved_ = !spending.may_make_contacts();
   if (starved_) return false;
+  if (is_at_work() && is_far(pose_b_in_a, size) && spending.left_us() > enough_to_drop_us) drop();
   if (!is_at_work()) {
     scratch_ = pool_->take(last_);
     if (scratch_ == nullptr) return false;
-    worker_->scratch.use(scratch_);
-    pose_ = pose_b_in_a;
-    request_ = {};
-    request_.method = Method::exact;
-    request_.budget.microseconds = ever_us;
-    request_.budget.clock = {&LateContacts::read_clock, this};
-    request_.max_contacts = request.max_contacts;
-    worker_->carried.forget();
-    copy_what_is_known(pair, *worker_);
-    worker_->known_at = pair.known_at;
-    worker_->apart_last = pair.apart_last;
-    dropped_ = false;
-    time_ns_ = 0;
-    scratch_->fiber->start(&LateContacts::answer, this);
+    ask(pose_b_in_a, request, pair);
   }
   spending_ = &spending;
   scratch_->fiber->resume();
@@ -109,13 +129,12 @@ bool LateContacts::work(const math::Pose& pose_b_in_a, const Request& request, P
   if (!scratch_->fiber->is_done()) return false;
   end();
   const Answer& answer = worker_->answer;
-  if (answer.contacts.empty() || !answer.contacts_complete) return false;
-  const double size = std::min(pair.a->mesh().size(), pair.b->mesh().size());
-  const Vec3 on_b = pose_.inverse() * answer.contacts.front().position;
-  if (!(math::motion_bound_about(on_b, pose_, pose_b_in_a, size) <= tolerances::late_motion * size)) return false;
-  copy_what_is_known(*worker_, pair);
-  manifold_.keep(answer.contacts, pose_, size, tolerances::unmeasured_depth * size, answer.contact_pairs);
-  if (manifold_.gives_all(pose_)) {
+  if (answer.contacts.empty() || !answer.contacts_complete || is_far(pose_b_in_a, size)) return false;
+  too_many_ = worker_->hits.size() == worker_->hits.capacity();
+  if (too_many_) return false;
+  if (!parted_) copy_what_is_known(*worker_, pair);
+  manifold_.keep(answer.contacts, pose_, pose_b_in_a, size, tolerances::unmeasured_depth * size, answer.contact_pairs);
+  if (manifold_.gives_all(pose_b_in_a)) {
     pair.carried = worker_->carried;
   } else {  // what is carried would push at once
     pair.carried.keep_proofs(worker_->hits.pairs());

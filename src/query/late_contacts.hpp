@@ -32,7 +32,24 @@ class LateContacts {
   /// A run begins.
   void age(const math::Pose& pose_b_in_a, double size) noexcept;
   [[nodiscard]] LateManifold& manifold() noexcept { return manifold_; }
-  /// Whether one is.
+  /// Whether there is memory for work, and use in it: of bodies that cross in more places than are kept, a part says
+  /// little.
+  [[nodiscard]] bool can_work() const noexcept { return is_at_work() || (!too_many_ && pool_->has_free()); }
+  /// The bodies were proved apart in this run. True: for so long now that the work should be dropped.
+  [[nodiscard]] bool note_clear() noexcept {
+    parted_ = true;
+    too_many_ = false;
+    return ++clear_runs_ >= most_clear_runs;
+  }
+  /// They met.
+  void note_hit() noexcept { clear_runs_ = 0; }
+  /// What is dropped ends like any query that its budget ends, a contact patch perhaps.
+  static constexpr double enough_to_drop_us = 8.0;
+  /// Drops the question that is being worked on, if any.
+  void drop() noexcept;
+  /// This run has left no time for the work.
+  void note_starved() noexcept { starved_ = true; }
+  /// Whether a question is being worked on.
   [[nodiscard]] bool is_at_work() const noexcept { return scratch_ != nullptr; }
   /// Goes on with the question while `spending.may_make_contacts()`; without one, asks that of this run first: `pair`
   /// at `pose_b_in_a`. True: it was answered now, and `pair` knows the complete contacts of that pose, to be carried.
@@ -46,10 +63,15 @@ class LateContacts {
   /// Contacts that this run has guessed.
   void keep_guess(std::span<const Contact> contacts, const math::Pose& pose_b_in_a) noexcept;
   /// If shares_guess(): writes those that still overlap, moved along. Returns how many.
-  [[nodiscard]] std::size_t write_guess(const math::Pose& pose_b_in_a, std::span<Contact> contacts) noexcept;
+  [[nodiscard]] std::size_t write_guess(const math::Pose& pose_b_in_a, double size,
+                                        std::span<Contact> contacts) noexcept;
 
  private:
-  void drop() noexcept;
+  /// Bodies that hop are apart for a few runs.
+  static constexpr int most_clear_runs = 8;
+
+  [[nodiscard]] bool is_far(const math::Pose& pose_b_in_a, double size) const noexcept;
+  void ask(const math::Pose& pose_b_in_a, const Request& request, const Pair::Implementation& pair) noexcept;
   static void answer(void* self) noexcept;
   static std::int64_t read_clock(void* self) noexcept;
   void end() noexcept;
@@ -59,12 +81,17 @@ class LateContacts {
   std::uint32_t last_ = 0;      ///< in the pool
   Scratch* scratch_ = nullptr;  ///< while a question is being worked on
   Spending* spending_ = nullptr;
-  bool dropped_ = false;  ///< it is to end as soon as it can
+  bool parted_ = false;    ///< the bodies were apart since it was asked
+  bool too_many_ = false;  ///< the last one had more hits than are kept
+  int clear_runs_ = 0;     ///< in a row
+  bool dropped_ = false;   ///< it is to end as soon as it can
   LateManifold manifold_;
   std::array<HeldContact, most_contacts> guess_;
   std::size_t guessed_ = 0;
-  bool starved_ = false;  ///< the last run left no time for the work
-  math::Pose pose_;
+  math::Pose guess_pose_;
+  bool starved_ = false;            ///< the last run left no time for the work
+  math::Pose pose_;                 ///< of the question
+  Vec3 place_on_b_ = Vec3::Zero();  ///< where the bodies touched then, in B's mesh frame
   Request request_;
   std::int64_t time_ns_ = 0;  ///< the worker's own, which never runs out
 };

@@ -24,9 +24,9 @@ class LateManifold {
   void forget() noexcept { count_ = 0; }
 
   /// All contacts that there are at `pose`, of B's mesh frame in A's, deepest first, and how many pairs of triangles
-  /// they were made from. `least`: a depth that is given at once, metres.
-  void keep(std::span<const Contact> contacts, const math::Pose& pose, double size, double least,
-            std::uint32_t made_from) noexcept {
+  /// they were made from. `pose_now`: that of this run. `least`: a depth that is given at once, metres.
+  void keep(std::span<const Contact> contacts, const math::Pose& pose, const math::Pose& pose_now, double size,
+            double least, std::uint32_t made_from) noexcept {
     std::size_t kept = std::min<std::size_t>(contacts.size(), most_contacts);
     std::array<Entry, most> now;
     for (std::size_t i = 0; i < kept; ++i) {
@@ -36,7 +36,7 @@ class LateManifold {
         if (is_same(held_[k].held, now[i].held, size)) given = std::max(given, held_[k].given);
       }
       now[i].given = std::min(contacts[i].depth, given);
-      now[i].depth = contacts[i].depth;
+      now[i].depth = std::max(now[i].held.parted(pose_now).depth, 0.0);
     }
     for (std::size_t i = 0; i < count_ && kept < most; ++i) {
       const auto [depth, slip] = held_[i].held.parted(pose);
@@ -102,7 +102,7 @@ class LateManifold {
     for (std::size_t i = 0; i < written; ++i) {
       const Entry& entry = held_[candidates[i].entry];
       contacts[i] = entry.held.at(pose);
-      contacts[i].depth = entry.given;
+      contacts[i].depth = std::min(entry.given, candidates[i].depth);
     }
     return written;
   }

@@ -194,6 +194,7 @@ void forget_if_elsewhere(const PosedMeshes& meshes, Pair::Implementation& pair) 
     if (motion.norm() > elsewhere * std::min(size_a, size_b)) {
       pair.came.setZero();
       pair.previous_normal.setZero();
+      pair.haste.forget();
       if (!pair.apart_last) pair.apart_at.reset();
     }
   }
@@ -260,6 +261,7 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
   } else {
     pair.near.forget();
   }
+  settle_late(request, pair, spending);
   answer.cost = spending.close();
   if (spending.ending_ns() > 0 && pair.hits.empty()) pair.endings.search.note(spending.ending_ns());
 }
@@ -350,6 +352,8 @@ void Pair::note_apart(const math::Pose& pose_b_in_a) noexcept {
         const PosedMeshes meshes(pair.a->mesh(), pair.b->mesh(), a.origin(), b.origin(), pose_b_in_a);
         note_clear(meshes, pose_b_in_a, {.solids = true}, pair);
         pair.near.forget();
+        pair.haste.forget();
+        if (pair.late) pair.late->forget();
         pair.within_is_of_front = false;
       },
       pair.a->data().tree);

@@ -66,6 +66,11 @@ Scratch* ScratchPool::take(std::uint32_t& last) noexcept {
   return nullptr;
 }
 
+bool ScratchPool::has_free() const noexcept {
+  return std::any_of(places_.begin(), places_.begin() + size(),
+                     [](const Place& place) { return place.free.load(std::memory_order_relaxed) != nullptr; });
+}
+
 void ScratchPool::give_back(Scratch& scratch, std::uint32_t last) noexcept {
   places_[last].free.store(&scratch, std::memory_order_release);
 }

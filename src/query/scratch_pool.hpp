@@ -68,6 +68,8 @@ class ScratchPool {
   [[nodiscard]] Loan borrow(std::uint32_t& last) noexcept;
   /// The same for longer than a scope, at `last`; null if none is free.
   [[nodiscard]] Scratch* take(std::uint32_t& last) noexcept;
+  /// Whether `take` would probably find one.
+  [[nodiscard]] bool has_free() const noexcept;
   /// Gives back what `take` gave at `last`.
   void give_back(Scratch& scratch, std::uint32_t last) noexcept;
 

@@ -33,6 +33,9 @@ void add_hits_of_work(const PosedMeshes& meshes, Pair::Implementation& pair, Spe
   const std::span<const TrianglePair> hits = pair.late->hits();
   for (std::size_t i = 0; i < std::min(most_tried, hits.size()) && spending.may_make_contacts(); ++i) {
     const TrianglePair tried = hits[(i * hits.size() / most_tried + 5 * pair.hasty_runs) % hits.size()];
+    const std::span<const TrianglePair> known = pair.hits.pairs();
+    const auto is_tried = [&tried](const TrianglePair& other) { return other.a == tried.a && other.b == tried.b; };
+    if (std::any_of(known.begin(), known.end(), is_tried)) continue;
     spending.spend_triangle_pairs(1);
     if (meshes.meet(tried)) pair.hits.add(tried);
   }
@@ -145,7 +148,7 @@ void guess_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, co
 /// The guess of the run before, if it has left no time for the work and will do.
 bool share_guess(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair) noexcept {
   const std::span<Contact> room = room_for_contacts(request, pair);
-  const std::size_t written = pair.late->write_guess(pose_b_in_a, room);
+  const std::size_t written = pair.late->write_guess(pose_b_in_a, smaller_size(pair), room);
   if (written == 0) return false;
   pair.answer.contacts = room.first(written);
   pair.answer.contact_pairs = static_cast<std::uint32_t>(written);
@@ -169,6 +172,7 @@ void write_late(const math::Pose& pose_b_in_a, const Request& request, Pair::Imp
 /// For what time is left.
 void work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair,
           Spending& spending) noexcept {
+  if (spending.left_us() * 1e3 < static_cast<double>(pair.endings.late.ns())) return pair.late->note_starved();
   spending.reserve_for_contacts(pair.endings.late);
   if (pair.late->work(pose_b_in_a, request, pair, spending) && serves_late(pose_b_in_a, pair)) {
     write_late(pose_b_in_a, request, pair);
@@ -179,7 +183,8 @@ void work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implement
 
 bool is_short(const Request& request, const Pair::Implementation& pair) noexcept {
   return pair.late != nullptr && request.late_contacts && request.max_contacts > 1 && !request.polygon_free &&
-         request.budget.microseconds < short_us;
+         request.budget.microseconds < short_us && request.budget.work_units == Budget{}.work_units &&
+         pair.late->can_work();
 }
 
 std::uint32_t hits_of_a_guess(const Pair::Implementation& pair) noexcept {
@@ -196,11 +201,24 @@ bool carry_late_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_
   return true;
 }
 
+void settle_late(const Request& request, Pair::Implementation& pair, Spending& spending) noexcept {
+  if (pair.late == nullptr) return;
+  bool unwanted = false;
+  if (!pair.hits.empty()) {
+    pair.late->note_hit();
+    unwanted = !is_short(request, pair);
+  } else if (pair.answer.basis == Basis::proved) {
+    unwanted = pair.late->note_clear();
+  }
+  if (unwanted && pair.late->is_at_work() && spending.left_us() > LateContacts::enough_to_drop_us) pair.late->drop();
+}
+
 void make_contacts_over_runs(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Vec3* known_normal,
                              const Request& request, Pair::Implementation& pair, Spending& spending) noexcept {
   pair.answer.contacts_complete = false;
   ++pair.hasty_runs;
-  pair.haste.begin(pose_b_in_a, tolerances::hasty_slack * smaller_size(pair));
+  pair.haste.begin(pose_b_in_a, tolerances::hasty_slack * smaller_size(pair),
+                   tolerances::coherent_motion * smaller_size(pair));
   if (serves_late(pose_b_in_a, pair)) {
     write_late(pose_b_in_a, request, pair);
   } else if (!share_guess(pose_b_in_a, request, pair)) {

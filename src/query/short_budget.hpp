@@ -25,4 +25,7 @@ namespace odds::query {
 void make_contacts_over_runs(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Vec3* known_normal,
                              const Request& request, Pair::Implementation& pair, Spending& spending) noexcept;
 
+/// At the end of a run: what has become of no use is dropped, where there is time, for others to use its memory.
+void settle_late(const Request& request, Pair::Implementation& pair, Spending& spending) noexcept;
+
 }  // namespace odds::query

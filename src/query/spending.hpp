@@ -158,14 +158,18 @@ class Spending {
   [[nodiscard]] bool caches_are_cold() const noexcept { return ledger_.stalls() > 0; }
 
   [[nodiscard]] std::int64_t kept_ns(std::int64_t ending_ns) const noexcept {
-    return std::min((caches_are_cold() ? 2 : 1) * ending_ns, std::max(least_ending_ns, allowance_ns() * 3 / 10));
+    return std::min((caches_are_cold() ? 2 : 1) * ending_ns, most_kept_ns());
+  }
+  [[nodiscard]] std::int64_t most_kept_ns() const noexcept {
+    return std::max(least_ending_ns, allowance_ns() * 3 / 10);
   }
 
   void end_earlier() noexcept {
-    search_deadline_ns_ -= search_ending_ns_;
+    search_deadline_ns_ -= kept_ns(search_ending_ns_) - search_ending_ns_;
     if (contacts_ended_) return;
-    const std::int64_t earlier_ns =
-        contacts_reserve_ != nullptr ? kept_ns(contacts_reserve_->ns()) / 2 : search_ending_ns_;
+    const std::int64_t earlier_ns = contacts_reserve_ != nullptr ? kept_ns(contacts_reserve_->ns()) -
+                                                                       std::min(contacts_reserve_->ns(), most_kept_ns())
+                                                                 : kept_ns(search_ending_ns_) - search_ending_ns_;
     last_moment_ns_ -= earlier_ns;
     contacts_deadline_ns_ -= earlier_ns;
   }

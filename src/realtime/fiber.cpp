@@ -15,15 +15,9 @@
 #if __has_feature(address_sanitizer)
 #define ODDS_FIBER_ASAN
 #endif
-#if __has_feature(thread_sanitizer)
-#define ODDS_FIBER_TSAN
-#endif
 #endif
 #if defined(__SANITIZE_ADDRESS__)
 #define ODDS_FIBER_ASAN
-#endif
-#if defined(__SANITIZE_THREAD__)
-#define ODDS_FIBER_TSAN
 #endif
 #ifdef ODDS_FIBER_ASAN
 #include <sanitizer/common_interface_defs.h>

@@ -34,7 +34,7 @@ TEST(HastyMemory, WhatSidesSayCancelsOut) {
   HastyMemory memory;
   EXPECT_FALSE(memory.has_seen());
   for (int run = 0; run < 40; ++run) {
-    memory.begin({}, 1e-3);
+    memory.begin({}, 1e-3, 0.1);
     const double sign = run % 2 == 0 ? 1.0 : -1.0;
     memory.see((up + sign * side).normalized(), 1.0);
   }
@@ -47,7 +47,7 @@ TEST(HastyMemory, WhatSidesSayCancelsOut) {
 TEST(HastyMemory, ContactsThatPushAgainstEachOtherAreNotOfOneMind) {
   HastyMemory memory;
   for (int run = 0; run < 40; ++run) {
-    memory.begin({}, 1e-3);
+    memory.begin({}, 1e-3, 0.1);
     memory.see(side, 1.0);
     memory.see(-side, 1.0);
   }
@@ -66,9 +66,9 @@ TEST(HastyMemory, AddsThePlacesOfRunsBefore) {
   HastyMemory memory;
   const double near = 0.01;
   const double slack = 1e-3;
-  memory.begin({}, slack);
+  memory.begin({}, slack, 0.1);
   memory.remember(std::vector{contact_at(0.1)}, {}, near);
-  memory.begin({}, slack);
+  memory.begin({}, slack, 0.1);
   std::vector<Contact> contacts = {contact_at(-0.1), {}, {}, {}};
   EXPECT_EQ(memory.add_to(contacts, 1, &up, {}, near), 2u);
   EXPECT_NEAR(contacts[1].position.x(), 0.1, 1e-12);
@@ -80,7 +80,7 @@ TEST(HastyMemory, AddsThePlacesOfRunsBefore) {
   EXPECT_EQ(memory.add_to(contacts, 1, &up, apart, near), 1u) << "it has parted there";
   math::Pose slid;
   slid.translation = 2.0 * slack * Vec3::UnitY();
-  memory.begin(slid, slack);
+  memory.begin(slid, slack, 0.1);
   EXPECT_EQ(memory.add_to(contacts, 1, &up, slid, near), 1u) << "it has slid away";
 }
 

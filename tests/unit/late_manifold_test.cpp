@@ -37,7 +37,7 @@ std::vector<Contact> written(LateManifold& manifold, const math::Pose& pose, std
 TEST(LateManifold, FollowsTheBodies) {
   LateManifold manifold;
   EXPECT_FALSE(manifold.serves({}, size));
-  manifold.keep(std::vector{contact_at(0.1, 0.1, 1e-5)}, {}, size, least, 12);
+  manifold.keep(std::vector{contact_at(0.1, 0.1, 1e-5)}, {}, {}, size, least, 12);
   EXPECT_EQ(manifold.made_from(), 12u);
   manifold.age(moved(1e-5), size, least);
   const auto now = written(manifold, moved(1e-5));
@@ -53,10 +53,11 @@ TEST(LateManifold, FollowsTheBodies) {
 // A body that rocks from one edge to the other: the patch of one pose has the contacts of one edge only.
 TEST(LateManifold, TheOtherEdgeHoldsAtOnce) {
   LateManifold manifold;
-  manifold.keep(std::vector{contact_at(-0.1, 0.1, 1e-5), contact_at(-0.1, -0.1, 1e-5)}, moved(0), size, least, 12);
+  manifold.keep(std::vector{contact_at(-0.1, 0.1, 1e-5), contact_at(-0.1, -0.1, 1e-5)}, moved(0), moved(0), size, least,
+                12);
   const math::Pose rocked = moved(0, -2e-4);
   manifold.age(rocked, size, least);
-  manifold.keep(std::vector{contact_at(0.1, 0.1, 1e-5), contact_at(0.1, -0.1, 1e-5)}, rocked, size, least, 12);
+  manifold.keep(std::vector{contact_at(0.1, 0.1, 1e-5), contact_at(0.1, -0.1, 1e-5)}, rocked, rocked, size, least, 12);
   EXPECT_EQ(written(manifold, rocked).size(), 2u);
   manifold.age(moved(0), size, least);
   const auto back = written(manifold, moved(0));
@@ -72,10 +73,10 @@ TEST(LateManifold, ForgetsWhatHasGone) {
     const double limit = (slides ? tolerances::late_slip : tolerances::late_gap) * size;
     for (const double share : {0.9, 1.1}) {
       LateManifold manifold;
-      manifold.keep(std::vector{contact_at(-0.1, 0.0, 1e-5)}, {}, size, least, 12);
+      manifold.keep(std::vector{contact_at(-0.1, 0.0, 1e-5)}, {}, {}, size, least, 12);
       math::Pose pose = moved(slides ? -2e-5 : -1e-5 - share * limit);
       if (slides) pose.translation.y() = share * limit;
-      manifold.keep(std::vector{contact_at(0.1, 0.0, 1e-5)}, pose, size, least, 12);
+      manifold.keep(std::vector{contact_at(0.1, 0.0, 1e-5)}, pose, pose, size, least, 12);
       math::Pose again = pose;
       again.translation.z() = 1e-5;
       manifold.age(again, size, least);
@@ -88,7 +89,7 @@ TEST(LateManifold, TheDeepestComeFirst) {
   LateManifold manifold;
   std::vector<Contact> contacts;
   for (int i = 0; i < 8; ++i) contacts.push_back(contact_at(0.05 * (i - 4), 0.1, 1e-6 * (i + 1)));
-  manifold.keep(contacts, {}, size, least, 12);
+  manifold.keep(contacts, {}, {}, size, least, 12);
   const auto now = written(manifold, {}, 3);
   ASSERT_EQ(now.size(), 3u);
   EXPECT_NEAR(now[0].depth, 8e-6, 1e-12);
@@ -99,7 +100,7 @@ TEST(LateManifold, TheDeepestComeFirst) {
 TEST(LateManifold, GivesADepthNoFasterThanItsRate) {
   LateManifold manifold;
   const double deep = 0.01;
-  manifold.keep(std::vector{contact_at(0.0, 0.0, deep)}, {}, size, least, 12);
+  manifold.keep(std::vector{contact_at(0.0, 0.0, deep)}, {}, {}, size, least, 12);
   EXPECT_FALSE(manifold.gives_all({}));
   double before = written(manifold, {})[0].depth;
   EXPECT_LE(before, least);
@@ -120,7 +121,7 @@ TEST(LateManifold, GivesADepthNoFasterThanItsRate) {
 TEST(LateManifold, GivesWhatIsPressedInAgainstItAtOnce) {
   for (const bool held : {true, false}) {
     LateManifold manifold;
-    manifold.keep(std::vector{contact_at(0.0, 0.0, 1e-5)}, {}, size, least, 12);
+    manifold.keep(std::vector{contact_at(0.0, 0.0, 1e-5)}, {}, {}, size, least, 12);
     if (held) static_cast<void>(written(manifold, {}));
     manifold.age(moved(1e-3), size, least);
     const double given = written(manifold, moved(1e-3))[0].depth;
@@ -135,14 +136,14 @@ TEST(LateManifold, GivesWhatIsPressedInAgainstItAtOnce) {
 // The patch that follows says the same: no step back to a small depth, no step up to a greater one.
 TEST(LateManifold, ASuccessorGivesWhatItsPredecessorGave) {
   LateManifold manifold;
-  manifold.keep(std::vector{contact_at(0.0, 0.0, 1e-3)}, {}, size, least, 12);
+  manifold.keep(std::vector{contact_at(0.0, 0.0, 1e-3)}, {}, {}, size, least, 12);
   for (int i = 0; i < 50; ++i) manifold.age({}, size, least);
   const double before = written(manifold, {})[0].depth;
   EXPECT_GT(before, 2.0 * least);
-  manifold.keep(std::vector{contact_at(0.4 * tolerances::late_spacing * size, 0.0, 5e-3)}, {}, size, least, 12);
+  manifold.keep(std::vector{contact_at(0.4 * tolerances::late_spacing * size, 0.0, 5e-3)}, {}, {}, size, least, 12);
   EXPECT_DOUBLE_EQ(written(manifold, {})[0].depth, before);
   EXPECT_EQ(written(manifold, {}).size(), 1u) << "instead of it, not beside it";
-  manifold.keep(std::vector{contact_at(3.0 * tolerances::late_spacing * size, 0.0, 5e-3)}, {}, size, least, 12);
+  manifold.keep(std::vector{contact_at(3.0 * tolerances::late_spacing * size, 0.0, 5e-3)}, {}, {}, size, least, 12);
   EXPECT_LE(written(manifold, {})[0].depth, least) << "elsewhere it is another contact";
 }
 

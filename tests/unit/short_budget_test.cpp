@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 #include <thread>
+#include <vector>
 
 #include "odds/math/tolerances.hpp"
 #include "odds/mesh/made/by_name.hpp"
@@ -198,6 +199,50 @@ TEST(ShortBudget, MoreQuestionsThanThereIsMemoryForTakeTurns) {
   }
   EXPECT_EQ(counter.allocations(), 0u);
   EXPECT_EQ(std::count(late.begin(), late.end(), true), 40);
+}
+
+// A pair that parts in the middle of the work does not keep its memory from others for long.
+TEST(ShortBudget, WhatHasPartedGivesItsMemoryBack) {
+  realtime::ManualClock clock(50);
+  const auto shape = knot();
+  const double size = shape->mesh().size();
+  std::vector<Pair> parted;
+  for (int i = 0; i < 40; ++i) {
+    parted.push_back(std::move(Pair::make(shape, shape, {.late_contacts = true})).value());
+    for (int run = 0; run < 3; ++run) static_cast<void>(parted.back().run(at(0.3 * size), short_request(clock)));
+    if (i % 2 == 0) {
+      parted.back().note_apart(at(3.0 * size));
+    } else {
+      for (int run = 0; run < 20; ++run) static_cast<void>(parted.back().run(at(3.0 * size), short_request(clock, 20.0)));
+    }
+  }
+  auto pair = std::move(Pair::make(shape, shape, {.late_contacts = true})).value();
+  EXPECT_TRUE(runs_until_late(pair, at(0.3 * size), short_request(clock)).has_value());
+}
+
+// Directions of contacts of before say nothing of those of now.
+TEST(ShortBudget, GuessesForgetTheOtherSide) {
+  for (const double microseconds : {4.0, 6.0, 10.0}) {
+    realtime::ManualClock clock(50);
+    const auto shape = ball();
+    auto pair = std::move(Pair::make(shape, shape, {.late_contacts = true})).value();
+    for (int run = 0; run < 10; ++run) static_cast<void>(pair.run(at(1.999), short_request(clock, microseconds)));
+    pair.note_apart(at(-3.0));
+    for (int run = 0; run < 40; ++run) {
+      for (const Contact& contact : pair.run(at(-1.999), short_request(clock, microseconds)).contacts) {
+        EXPECT_GT(contact.normal.x(), 0.5) << "run " << run << " at " << microseconds << " us";
+      }
+    }
+  }
+}
+
+TEST(ShortBudget, AWorkBudgetBesideItHolds) {
+  realtime::ManualClock clock(1);
+  const auto shape = knot();
+  auto pair = std::move(Pair::make(shape, shape, {.late_contacts = true})).value();
+  Request request = short_request(clock, 49.0);
+  request.budget.work_units = 200;
+  EXPECT_FALSE(runs_until_late(pair, at(0.3 * shape->mesh().size()), request).has_value());
 }
 
 TEST(ShortBudget, EachRunMayBeInAnotherThread) {

@@ -83,8 +83,8 @@ struct Answer {
   /// way out of a solid (Request::solids).
   std::uint32_t contact_pairs = 0;
   bool contacts_carried = false;  ///< they are those of an earlier run, moved along (Request::carry_motion)
-  /// They are all those of a pose some runs ago, which a short budget had no time for at once, moved along with the
-  /// bodies since (Request::late_contacts).
+  /// They were made with care, but for a pose some runs ago, for a short budget had no time for them at once; moved
+  /// along with the bodies since, the deepest first (Request::late_contacts). Then contacts_complete is false.
   bool contacts_late = false;
   bool has_cell_pair = false;  ///< whether `cell_pair` is set: some pair of nodes remained undecided
   Contact cell_pair;           ///< where the surfaces most probably meet: centroids, mean normals, depth estimate

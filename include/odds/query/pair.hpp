@@ -32,7 +32,7 @@ struct PairOptions {
   /// more are worth it. The pair keeps what it learnt.
   std::uint32_t calibration_poses = 0;
   /// Memory for Request::late_contacts: 1.3 MB, shared by all pairs with the same capacities, once for each pair but no
-  /// more than 16 times; of more that would use it at once, some guess meanwhile.
+  /// more than 16 times; of more that would use it at once, some make their contacts as without.
   bool late_contacts = false;
 };
 
