@@ -14,8 +14,15 @@ namespace {
 constexpr std::uint32_t stack_bytes = 256 * 1024;
 /// Questions that are worked on at a time, of all pairs together.
 constexpr std::uint32_t most_at_work = 16;
+/// Pairs of triangles that meet: threads cross in more places than a run can make contacts from.
+constexpr std::uint32_t least_hit_capacity = 2048;
 /// A time that no worker sees the end of.
 constexpr double ever_us = 1e9;
+
+PairOptions roomy(PairOptions options) noexcept {
+  options.hit_capacity = std::max(options.hit_capacity, least_hit_capacity);
+  return options;
+}
 
 /// What the search for a direction and a depth starts from, and what it ends with.
 void copy_what_is_known(const Pair::Implementation& from, Pair::Implementation& to) noexcept {
@@ -31,8 +38,8 @@ void copy_what_is_known(const Pair::Implementation& from, Pair::Implementation& 
 
 LateContacts::LateContacts(const std::shared_ptr<const Shape>& a, const std::shared_ptr<const Shape>& b,
                            const PairOptions& options)
-    : worker_(std::make_unique<Pair::Implementation>(Pair::Implementation::Worker{}, a, b, options)),
-      pool_(ScratchPool::of({64, options.hit_capacity, stack_bytes, most_at_work})) {
+    : worker_(std::make_unique<Pair::Implementation>(Pair::Implementation::Worker{}, a, b, roomy(options))),
+      pool_(ScratchPool::of({64, roomy(options).hit_capacity, stack_bytes, most_at_work})) {
   pool_->add_pair();
 }
 
@@ -48,6 +55,7 @@ void LateContacts::forget() noexcept {
   starved_ = false;
   too_many_ = false;
   clear_runs_ = 0;
+  is_wanted_ = false;
 }
 
 void LateContacts::age(const math::Pose& pose_b_in_a, double size) noexcept {
@@ -109,6 +117,7 @@ void LateContacts::ask(const math::Pose& pose_b_in_a, const Request& request,
   parted_ = false;
   dropped_ = false;
   time_ns_ = 0;
+  worked_us_ = 0.0;
   scratch_->fiber->start(&LateContacts::answer, this);
 }
 
@@ -124,10 +133,13 @@ bool LateContacts::work(const math::Pose& pose_b_in_a, const Request& request, P
     ask(pose_b_in_a, request, pair);
   }
   spending_ = &spending;
+  const double left_us = spending.left_us();
   scratch_->fiber->resume();
+  worked_us_ += left_us - spending.left_us();
   spending_ = nullptr;
   if (!scratch_->fiber->is_done()) return false;
   end();
+  note_duration(request);
   const Answer& answer = worker_->answer;
   if (answer.contacts.empty() || !answer.contacts_complete || is_far(pose_b_in_a, size)) return false;
   too_many_ = worker_->hits.size() == worker_->hits.capacity();
@@ -140,6 +152,12 @@ bool LateContacts::work(const math::Pose& pose_b_in_a, const Request& request, P
     pair.carried.keep_proofs(worker_->hits.pairs());
   }
   return true;
+}
+
+void LateContacts::note_duration(const Request& request) noexcept {
+  constexpr double quick = 0.5;
+  quick_ = worked_us_ < quick * request.budget.microseconds ? quick_ + 1 : 0;
+  if (quick_ >= enough_quick) is_wanted_ = false;
 }
 
 void LateContacts::answer(void* self) noexcept {

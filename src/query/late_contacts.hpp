@@ -43,6 +43,13 @@ class LateContacts {
   }
   /// They met.
   void note_hit() noexcept { clear_runs_ = 0; }
+  /// A run did not have the time for all contacts of what it found.
+  void note_unfinished() noexcept {
+    quick_ = 0;
+    is_wanted_ = true;
+  }
+  /// Whether contacts are to be made over several runs however long a run is, for those of this pair take longer.
+  [[nodiscard]] bool is_wanted() const noexcept { return is_wanted_; }
   /// What is dropped ends like any query that its budget ends, a contact patch perhaps.
   static constexpr double enough_to_drop_us = 8.0;
   /// Drops the question that is being worked on, if any.
@@ -69,12 +76,15 @@ class LateContacts {
  private:
   /// Bodies that hop are apart for a few runs.
   static constexpr int most_clear_runs = 8;
+  /// Questions in a row, each answered within half of a run, after which runs are said to be long enough.
+  static constexpr int enough_quick = 32;
 
   [[nodiscard]] bool is_far(const math::Pose& pose_b_in_a, double size) const noexcept;
   void ask(const math::Pose& pose_b_in_a, const Request& request, const Pair::Implementation& pair) noexcept;
   static void answer(void* self) noexcept;
   static std::int64_t read_clock(void* self) noexcept;
   void end() noexcept;
+  void note_duration(const Request& request) noexcept;
 
   std::unique_ptr<Pair::Implementation> worker_;
   std::shared_ptr<ScratchPool> pool_;
@@ -85,6 +95,9 @@ class LateContacts {
   bool too_many_ = false;  ///< the last one had more hits than are kept
   int clear_runs_ = 0;     ///< in a row
   bool dropped_ = false;   ///< it is to end as soon as it can
+  bool is_wanted_ = false;
+  int quick_ = 0;           ///< questions in a row
+  double worked_us_ = 0.0;  ///< on the one that is being worked on
   LateManifold manifold_;
   std::array<HeldContact, most_contacts> guess_;
   std::size_t guessed_ = 0;

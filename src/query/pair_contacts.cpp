@@ -144,7 +144,7 @@ double believed_depth(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, 
 
 std::uint32_t wanted_hits(const Request& request, const Pair::Implementation& pair) noexcept {
   if (request.max_contacts <= 1) return 1;
-  if (is_short(request, pair)) return hits_of_a_guess(pair);
+  if (is_short(request, pair)) return hits_of_a_guess(request, pair);
   if (!std::isfinite(request.budget.microseconds)) return no_feature;
   return hits_in(request.budget.microseconds, hits_per_microsecond);
 }
@@ -167,6 +167,7 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   if (!spending.may_make_contacts()) {
     (single ? pair.endings.single : pair.endings.patch).note(0);  // or it would never be tried again
     make_rough_contacts(meshes, known_normal, moved_little, request, pair, spending);
+    note_unfinished(request, pair);
     return;
   }
   PatchInput input;
@@ -211,6 +212,7 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   pair.answer.contact_pairs = patches.pairs_used();
   pair.answer.contacts_complete = patches.finished() && all;
   const bool whole = pair.answer.contacts_complete && ended == Progressed::finished;
+  if (!patches.finished() || (!all && pair.hits.size() < pair.hits.capacity())) note_unfinished(request, pair);
   if (!pair.answer.contacts_complete) {
     limit_to_believed(meshes, 1.0, pair);
   } else if (!whole && request.max_contacts > 1 && pair.known_depth.known() && moved_little) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 
 #include "odds/math/tolerances.hpp"
@@ -13,6 +14,9 @@ namespace {
 
 /// Budgets of less have no time for a patch beside the search.
 constexpr double short_us = 50.0;
+/// Of a longer one a guess is made from these hits: the first that are found lie on one side.
+constexpr double hits_per_microsecond = 1.0;
+constexpr double most_hits = 65536.0;
 /// Of what a run has left, for a guess; the rest is for the work on contacts.
 constexpr double share_of_a_guess = 0.5;
 /// Hits of the work under way that are tried in a run.
@@ -72,7 +76,7 @@ class Judge {
  public:
   Judge(const PosedMeshes& meshes, const Pair::Implementation& pair) noexcept
       : both_solid_(pair.a->is_solid() && pair.b->is_solid()),
-        expected_(pair.previous_normal.isZero() ? pair.came : pair.previous_normal),
+        expected_(pair.previous_normal),
         little_(tolerances::hasty_alike * smaller_size(pair)) {
     const Vec3 by_place = (-meshes.pose().translation).stableNormalized();
     towards_a_ =
@@ -179,16 +183,27 @@ void work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implement
   }
 }
 
+/// Whether contacts of this pair are allowed to be late.
+bool may_be_late(const Request& request, const Pair::Implementation& pair) noexcept {
+  return pair.late != nullptr && request.late_contacts && request.max_contacts > 1 && !request.polygon_free &&
+         std::isfinite(request.budget.microseconds) && request.budget.work_units == Budget{}.work_units;
+}
+
 }  // namespace
 
 bool is_short(const Request& request, const Pair::Implementation& pair) noexcept {
-  return pair.late != nullptr && request.late_contacts && request.max_contacts > 1 && !request.polygon_free &&
-         request.budget.microseconds < short_us && request.budget.work_units == Budget{}.work_units &&
+  return may_be_late(request, pair) && (request.budget.microseconds < short_us || pair.late->is_wanted()) &&
          pair.late->can_work();
 }
 
-std::uint32_t hits_of_a_guess(const Pair::Implementation& pair) noexcept {
-  return pair.late->shares_guess() ? 1 : most_contacts;
+void note_unfinished(const Request& request, Pair::Implementation& pair) noexcept {
+  if (may_be_late(request, pair)) pair.late->note_unfinished();
+}
+
+std::uint32_t hits_of_a_guess(const Request& request, const Pair::Implementation& pair) noexcept {
+  if (pair.late->shares_guess()) return 1;
+  if (request.budget.microseconds < short_us) return most_contacts;
+  return static_cast<std::uint32_t>(std::min(hits_per_microsecond * request.budget.microseconds, most_hits));
 }
 
 bool carry_late_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request,

@@ -12,8 +12,11 @@ namespace odds::query {
 /// Whether contacts are made over several runs (Request::late_contacts).
 [[nodiscard]] bool is_short(const Request& request, const Pair::Implementation& pair) noexcept;
 
+/// A run has not had the time for all contacts: those that follow share it.
+void note_unfinished(const Request& request, Pair::Implementation& pair) noexcept;
+
 /// Hits that a search of such a run is asked for.
-[[nodiscard]] std::uint32_t hits_of_a_guess(const Pair::Implementation& pair) noexcept;
+[[nodiscard]] std::uint32_t hits_of_a_guess(const Request& request, const Pair::Implementation& pair) noexcept;
 
 /// The contacts of earlier poses, proved by a pair of triangles that met there and meets now, while the work on those
 /// of now goes on. False if there are none, or they are of no use.
