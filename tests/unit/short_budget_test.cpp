@@ -20,6 +20,12 @@ std::shared_ptr<const Shape> knot() {
   return Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(mesh).value())).value();
 }
 
+/// Two of them cross in more places than are kept for work over several runs.
+std::shared_ptr<const Shape> fine_knot() {
+  auto mesh = mesh::made::make_shape("made:torus_knot:along=1200,across=40");
+  return Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(mesh).value())).value();
+}
+
 std::shared_ptr<const Shape> ball() { return Shape::build(testing::wavy_sphere(24, 0.0)).value(); }
 
 /// Whose contacts take a while, but cross in fewer places than are kept.
@@ -146,6 +152,38 @@ TEST(ShortBudget, CanBeToldNotTo) {
   EXPECT_FALSE(runs_until_late(pair, deep(1e-3), request).has_value());
 }
 
+TEST(ShortBudget, IsEveryOneThatAPatchTakesLongerThan) {
+  realtime::ManualClock clock(500);
+  const auto shape = fine_ball();
+  auto pair = std::move(Pair::make(shape, shape, {.late_contacts = true})).value();
+  const Request shorter = short_request(clock, 60.0);
+  const Answer& first = pair.run(deep(0.04), shorter);
+  ASSERT_FALSE(first.contacts.empty());
+  EXPECT_FALSE(first.contacts_complete);
+  EXPECT_FALSE(first.contacts_late);
+  EXPECT_TRUE(runs_until_late(pair, deep(0.04), shorter).has_value());
+
+  auto patient = std::move(Pair::make(shape, shape, {.late_contacts = true})).value();
+  for (int run = 0; run < 5; ++run) {
+    const Answer& whole = patient.run(deep(0.04), short_request(clock, 1e6));
+    EXPECT_TRUE(whole.contacts_complete && !whole.contacts_late) << run;
+  }
+}
+
+// As soon as there is time enough again, contacts are those of the run.
+TEST(ShortBudget, IsNoneOfABudgetThatHasBecomeLongEnough) {
+  realtime::ManualClock clock(500);
+  const auto shape = fine_ball();
+  auto pair = std::move(Pair::make(shape, shape, {.late_contacts = true})).value();
+  ASSERT_TRUE(runs_until_late(pair, deep(0.04), short_request(clock, 60.0)).has_value());
+  bool complete = false;
+  for (int run = 0; run < 200; ++run) {
+    const Answer& answer = pair.run(deep(0.04 + 1e-3 * (run % 2)), short_request(clock, 1e6));
+    complete = answer.contacts_complete && !answer.contacts_late;
+  }
+  EXPECT_TRUE(complete);
+}
+
 TEST(ShortBudget, IsNotOneOfWork) {
   const auto shape = ball();
   auto pair = std::move(Pair::make(shape, shape, {.late_contacts = true})).value();
@@ -227,7 +265,7 @@ TEST(ShortBudget, WhatHasPartedGivesItsMemoryBack) {
 // A part of the crossings, found in the order of a search, says little of where the bodies touch.
 TEST(ShortBudget, IsAsWithoutWhereMoreCrossThanAreKept) {
   realtime::ManualClock clock(50);
-  const auto shape = knot();
+  const auto shape = fine_knot();
   auto pair = std::move(Pair::make(shape, shape, {.hit_capacity = 64, .late_contacts = true})).value();
   EXPECT_FALSE(runs_until_late(pair, at(0.3 * shape->mesh().size()), short_request(clock, 20.0)).has_value());
 }

@@ -148,8 +148,8 @@ int dGeomOddsMeshGetMaxContacts(dGeomID geom) ODDS_NOTHROW;
 int dGeomOddsMeshSetCarryMotion(dGeomID geom, dReal part) ODDS_NOTHROW;
 dReal dGeomOddsMeshGetCarryMotion(dGeomID geom) ODDS_NOTHROW;
 
-/* 1 (default): contacts of two meshes that a budget below 50 us has no time for are made over several collisions, and
- * carried along with the bodies: complete, but some steps late; guessed until then, and hardly deep. Bodies stand, and
+/* 1 (default): contacts of two meshes that a budget has no time for, one below 50 us or one that a collision of them was
+ * seen to need more than, are made over several collisions, and carried along with the bodies: complete, but some steps late; guessed until then, and hardly deep. Bodies stand, and
  * nothing is thrown. 0: made of what each collision has time for: rougher, but as deep as the bodies, for fast things
  * and contacts that are springs (an odds::ode::World has 0). Of a pair: 1 only if it is set on both. */
 int dGeomOddsMeshSetLateContacts(dGeomID geom, int on) ODDS_NOTHROW;

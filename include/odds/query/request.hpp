@@ -45,12 +45,13 @@ struct Request {
   /// nanometre. Of queries that were decided by proof, behind the contacts of surfaces that meet; for what budget is
   /// left. 0: none.
   double margin = 0.0;
-  /// Whether contacts (more than one) that a budget of less than 50 us has no time for are made over the runs that
-  /// follow, in what is left of their budgets, and carried along with the bodies: complete, but of a pose some runs ago
-  /// (Answer::contacts_late). Until the first of them they are guessed, and no deeper than 1e-4 of the smaller body's
-  /// size: a guess holds, and hardly pushes. For bodies that rest or move slowly, in a solver that holds what touches.
-  /// Without, contacts are made of what the budget has time for (Answer::contacts_complete): rougher, but with a depth.
-  /// Of pairs with PairOptions::late_contacts; not polygon-free.
+  /// Whether contacts (more than one) that a budget has no time for, one of less than 50 us or one that a run of this
+  /// pair has seen not to do, are made over the runs that follow, in what is left of their budgets, and carried along
+  /// with the bodies: complete, but of a pose some runs ago (Answer::contacts_late). Until the first of them they are
+  /// guessed, and no deeper than 1e-4 of the smaller body's size: a guess holds, and hardly pushes. For bodies that
+  /// rest or move slowly, in a solver that holds what touches. Without, contacts are made of what the budget has time
+  /// for (Answer::contacts_complete): rougher, but with a depth. Of pairs with PairOptions::late_contacts; not
+  /// polygon-free.
   bool late_contacts = true;
   /// Whether a pair of leaves has its volumes tested before its triangles (Algorithm 4.2 leaves it open). Of the
   /// generic framework only: the wide engine tests the eight leaves of a node at once with their siblings and has
