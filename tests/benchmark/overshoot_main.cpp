@@ -37,6 +37,7 @@ struct Settings {
   std::string only;
   std::size_t count = 10000;
   long wait_us = 0;      ///< between two queries
+  bool late = false;     ///< contacts are made over several queries
   bool quality = false;  ///< also how far contacts point from where those of a query without a budget do
 };
 
@@ -94,6 +95,7 @@ void measure(const query::Shape& shape, query::Pair& pair, query::Pair* referenc
   std::vector<double> calm_us;  // of queries without a stall: after one, caches are cold
   std::size_t hits = 0;
   std::size_t whole = 0;
+  std::size_t late = 0;
   double made_of = 0.0;
   std::vector<double> unused_us;  // by answers that were told to end
   const query::Request request{.budget = query::Budget::time(budget_us), .max_contacts = contacts};
@@ -108,6 +110,7 @@ void measure(const query::Shape& shape, query::Pair& pair, query::Pair* referenc
     if (answer.contacts.empty()) continue;
     ++hits;
     whole += answer.contacts_complete ? 1U : 0U;
+    late += answer.contacts_late ? 1U : 0U;
     if (!answer.contacts_complete) unused_us.push_back(std::max(0.0, budget_us - answer.cost.net_us()));
     if (reference != nullptr) {
       angles.push_back(angle_between(answer, reference->run(pose, {.max_contacts = contacts})));
@@ -115,11 +118,12 @@ void measure(const query::Shape& shape, query::Pair& pair, query::Pair* referenc
     made_of += static_cast<double>(answer.contact_pairs);
   }
   const auto n = static_cast<double>(count);
-  std::printf("  %-22s %8d %8g %8.2f %8.2f %8.2f %8.2f %9.2f %9.2f %8zu %8.2f %8.2f %8.1f %8.1f %8.1f %8.1f\n",
+  std::printf("  %-22s %8d %8g %8.2f %8.2f %8.2f %8.2f %9.2f %9.2f %8zu %8.2f %8.2f %8.1f %8.1f %8.1f %8.1f %8.1f\n",
               course.name, contacts, budget_us, quantile(net_us, 0.5), quantile(net_us, 0.99), quantile(net_us, 0.999),
               quantile(net_us, 1.0), quantile(gross_us, 0.999), quantile(own_us, 0.999), count - calm_us.size(),
               quantile(calm_us, 0.99), quantile(calm_us, 0.999), 100.0 * static_cast<double>(hits) / n,
               100.0 * static_cast<double>(whole) / std::max(1.0, static_cast<double>(hits)),
+              100.0 * static_cast<double>(late) / std::max(1.0, static_cast<double>(hits)),
               made_of / std::max(1.0, static_cast<double>(hits)), quantile(unused_us, 0.5));
   if (reference != nullptr) {
     std::printf("  %22s degrees off: median %.1f, p90 %.1f\n", "", quantile(angles, 0.5), quantile(angles, 0.9));
@@ -142,14 +146,14 @@ int run(const Settings& settings) {
   for (const std::string& name : settings.meshes) {
     const auto shape = shape_of(name);
     if (!shape) return 1;
-    auto pair = std::move(query::Pair::make(shape, shape)).value();
+    auto pair = std::move(query::Pair::make(shape, shape, {.late_contacts = settings.late})).value();
     auto reference = std::move(query::Pair::make(shape, shape)).value();
     std::printf(
         "%s, %zu triangles, with its own copy; %zu queries each; microseconds beyond the budget, net of stalls\n",
         name.c_str(), shape->mesh().triangles().size(), settings.count);
-    std::printf("  %-22s %8s %8s %8s %8s %8s %8s %9s %9s %8s %8s %8s %8s %8s %8s %8s\n", "", "contacts", "budget",
+    std::printf("  %-22s %8s %8s %8s %8s %8s %8s %9s %9s %8s %8s %8s %8s %8s %8s %8s %8s\n", "", "contacts", "budget",
                 "p50", "p99", "p99.9", "longest", "gr. p99.9", "own p99.9", "stalled", "cm. p99", "cm.p99.9", "hits %",
-                "whole %", "made of", "unused");
+                "whole %", "late %", "made of", "unused");
     for (const Course& course : courses) {
       if (std::string(course.name).find(settings.only) == std::string::npos) continue;
       for (const int contacts : settings.contacts) {
@@ -176,6 +180,7 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(std::size_t{1000}, std::size_t{10000000}));
   app.add_option("--wait-us", settings.wait_us, "microseconds between two queries, in which caches grow cold")
       ->check(CLI::Range(0L, 1000000L));
+  app.add_flag("--late", settings.late, "contacts may be made over several queries (Request::late_contacts)");
   app.add_flag("--quality", settings.quality, "also how far contacts point from those of a query without a budget");
   CLI11_PARSE(app, argc, argv);
   return odds::benchmark::run(settings);
