@@ -147,6 +147,7 @@ bool LateContacts::work(const math::Pose& pose_b_in_a, const Request& request, P
   if (!parted_) copy_what_is_known(*worker_, pair);
   manifold_.keep(answer.contacts, pose_, pose_b_in_a, size, tolerances::unmeasured_depth * size, answer.contact_pairs);
   if (manifold_.gives_all(pose_b_in_a)) {
+    if (quick_ >= enough_quick) is_wanted_ = false;
     pair.carried = worker_->carried;
   } else {  // what is carried would push at once
     pair.carried.keep_proofs(worker_->hits.pairs());
@@ -157,7 +158,6 @@ bool LateContacts::work(const math::Pose& pose_b_in_a, const Request& request, P
 void LateContacts::note_duration(const Request& request) noexcept {
   constexpr double quick = 0.5;
   quick_ = worked_us_ < quick * request.budget.microseconds ? quick_ + 1 : 0;
-  if (quick_ >= enough_quick) is_wanted_ = false;
 }
 
 void LateContacts::answer(void* self) noexcept {
