@@ -51,10 +51,12 @@ class LateManifold {
     pose_ = pose;
     made_from_ = made_from;
   }
-  /// Whether all of each depth is given.
+  /// Whether all of each depth is given, but for what rounding took.
   [[nodiscard]] bool gives_all(const math::Pose& pose) const noexcept {
-    return std::all_of(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(count_),
-                       [&pose](const Entry& entry) { return entry.given >= entry.held.parted(pose).depth; });
+    constexpr double all = 1.0 - 1e-6;
+    return std::all_of(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(count_), [&pose](const Entry& entry) {
+      return entry.given >= all * entry.held.parted(pose).depth;
+    });
   }
   /// A run begins, at `pose`. What the bodies have come deeper while the contacts held them is given at once: they did
   /// so against the push.

@@ -177,7 +177,7 @@ TEST(ShortBudget, IsNoneOfABudgetThatHasBecomeLongEnough) {
   auto pair = std::move(Pair::make(shape, shape, {.late_contacts = true})).value();
   ASSERT_TRUE(runs_until_late(pair, deep(0.04), short_request(clock, 60.0)).has_value());
   bool complete = false;
-  for (int run = 0; run < 200; ++run) {
+  for (int run = 0; run < most_runs; ++run) {
     const Answer& answer = pair.run(deep(0.04 + 1e-3 * (run % 2)), short_request(clock, 1e6));
     complete = answer.contacts_complete && !answer.contacts_late;
   }
