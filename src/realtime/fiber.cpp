@@ -20,7 +20,7 @@
 #define ODDS_FIBER_ASAN
 #endif
 #ifdef ODDS_FIBER_ASAN
-#include <sanitizer/common_interface_defs.h>
+#include <sanitizer/asan_interface.h>
 #endif
 #ifdef ODDS_FIBER_TSAN
 #include <sanitizer/tsan_interface.h>
@@ -50,6 +50,10 @@ struct Fiber::Switch {
       munmap(mapped, page + bytes);
       throw std::bad_alloc();
     }
+#ifdef ODDS_FIBER_ASAN
+    // The frames of a stack that was here before may have left their marks: unmapping does not take them away.
+    __asan_unpoison_memory_region(bottom, bytes);
+#endif
     std::memset(bottom, 0, bytes);
 #ifdef ODDS_FIBER_TSAN
     inside_fiber = __tsan_create_fiber(0);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iostream>
+#include <limits>
 
 #include "odds/math/random.hpp"
 #include "odds/mesh/made/by_name.hpp"
@@ -93,8 +94,9 @@ TEST(Budget, NoQueryAllocates) {
   }
 }
 
-/// Nearest rank.
+/// Nearest rank; of nothing, not a number.
 double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
   std::sort(values.begin(), values.end());
   const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
   return values[std::clamp<std::size_t>(rank, 1, values.size()) - 1];
