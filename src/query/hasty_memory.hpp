@@ -89,7 +89,7 @@ class HastyMemory {
       for (std::size_t i = 0; i < count_ && at == count_; ++i) {
         if ((places_[i].on_a - contact.position).norm() <= near) at = i;
       }
-      if (at == places_.size()) at = eldest();
+      if (at == places_.size()) at = nearest(contact.position);
       places_[at] = {contact.position,
                      back * contact.position,
                      contact.normal,
@@ -117,6 +117,25 @@ class HastyMemory {
     }
     return made;
   }
+  /// Appends to the `made` first of `contacts`, which are known well, those remembered places that are not near one of
+  /// them, were guessed to push as the first of them does, and have come deeper since: they hold what nobody has looked
+  /// at. By so much, `most_depth` at most. Returns how many there are then.
+  [[nodiscard]] std::size_t hold_beside(std::span<Contact> contacts, std::size_t made, const math::Pose& pose,
+                                        double near, double most_depth) const noexcept {
+    if (made == 0) return 0;
+    const Vec3 normal = contacts.front().normal;
+    for (std::size_t i = 0; i < count_ && made < contacts.size(); ++i) {
+      const Place& place = places_[i];
+      if (!(place.normal.dot(normal) > tolerances::hasty_agreement)) continue;
+      const Vec3 now = pose * place.on_b;
+      const double deeper = normal.dot(now - place.on_a);
+      if (!(deeper > 0.0)) continue;
+      const auto is_near = [&](const Contact& contact) noexcept { return (contact.position - now).norm() <= near; };
+      if (std::any_of(contacts.begin(), contacts.begin() + static_cast<std::ptrdiff_t>(made), is_near)) continue;
+      contacts[made++] = {now, normal, std::min(deeper, most_depth), place.triangle_a, place.triangle_b};
+    }
+    return made;
+  }
 
  private:
   struct Place {
@@ -133,10 +152,11 @@ class HastyMemory {
   static constexpr double one_mind = 0.4;
   static constexpr std::uint32_t oldest = 200;
 
-  [[nodiscard]] std::size_t eldest() const noexcept {
+  /// Its turn it is, for those elsewhere support the body elsewhere.
+  [[nodiscard]] std::size_t nearest(const Vec3& position) const noexcept {
     std::size_t at = 0;
     for (std::size_t i = 1; i < count_; ++i) {
-      if (places_[i].runs > places_[at].runs) at = i;
+      if ((places_[i].on_a - position).squaredNorm() < (places_[at].on_a - position).squaredNorm()) at = i;
     }
     return at;
   }

@@ -52,13 +52,16 @@ void LateContacts::forget() noexcept {
   drop();
   manifold_.forget();
   guessed_ = 0;
-  starved_ = false;
+  owed_ = 0;
   too_many_ = false;
   clear_runs_ = 0;
   is_wanted_ = false;
 }
 
 void LateContacts::age(const math::Pose& pose_b_in_a, double size) noexcept {
+  guesses_ = false;
+  pose_last_ = pose_now_;
+  pose_now_ = pose_b_in_a;
   manifold_.age(pose_b_in_a, size, tolerances::unmeasured_depth * size);
 }
 
@@ -67,6 +70,7 @@ std::span<const TrianglePair> LateContacts::hits() const noexcept {
 }
 
 void LateContacts::keep_guess(std::span<const Contact> contacts, const math::Pose& pose_b_in_a) noexcept {
+  guesses_ = true;
   guessed_ = std::min(contacts.size(), guess_.size());
   guess_pose_ = pose_b_in_a;
   for (std::size_t i = 0; i < guessed_; ++i) guess_[i] = HeldContact(contacts[i], pose_b_in_a);
@@ -75,7 +79,7 @@ void LateContacts::keep_guess(std::span<const Contact> contacts, const math::Pos
 std::size_t LateContacts::write_guess(const math::Pose& pose_b_in_a, double size,
                                       std::span<Contact> contacts) noexcept {
   if (!shares_guess()) return 0;
-  starved_ = false;
+  --owed_;
   const double motion = math::motion_bound_about(guess_[0].on_b(), guess_pose_, pose_b_in_a, size);
   if (!(motion <= tolerances::hasty_slack * size)) return 0;
   std::size_t written = 0;
@@ -99,10 +103,22 @@ bool LateContacts::is_far(const math::Pose& pose_b_in_a, double size) const noex
   return !(math::motion_bound_about(place_on_b_, pose_, pose_b_in_a, size) <= tolerances::late_motion * size);
 }
 
-void LateContacts::ask(const math::Pose& pose_b_in_a, const Request& request,
-                       const Pair::Implementation& pair) noexcept {
+bool LateContacts::rest(std::span<const Contact> contacts, double size) const noexcept {
+  if (contacts.empty()) return false;
+  const Contact& first = contacts.front();
+  const Vec3 motion = math::motion_of(first.position, pose_last_, pose_now_);
+  return motion.norm() <= tolerances::late_still * size &&
+         std::all_of(contacts.begin(), contacts.end(), [&first](const Contact& contact) {
+           return contact.normal.dot(first.normal) > tolerances::hasty_agreement;
+         });
+}
+
+void LateContacts::ask(const math::Pose& pose_b_in_a, const Request& request, const Pair::Implementation& pair,
+                       double press) noexcept {
   worker_->scratch.use(scratch_);
   pose_ = pose_b_in_a;
+  pressed_ = press > 0.0 && rest(pair.answer.contacts, std::min(pair.a->mesh().size(), pair.b->mesh().size()));
+  if (pressed_) pose_.translation += press * pair.answer.contacts.front().normal;
   place_on_b_ = pose_.inverse() *
                 (pair.answer.contacts.empty() ? Vec3(Vec3::Zero()) : Vec3(pair.answer.contacts.front().position));
   request_ = {};
@@ -122,15 +138,17 @@ void LateContacts::ask(const math::Pose& pose_b_in_a, const Request& request,
 }
 
 bool LateContacts::work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair,
-                        Spending& spending) noexcept {
+                        Spending& spending, double press) noexcept {
   const double size = std::min(pair.a->mesh().size(), pair.b->mesh().size());
-  starved_ = !spending.may_make_contacts();
-  if (starved_) return false;
+  if (!spending.may_make_contacts()) {
+    note_starved();
+    return false;
+  }
   if (is_at_work() && is_far(pose_b_in_a, size) && spending.left_us() > enough_to_drop_us) drop();
   if (!is_at_work()) {
     scratch_ = pool_->take(last_);
     if (scratch_ == nullptr) return false;
-    ask(pose_b_in_a, request, pair);
+    ask(pose_b_in_a, request, pair, press);
   }
   spending_ = &spending;
   const double left_us = spending.left_us();
@@ -146,7 +164,7 @@ bool LateContacts::work(const math::Pose& pose_b_in_a, const Request& request, P
   if (too_many_) return false;
   if (!parted_) copy_what_is_known(*worker_, pair);
   manifold_.keep(answer.contacts, pose_, pose_b_in_a, size, tolerances::unmeasured_depth * size, answer.contact_pairs);
-  if (manifold_.gives_all(pose_b_in_a)) {
+  if (!pressed_ && manifold_.gives_all(pose_b_in_a)) {
     if (quick_ >= enough_quick) is_wanted_ = false;
     pair.carried = worker_->carried;
   } else {  // what is carried would push at once

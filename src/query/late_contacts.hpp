@@ -28,9 +28,9 @@ class LateContacts {
 
   /// Drops the question that is being worked on, and all contacts.
   void forget() noexcept;
-  /// Contacts of poses before, to be carried along.
-  /// A run begins.
+  /// A run begins, at `pose_b_in_a`.
   void age(const math::Pose& pose_b_in_a, double size) noexcept;
+  /// Contacts of poses before, to be carried along.
   [[nodiscard]] LateManifold& manifold() noexcept { return manifold_; }
   /// Whether there is memory for work, and use in it: of bodies that cross in more places than are kept, a part says
   /// little.
@@ -55,18 +55,19 @@ class LateContacts {
   /// Drops the question that is being worked on, if any.
   void drop() noexcept;
   /// This run has left no time for the work.
-  void note_starved() noexcept { starved_ = true; }
+  void note_starved() noexcept { owed_ = guesses_ ? most_shared : 0; }
   /// Whether a question is being worked on.
   [[nodiscard]] bool is_at_work() const noexcept { return scratch_ != nullptr; }
   /// Goes on with the question while `spending.may_make_contacts()`; without one, asks that of this run first: `pair`
-  /// at `pose_b_in_a`. True: it was answered now, and `pair` knows the complete contacts of that pose, to be carried.
-  bool work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair,
-            Spending& spending) noexcept;
+  /// at `pose_b_in_a`, pressed together by `press` (metres) along this run's contacts if they push one way. True: it
+  /// was answered now, and `pair` knows the complete contacts of that pose, to be carried.
+  bool work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair, Spending& spending,
+            double press) noexcept;
 
   /// Pairs of triangles that the work has found to meet so far, at the pose that it is about; more than a run finds.
   [[nodiscard]] std::span<const TrianglePair> hits() const noexcept;
-  /// Whether this run takes over the guess of the last one, which has left no time for the work.
-  [[nodiscard]] bool shares_guess() const noexcept { return starved_ && guessed_ > 0; }
+  /// Whether this run takes over the last guess, which has left no time for the work.
+  [[nodiscard]] bool shares_guess() const noexcept { return owed_ > 0 && guessed_ > 0; }
   /// Contacts that this run has guessed.
   void keep_guess(std::span<const Contact> contacts, const math::Pose& pose_b_in_a) noexcept;
   /// If shares_guess(): writes those that still overlap, moved along. Returns how many.
@@ -76,11 +77,16 @@ class LateContacts {
  private:
   /// Bodies that hop are apart for a few runs.
   static constexpr int most_clear_runs = 8;
+  /// A guess takes a run's time; these that follow are left for the work.
+  static constexpr int most_shared = 3;
   /// Questions in a row, each answered within half of a run, after which runs are said to be long enough.
   static constexpr int enough_quick = 32;
 
   [[nodiscard]] bool is_far(const math::Pose& pose_b_in_a, double size) const noexcept;
-  void ask(const math::Pose& pose_b_in_a, const Request& request, const Pair::Implementation& pair) noexcept;
+  void ask(const math::Pose& pose_b_in_a, const Request& request, const Pair::Implementation& pair,
+           double press) noexcept;
+  /// Whether the bodies push each other one way, and hardly move there.
+  [[nodiscard]] bool rest(std::span<const Contact> contacts, double size) const noexcept;
   static void answer(void* self) noexcept;
   static std::int64_t read_clock(void* self) noexcept;
   void end() noexcept;
@@ -91,6 +97,7 @@ class LateContacts {
   std::uint32_t last_ = 0;      ///< in the pool
   Scratch* scratch_ = nullptr;  ///< while a question is being worked on
   Spending* spending_ = nullptr;
+  bool pressed_ = false;   ///< what is being worked on
   bool parted_ = false;    ///< the bodies were apart since it was asked
   bool too_many_ = false;  ///< the last one had more hits than are kept
   int clear_runs_ = 0;     ///< in a row
@@ -102,7 +109,10 @@ class LateContacts {
   std::array<HeldContact, most_contacts> guess_;
   std::size_t guessed_ = 0;
   math::Pose guess_pose_;
-  bool starved_ = false;            ///< the last run left no time for the work
+  math::Pose pose_now_;             ///< of this run
+  math::Pose pose_last_;            ///< of the run before
+  bool guesses_ = false;            ///< in this run
+  int owed_ = 0;                    ///< runs that take over a guess
   math::Pose pose_;                 ///< of the question
   Vec3 place_on_b_ = Vec3::Zero();  ///< where the bodies touched then, in B's mesh frame
   Request request_;

@@ -33,7 +33,7 @@ class LateManifold {
       now[i].held = HeldContact(contacts[i], pose);
       double given = least;
       for (std::size_t k = 0; k < count_; ++k) {
-        if (is_same(held_[k].held, now[i].held, size)) given = std::max(given, held_[k].given);
+        if (held_[k].holds && is_same(held_[k].held, now[i].held, size)) given = std::max(given, held_[k].given);
       }
       now[i].given = std::min(contacts[i].depth, given);
       now[i].depth = std::max(now[i].held.parted(pose_now).depth, 0.0);
@@ -54,20 +54,19 @@ class LateManifold {
   /// Whether all of each depth is given, but for what rounding took.
   [[nodiscard]] bool gives_all(const math::Pose& pose) const noexcept {
     constexpr double all = 1.0 - 1e-6;
-    return std::all_of(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(count_), [&pose](const Entry& entry) {
-      return entry.given >= all * entry.held.parted(pose).depth;
-    });
+    return std::all_of(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(count_),
+                       [&pose](const Entry& entry) { return entry.given >= all * entry.held.parted(pose).depth; });
   }
-  /// A run begins, at `pose`. What the bodies have come deeper while the contacts held them is given at once: they did
-  /// so against the push.
+  /// A run begins, at `pose`. What the bodies have come deeper where a contact held them is given at once: they did so
+  /// against its push.
   void age(const math::Pose& pose, double size, double least) noexcept {
     for (Entry& entry : std::span(held_).first(count_)) {
       const double depth = std::max(entry.held.parted(pose).depth, 0.0);
-      const double deeper = holds_ ? std::max(depth - entry.depth, 0.0) : 0.0;
+      const double deeper = entry.holds ? std::max(depth - entry.depth, 0.0) : 0.0;
       entry.given = std::min(depth, std::max(entry.given + deeper + tolerances::late_rise * size, least));
       entry.depth = depth;
+      entry.holds = false;
     }
-    holds_ = false;
   }
 
   /// Whether no point within `size` of the first contact has moved farther than they are carried, and one of them at
@@ -85,7 +84,6 @@ class LateManifold {
   /// Writes those that overlap at `pose`, as many as there is room for, the deepest first: one that is left out while
   /// the bodies come deeper there would push all at once when it is not. Returns how many.
   [[nodiscard]] std::size_t write(const math::Pose& pose, double size, std::span<Contact> contacts) noexcept {
-    holds_ = true;
     struct Candidate {
       double depth;
       std::size_t entry;
@@ -102,7 +100,8 @@ class LateManifold {
                       begin + static_cast<std::ptrdiff_t>(overlapping),
                       [](const Candidate& x, const Candidate& y) { return x.depth > y.depth; });
     for (std::size_t i = 0; i < written; ++i) {
-      const Entry& entry = held_[candidates[i].entry];
+      Entry& entry = held_[candidates[i].entry];
+      entry.holds = true;
       contacts[i] = entry.held.at(pose);
       contacts[i].depth = std::min(entry.given, candidates[i].depth);
     }
@@ -117,6 +116,7 @@ class LateManifold {
     HeldContact held;
     double depth = 0.0;  ///< at the last run, metres
     double given = 0.0;  ///< of that
+    bool holds = false;  ///< it was written since the last run began
   };
   [[nodiscard]] static bool is_same(const HeldContact& x, const HeldContact& y, double size) noexcept {
     return (x.on_a() - y.on_a()).norm() <= tolerances::late_spacing * size &&
@@ -126,7 +126,6 @@ class LateManifold {
   std::array<Entry, most> held_;
   std::size_t count_ = 0;
   std::uint32_t made_from_ = 0;
-  bool holds_ = false;  ///< since the last run began
   math::Pose pose_;
 };
 

@@ -159,6 +159,11 @@ bool share_guess(const math::Pose& pose_b_in_a, const Request& request, Pair::Im
   return true;
 }
 
+void begin_haste(const math::Pose& pose_b_in_a, Pair::Implementation& pair) noexcept {
+  const double size = smaller_size(pair);
+  pair.haste.begin(pose_b_in_a, tolerances::hasty_slack * size, tolerances::coherent_motion * size);
+}
+
 /// Whether the contacts of earlier poses are of use now, far as the bodies may have moved.
 bool serves_late(const math::Pose& pose_b_in_a, const Pair::Implementation& pair) noexcept {
   return pair.late->manifold().serves(pose_b_in_a, smaller_size(pair));
@@ -168,7 +173,10 @@ bool serves_late(const math::Pose& pose_b_in_a, const Pair::Implementation& pair
 void write_late(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair) noexcept {
   LateManifold& manifold = pair.late->manifold();
   const std::span<Contact> room = room_for_contacts(request, pair);
-  pair.answer.contacts = room.first(manifold.write(pose_b_in_a, smaller_size(pair), room));
+  const double size = smaller_size(pair);
+  const std::size_t written = manifold.write(pose_b_in_a, size, room);
+  pair.answer.contacts = room.first(pair.haste.hold_beside(room, written, pose_b_in_a, tolerances::hasty_spacing * size,
+                                                           tolerances::unmeasured_depth * size));
   pair.answer.contacts_late = true;
   pair.answer.contact_pairs = manifold.made_from();
 }
@@ -176,9 +184,13 @@ void write_late(const math::Pose& pose_b_in_a, const Request& request, Pair::Imp
 /// For what time is left.
 void work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair,
           Spending& spending) noexcept {
-  if (spending.left_us() * 1e3 < static_cast<double>(pair.endings.late.ns())) return pair.late->note_starved();
+  if (spending.left_us() * 1e3 < static_cast<double>(pair.endings.late.ns())) {
+    pair.endings.late.ease();
+    return pair.late->note_starved();
+  }
   spending.reserve_for_contacts(pair.endings.late);
-  if (pair.late->work(pose_b_in_a, request, pair, spending) && serves_late(pose_b_in_a, pair)) {
+  const double press = request.budget.microseconds < short_us ? tolerances::late_press * smaller_size(pair) : 0.0;
+  if (pair.late->work(pose_b_in_a, request, pair, spending, press) && serves_late(pose_b_in_a, pair)) {
     write_late(pose_b_in_a, request, pair);
   }
 }
@@ -210,6 +222,7 @@ bool carry_late_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_
                          Pair::Implementation& pair, Spending& spending) noexcept {
   if (!is_short(request, pair) || !serves_late(pose_b_in_a, pair)) return false;
   if (!prove_carried(meshes, pair, spending)) return false;
+  begin_haste(pose_b_in_a, pair);
   pair.answer.contacts_complete = false;
   write_late(pose_b_in_a, request, pair);
   work(pose_b_in_a, request, pair, spending);
@@ -232,8 +245,7 @@ void make_contacts_over_runs(const PosedMeshes& meshes, const math::Pose& pose_b
                              const Request& request, Pair::Implementation& pair, Spending& spending) noexcept {
   pair.answer.contacts_complete = false;
   ++pair.hasty_runs;
-  pair.haste.begin(pose_b_in_a, tolerances::hasty_slack * smaller_size(pair),
-                   tolerances::coherent_motion * smaller_size(pair));
+  begin_haste(pose_b_in_a, pair);
   if (serves_late(pose_b_in_a, pair)) {
     write_late(pose_b_in_a, request, pair);
   } else if (!share_guess(pose_b_in_a, request, pair)) {

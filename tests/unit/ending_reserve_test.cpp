@@ -43,5 +43,17 @@ TEST(EndingReserve, StaysWithinBoundsWhateverHappens) {
   EXPECT_EQ(reserve.ns(), range.least_ns);
 }
 
+// Who is never let in because the reserve is too great would never learn that it is.
+TEST(EndingReserve, EasesSoonWhenItLeavesNoTime) {
+  EndingReserve reserve({1500, 300, 5000, 150, 3000, 1});
+  for (int i = 0; i < 10; ++i) reserve.note(6000);
+  ASSERT_EQ(reserve.ns(), 5000);
+  int runs = 0;
+  for (; reserve.ns() > 4000 && runs < 1000; ++runs) reserve.ease();
+  EXPECT_LT(runs, 20);
+  for (int i = 0; i < 1000; ++i) reserve.ease();
+  EXPECT_EQ(reserve.ns(), 300);
+}
+
 }  // namespace
 }  // namespace odds::query

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace odds::query {
@@ -82,6 +83,48 @@ TEST(HastyMemory, AddsThePlacesOfRunsBefore) {
   slid.translation = 2.0 * slack * Vec3::UnitY();
   memory.begin(slid, slack, 0.1);
   EXPECT_EQ(memory.add_to(contacts, 1, &up, slid, near), 1u) << "it has slid away";
+}
+
+// Hits that are found one beside the other must not drive out the one place at the other end.
+TEST(HastyMemory, KeepsThePlacesFarAway) {
+  HastyMemory memory;
+  const double near = 1e-4;
+  memory.begin({}, 1e-3, 0.1);
+  memory.remember(std::vector{contact_at(-0.2)}, {}, near);
+  for (int i = 0; i < 30; ++i) memory.remember(std::vector{contact_at(0.2 + 1e-3 * i)}, {}, near);
+  std::vector<Contact> contacts(most_contacts);
+  const std::size_t all = memory.add_to(contacts, 0, &up, {}, near);
+  ASSERT_EQ(all, most_contacts);
+  const auto is_far = [](const Contact& contact) { return contact.position.x() < 0.0; };
+  EXPECT_EQ(std::count_if(contacts.begin(), contacts.end(), is_far), 1);
+}
+
+// Beside contacts that are known a guess holds what comes deeper there, but pushes nothing out.
+TEST(HastyMemory, HoldsBesideContactsThatPushTheSameWay) {
+  HastyMemory memory;
+  const double near = 0.01;
+  const double most = 5e-5;
+  memory.begin({}, 1e-3, 0.1);
+  memory.remember(std::vector{contact_at(0.1)}, {}, near);
+  const auto held_at = [&](double deeper, const Vec3& normal) {
+    math::Pose pose;
+    pose.translation = deeper * up;
+    std::vector<Contact> contacts = {contact_at(-0.1), {}, {}, {}};
+    contacts[0].normal = normal;
+    const std::size_t all = memory.hold_beside(contacts, 1, pose, near, most);
+    return all == 2 ? contacts[1].depth : 0.0;
+  };
+  EXPECT_EQ(held_at(0.0, up), 0.0) << "the depth that was guessed is not given";
+  EXPECT_NEAR(held_at(2e-5, up), 2e-5, 1e-12);
+  EXPECT_NEAR(held_at(2e-4, up), most, 1e-12);
+  EXPECT_EQ(held_at(-2e-5, up), 0.0) << "it has parted";
+  EXPECT_EQ(held_at(2e-5, side), 0.0) << "those push elsewhere";
+  std::vector<Contact> none(4);
+  EXPECT_EQ(memory.hold_beside(none, 0, {}, near, most), 0u);
+  math::Pose deeper;
+  deeper.translation = 2e-5 * up;
+  std::vector<Contact> known = {contact_at(0.1 + 0.5 * near), {}};
+  EXPECT_EQ(memory.hold_beside(known, 1, deeper, near, most), 1u) << "that is the same place";
 }
 
 }  // namespace

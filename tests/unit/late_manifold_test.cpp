@@ -137,7 +137,10 @@ TEST(LateManifold, GivesWhatIsPressedInAgainstItAtOnce) {
 TEST(LateManifold, ASuccessorGivesWhatItsPredecessorGave) {
   LateManifold manifold;
   manifold.keep(std::vector{contact_at(0.0, 0.0, 1e-3)}, {}, {}, size, least, 12);
-  for (int i = 0; i < 50; ++i) manifold.age({}, size, least);
+  for (int i = 0; i < 50; ++i) {
+    manifold.age({}, size, least);
+    static_cast<void>(written(manifold, {}));
+  }
   const double before = written(manifold, {})[0].depth;
   EXPECT_GT(before, 2.0 * least);
   manifold.keep(std::vector{contact_at(0.4 * tolerances::late_spacing * size, 0.0, 5e-3)}, {}, {}, size, least, 12);
@@ -145,6 +148,25 @@ TEST(LateManifold, ASuccessorGivesWhatItsPredecessorGave) {
   EXPECT_EQ(written(manifold, {}).size(), 1u) << "instead of it, not beside it";
   manifold.keep(std::vector{contact_at(3.0 * tolerances::late_spacing * size, 0.0, 5e-3)}, {}, {}, size, least, 12);
   EXPECT_LE(written(manifold, {})[0].depth, least) << "elsewhere it is another contact";
+}
+
+// A contact that had slid too far to be written held nothing, though others did: what came deeper there comes slowly
+// into account, of the contact that follows it, too.
+TEST(LateManifold, WhatIsNotWrittenHoldsNothing) {
+  LateManifold manifold;
+  manifold.keep(std::vector{contact_at(0.0, 0.0, 1e-5)}, {}, {}, size, least, 12);
+  math::Pose slid = moved(0.0);
+  slid.translation.y() = 1.2 * tolerances::late_slip * size;
+  for (int run = 1; run <= 10; ++run) {
+    math::Pose deeper = slid;
+    deeper.translation.z() = 1e-4 * run;
+    manifold.age(deeper, size, least);
+    EXPECT_TRUE(written(manifold, deeper).empty());
+  }
+  math::Pose last = slid;
+  last.translation.z() = 1e-3;
+  manifold.keep(std::vector{contact_at(0.0, 0.0, 1e-3)}, last, last, size, least, 12);
+  EXPECT_LE(written(manifold, last)[0].depth, 1.001 * least);
 }
 
 }  // namespace

@@ -134,6 +134,12 @@ inline constexpr double late_motion = 0.02;
 /// with this gap than with 2e-3. Test: LateManifold.ForgetsWhatHasGone.
 inline constexpr double late_gap = 5e-3;
 inline constexpr double late_slip = 5e-3;
+/// The same: late contacts of a short budget are those of bodies that are pressed together by this: what is about to
+/// touch while a question is being answered is among them. Test: ShortBudget.KnowsWhatIsAboutToTouch.
+inline constexpr double late_press = 1e-3;
+/// The same, a run: bodies that move by more where they touch will touch elsewhere, and are not pressed.
+/// Test: ShortBudget.KnowsWhatIsAboutToTouch.
+inline constexpr double late_still = 2e-4;
 /// The same: contacts nearer to each other are one. Test: LateManifold.ASuccessorGivesWhatItsPredecessorGave.
 inline constexpr double late_spacing = 0.05;
 /// Of the smaller body's size, a run: how fast a depth is given that a late contact has at first, and so how fast at
