@@ -83,6 +83,9 @@ class Spending {
       start_deadline_ns_ = start_ns_ + static_cast<std::int64_t>(time_share * static_cast<double>(allowance_ns()));
     }
   }
+  [[nodiscard]] std::uint64_t start_units_left() const noexcept {
+    return units_left_ - std::min(units_left_, start_units_end_);
+  }
   [[nodiscard]] bool start_may_go_on_after(std::uint32_t units) noexcept {
     if (units_left_ <= start_units_end_) return false;
     return unpolled_units_ < units || poll() < start_deadline_ns_;

@@ -151,13 +151,22 @@ void clear(WideNode& node) {
   std::fill(std::begin(node.thickness), std::end(node.thickness), empty_extent);
 }
 
-void set_volume(WideNode& node, std::uint32_t lane, const Bounds& bounds, const NodeStatistics& statistics) {
+ODDS_KEEPS_ROUNDING void set_volume(WideNode& node, std::uint32_t lane, const Bounds& bounds,
+                                    const NodeStatistics& statistics) {
+  const auto middle = static_cast<double>(statistics.slab_center);
+  double offset = middle;
+  double summed = std::abs(middle);
   for (int i = 0; i < 3; ++i) {
     enclose(bounds.lower[i], bounds.upper[i], node.center[i][lane], node.half[i][lane]);
     node.normal[i][lane] = statistics.slab_normal[i];
+    const double along = static_cast<double>(node.normal[i][lane]) * static_cast<double>(node.center[i][lane]);
+    offset -= along;
+    summed += std::abs(along);
   }
-  node.offset[lane] = statistics.slab_center;
-  node.thickness[lane] = statistics.slab_half;
+  node.offset[lane] = static_cast<float>(offset);
+  // The products are exact; three sums in double precision, and the number's own rounding, move the slab's middle.
+  const double moved = std::abs(static_cast<double>(node.offset[lane]) - offset) + 4e-16 * summed;
+  node.thickness[lane] = volume::rounded_up(static_cast<double>(statistics.slab_half) + moved);
 }
 
 void fill_leaf(WideLeaf& leaf, const WideNode& node, std::uint32_t lane, std::span<const TriangleCorners> triangles,

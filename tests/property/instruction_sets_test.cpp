@@ -40,7 +40,7 @@ TEST(InstructionSets, GiveTheSameBitsForEveryMethodAndBudget) {
   std::optional<Pair> portable = pair_on(InstructionSet::portable, a, b);
   ASSERT_TRUE(portable.has_value());
   int others = 0;
-  for (const InstructionSet set : {InstructionSet::sse2, InstructionSet::avx2}) {
+  for (const InstructionSet set : {InstructionSet::sse2, InstructionSet::avx2, InstructionSet::avx512}) {
     std::optional<Pair> pair = pair_on(set, a, b);
     if (!pair) continue;  // not on this processor
     ++others;
@@ -69,7 +69,7 @@ TEST(InstructionSets, CastTheSameRays) {
   const auto mesh = testing::wavy_sphere(20, 0.3);
   const auto tree = tree::WideTree::build(*mesh, {.leaf_triangles = 8});
   const wide::Searches* portable = wide::searches_for(InstructionSet::portable);
-  for (const InstructionSet set : {InstructionSet::sse2, InstructionSet::avx2}) {
+  for (const InstructionSet set : {InstructionSet::sse2, InstructionSet::avx2, InstructionSet::avx512}) {
     const wide::Searches* searches = wide::searches_for(set);
     if (searches == nullptr) continue;
     math::Random random(6);

@@ -61,7 +61,11 @@ TEST_P(WideTreeOf, EnclosesEveryCornerInBoxAndSlabExactly) {
     const WideNode& node = tree_.nodes()[slot / wide_lanes];
     const std::uint32_t lane = slot % wide_lanes;
     Vec3 normal;
-    for (int i = 0; i < 3; ++i) normal[i] = static_cast<double>(node.normal[i][lane]);
+    Vec3 center;
+    for (int i = 0; i < 3; ++i) {
+      normal[i] = static_cast<double>(node.normal[i][lane]);
+      center[i] = static_cast<double>(node.center[i][lane]);
+    }
     ASSERT_LE(normal.norm(), 1.0);
     ASSERT_GE(normal.norm(), 1.0 - 1e-6);
     for (const std::uint32_t triangle : triangles_below(slot)) {
@@ -71,7 +75,7 @@ TEST_P(WideTreeOf, EnclosesEveryCornerInBoxAndSlabExactly) {
           ASSERT_LE(std::abs(corner[i] - static_cast<double>(node.center[i][lane])),
                     static_cast<double>(node.half[i][lane]));
         }
-        ASSERT_LE(std::abs(normal.dot(corner) - static_cast<double>(node.offset[lane])),
+        ASSERT_LE(std::abs(normal.dot(corner - center) - static_cast<double>(node.offset[lane])),
                   static_cast<double>(node.thickness[lane]) * (1.0 + 1e-15));
       }
     }

@@ -1,6 +1,9 @@
 // A rigid pose: where one frame stands in another.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "odds/math/types.hpp"
 
 namespace odds::math {
@@ -23,9 +26,14 @@ struct Pose {
 
   /// True if every number is finite and the rotation is orthonormal to `orthonormality` (largest entry of R^T R - I).
   [[nodiscard]] bool is_rigid(double orthonormality) const {
-    if (!rotation.allFinite() || !translation.allFinite()) return false;
-    const Mat3 deviation = rotation.transpose() * rotation - Mat3::Identity();
-    return deviation.cwiseAbs().maxCoeff() <= orthonormality && rotation.determinant() > 0.0;
+    // Written out, for every query asks it. No comparison holds for what is not a number.
+    const auto x = rotation.col(0);
+    const auto y = rotation.col(1);
+    const auto z = rotation.col(2);
+    const double longest = std::max({std::abs(x.dot(x) - 1.0), std::abs(y.dot(y) - 1.0), std::abs(z.dot(z) - 1.0)});
+    const double askew = std::max({std::abs(x.dot(y)), std::abs(y.dot(z)), std::abs(z.dot(x))});
+    const double sum = rotation.sum() + translation.sum();
+    return longest <= orthonormality && askew <= orthonormality && x.cross(y).dot(z) > 0.0 && sum - sum == 0.0;
   }
 };
 

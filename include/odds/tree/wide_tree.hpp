@@ -36,6 +36,8 @@ class ChildRef {
   [[nodiscard]] std::uint32_t index() const noexcept {
     return bits_ & (is_leaf() ? (1U << 28U) - 1U : most_nodes - 1U);
   }
+  /// The same of what is known to be a node.
+  [[nodiscard]] std::uint32_t node_index() const noexcept { return bits_ & (most_nodes - 1U); }
   [[nodiscard]] std::uint32_t count() const noexcept { return ((bits_ >> 28U) & 7U) + 1U; }  ///< triangles of a leaf
   [[nodiscard]] std::uint32_t height() const noexcept { return is_leaf() ? 0U : (bits_ >> 27U) & highest; }
 
@@ -49,9 +51,9 @@ class ChildRef {
 inline constexpr float empty_extent = -1e30F;
 
 /// Bounding volumes of up to eight children: boxes along the tree's axes, each cut by the slab in which its surface is
-/// thinnest: {x : |x - center| <= half (by axis) and |normal . x - offset| <= thickness}. Metres, tree's frame. Every
-/// corner below a lane satisfies both exactly. `normal` is at most 1 long. A lane without a child has the extents
-/// `empty_extent`, which nothing overlaps, and zeros.
+/// thinnest: {x : |x - center| <= half (by axis) and |normal . (x - center) - offset| <= thickness}. Metres, tree's
+/// frame. Every corner below a lane satisfies both exactly. `normal` is at most 1 long. A lane without a child has the
+/// extents `empty_extent`, which nothing overlaps, and zeros.
 struct alignas(64) WideNode {
   float center[3][wide_lanes];
   float half[3][wide_lanes];

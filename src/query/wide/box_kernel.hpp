@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 #include "odds/tree/wide_tree.hpp"
@@ -25,77 +26,153 @@ struct Turn {
   Vector t;              ///< metres
 };
 
-/// One lane's bounding volume, seen from the other tree's frame.
-struct TurnedBox {
-  Vector center;
-  Vector extent;  ///< of the box along this frame's axes
-  Vector normal;
-  float half[3];        ///< along its own axes, the columns of u
-  float own_normal[3];  ///< the normal in its own axes
-  float offset;
-  float thickness;
-  float shifted;  ///< where the slab's middle stands from the box's, along the normal
+/// The numbers of one lane, found by the address of the first: arrays of a node follow each other.
+class LaneNumbers {
+ public:
+  ODDS_LANES_INLINE LaneNumbers(const WideNode& node, std::uint32_t lane) noexcept : first_(&node.center[0][0] + lane) {}
+  ODDS_LANES_INLINE explicit LaneNumbers(const float* first) noexcept : first_(first) {}
+
+  [[nodiscard]] ODDS_LANES_INLINE float center(int i) const noexcept { return at(offsetof(WideNode, center), i); }
+  [[nodiscard]] ODDS_LANES_INLINE float half(int i) const noexcept { return at(offsetof(WideNode, half), i); }
+  [[nodiscard]] ODDS_LANES_INLINE float normal(int i) const noexcept { return at(offsetof(WideNode, normal), i); }
+  [[nodiscard]] ODDS_LANES_INLINE float offset() const noexcept { return at(offsetof(WideNode, offset), 0); }
+  [[nodiscard]] ODDS_LANES_INLINE float thickness() const noexcept { return at(offsetof(WideNode, thickness), 0); }
+  [[nodiscard]] ODDS_LANES_INLINE tree::ChildRef child() const noexcept {
+    return *reinterpret_cast<const tree::ChildRef*>(first_ + offsetof(WideNode, child) / sizeof(float));
+  }
+
+ private:
+  [[nodiscard]] ODDS_LANES_INLINE float at(std::size_t array, int i) const noexcept {
+    return first_[array / sizeof(float) + static_cast<std::size_t>(i) * wide_lanes];
+  }
+
+  const float* first_;
 };
 
-ODDS_LANES_INLINE TurnedBox turn(const WideNode& node, std::uint32_t lane, const Turn& turn) noexcept {
-  TurnedBox box;
-  const Vector(&u)[3] = turn.column;
-  const Vector(&au)[3] = turn.abs_column;
-  for (int i = 0; i < 3; ++i) {
-    box.half[i] = node.half[i][lane];
-    box.own_normal[i] = node.normal[i][lane];
+/// The numbers of a turn, each put in every lane where it is used.
+template <class L>
+struct TurnNumbers {
+  using F = typename L::Float;
+  const Turn& turn;
+
+  [[nodiscard]] ODDS_LANES_INLINE F of(int j, int i) const noexcept { return L::all(turn.column[j][i]); }
+  [[nodiscard]] ODDS_LANES_INLINE F abs_of(int j, int i) const noexcept { return L::all(turn.abs_column[j][i]); }
+  [[nodiscard]] ODDS_LANES_INLINE F t(int i) const noexcept { return L::all(turn.t[i]); }
+};
+
+/// The same for a search that opens many pairs: they stand in every lane in memory, where kernels read them as operands.
+template <class L>
+struct alignas(64) TurnLanes {
+  using F = typename L::Float;
+  float column[3][3][wide_lanes];  ///< [j][i]: i-th component of the j-th column
+  float abs_column[3][3][wide_lanes];
+  float translation[3][wide_lanes];
+
+  ODDS_LANES_INLINE explicit TurnLanes(const Turn& turn) noexcept {
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        L::store(column[j][i], L::all(turn.column[j][i]));
+        L::store(abs_column[j][i], L::all(turn.abs_column[j][i]));
+      }
+      L::store(translation[i], L::all(turn.t[i]));
+    }
   }
-  box.center = ((u[0] * node.center[0][lane] + u[1] * node.center[1][lane]) + u[2] * node.center[2][lane]) + turn.t;
-  box.extent = (au[0] * box.half[0] + au[1] * box.half[1]) + au[2] * box.half[2];
-  box.normal = (u[0] * node.normal[0][lane] + u[1] * node.normal[1][lane]) + u[2] * node.normal[2][lane];
-  const Vector along = box.normal * turn.t;
-  box.offset = ((along[0] + along[1]) + along[2]) + node.offset[lane];
-  box.thickness = node.thickness[lane];
-  box.shifted =
-      node.offset[lane] - ((box.own_normal[0] * node.center[0][lane] + box.own_normal[1] * node.center[1][lane]) +
-                           box.own_normal[2] * node.center[2][lane]);
-  return box;
-}
+  [[nodiscard]] ODDS_LANES_INLINE F of(int j, int i) const noexcept { return L::load(column[j][i]); }
+  [[nodiscard]] ODDS_LANES_INLINE F abs_of(int j, int i) const noexcept { return L::load(abs_column[j][i]); }
+  [[nodiscard]] ODDS_LANES_INLINE F t(int i) const noexcept { return L::load(translation[i]); }
+};
+
+/// What a kernel compares: a box with the lanes of one node. Everything of the box and of the turn into the node's tree
+/// is one number in all lanes. See two_pairs.hpp for two boxes, each with a node of its own.
+template <class L, class TurnOf = TurnNumbers<L>>
+struct OnePair {
+  using F = typename L::Float;
+  using Lanes = L;
+  using Turned = TurnOf;
+
+  /// In the box's own tree frame.
+  struct Boxes {
+    LaneNumbers numbers;
+
+    [[nodiscard]] ODDS_LANES_INLINE F center(int i) const noexcept { return L::all(numbers.center(i)); }
+    [[nodiscard]] ODDS_LANES_INLINE F half(int i) const noexcept { return L::all(numbers.half(i)); }
+    [[nodiscard]] ODDS_LANES_INLINE F normal(int i) const noexcept { return L::all(numbers.normal(i)); }
+    [[nodiscard]] ODDS_LANES_INLINE F offset() const noexcept { return L::all(numbers.offset()); }
+    [[nodiscard]] ODDS_LANES_INLINE F thickness() const noexcept { return L::all(numbers.thickness()); }
+  };
+  struct Nodes {
+    const WideNode& node;
+
+    [[nodiscard]] ODDS_LANES_INLINE F center(int i) const noexcept { return L::load(node.center[i]); }
+    [[nodiscard]] ODDS_LANES_INLINE F half(int i) const noexcept { return L::load(node.half[i]); }
+    [[nodiscard]] ODDS_LANES_INLINE F normal(int i) const noexcept { return L::load(node.normal[i]); }
+    [[nodiscard]] ODDS_LANES_INLINE F offset() const noexcept { return L::load(node.offset); }
+    [[nodiscard]] ODDS_LANES_INLINE F thickness() const noexcept { return L::load(node.thickness); }
+  };
+};
 
 /// Size that decides which side to descend into: half the box's diagonal, squared.
-ODDS_LANES_INLINE float squared_radius(const WideNode& node, std::uint32_t lane) noexcept {
-  const float x = node.half[0][lane];
-  const float y = node.half[1][lane];
-  const float z = node.half[2][lane];
-  return x * x + y * y + z * z;
+ODDS_LANES_INLINE float squared_radius(const LaneNumbers& lane) noexcept {
+  return (lane.half(0) * lane.half(0) + lane.half(1) * lane.half(1)) + lane.half(2) * lane.half(2);
 }
 
-/// Along one slab's normal n the other volume reaches no farther than its own slab and box let it: with its normal m
-/// and cosine = n . m, n = cosine m + rest, and it is bounded along m by its slab and along the rest by its box. `c`,
-/// `h` are the lanes' centres and half extents.
-template <class L>
-ODDS_LANES_INLINE typename L::Float slab_gaps(const WideNode& node, const TurnedBox& box, const Turn& turn,
-                                              const typename L::Float (&c)[3],
-                                              const typename L::Float (&h)[3]) noexcept {
-  using F = typename L::Float;
-  F n[3];
-  for (int i = 0; i < 3; ++i) n[i] = L::load(node.normal[i]);
-  const F cosine = (L::all(box.normal[0]) * n[0] + L::all(box.normal[1]) * n[1]) + L::all(box.normal[2]) * n[2];
-  const F thickness = L::load(node.thickness);
-  F gap;
-  {  // the box's slab
-    const F along = (L::all(box.normal[0]) * c[0] + L::all(box.normal[1]) * c[1]) + L::all(box.normal[2]) * c[2];
-    const F shifted = L::load(node.offset) - ((n[0] * c[0] + n[1] * c[1]) + n[2] * c[2]);
-    F reach = L::abs(cosine) * thickness;
-    for (int i = 0; i < 3; ++i) reach = reach + L::abs(L::all(box.normal[i]) - cosine * n[i]) * h[i];
-    gap = L::abs((along + cosine * shifted) - L::all(box.offset)) - (reach + L::all(box.thickness));
-  }
-  {  // the lanes' slabs
-    const F along = (n[0] * L::all(box.center[0]) + n[1] * L::all(box.center[1])) + n[2] * L::all(box.center[2]);
-    F reach = L::abs(cosine) * L::all(box.thickness);
+/// Where boxes stand in the frame of the nodes that they are compared with.
+template <class K>
+struct Placed {
+  using F = typename K::F;
+  F d[3];      ///< the boxes' centres from the lanes'
+  F h[3];      ///< half extents of the lanes
+  F own_h[3];  ///< half extents of the boxes, along their own axes
+
+  ODDS_LANES_INLINE Placed(const typename K::Nodes& nodes, const typename K::Boxes& boxes,
+                           const typename K::Turned& turn) noexcept {
+    F center[3];
     for (int j = 0; j < 3; ++j) {
-      const F own =
-          (n[0] * L::all(turn.column[j][0]) + n[1] * L::all(turn.column[j][1])) + n[2] * L::all(turn.column[j][2]);
-      reach = reach + L::abs(own - cosine * L::all(box.own_normal[j])) * L::all(box.half[j]);
+      center[j] = boxes.center(j);
+      own_h[j] = boxes.half(j);
     }
-    const F one = L::abs((along + cosine * L::all(box.shifted)) - L::load(node.offset)) - (reach + thickness);
-    return L::max(gap, one);
+    for (int i = 0; i < 3; ++i) {
+      h[i] = nodes.half(i);
+      d[i] = ((turn.of(0, i) * center[0] + turn.of(1, i) * center[1]) + (turn.of(2, i) * center[2] + turn.t(i))) -
+             nodes.center(i);
+    }
   }
+};
+
+/// Along one slab's normal n the other volume reaches no farther than its own slab and box let it: with its normal m
+/// and cosine = n . m, n = cosine m + rest, and it is bounded along m by its slab and along the rest by its box.
+template <class K>
+ODDS_LANES_INLINE typename K::F slab_gaps(const typename K::Nodes& nodes, const typename K::Boxes& boxes,
+                                          const typename K::Turned& turn, const Placed<K>& placed) noexcept {
+  using F = typename K::F;
+  using L = typename K::Lanes;
+  F own_m[3];
+  F m[3];
+  F n[3];
+  for (int j = 0; j < 3; ++j) own_m[j] = boxes.normal(j);
+  for (int i = 0; i < 3; ++i) {
+    m[i] = (turn.of(0, i) * own_m[0] + turn.of(1, i) * own_m[1]) + turn.of(2, i) * own_m[2];
+    n[i] = nodes.normal(i);
+  }
+  const F cosine = (m[0] * n[0] + m[1] * n[1]) + m[2] * n[2];
+  const F steep = L::abs(cosine);
+  const F thickness = nodes.thickness();
+  const F box_thickness = boxes.thickness();
+  const F offset = nodes.offset();
+  const F box_offset = boxes.offset();
+  const F(&d)[3] = placed.d;
+  F rest[3];
+  // The boxes' slabs.
+  for (int i = 0; i < 3; ++i) rest[i] = L::abs(m[i] - cosine * n[i]) * placed.h[i];
+  const F along_m = ((m[0] * d[0] + m[1] * d[1]) + (m[2] * d[2] + box_offset)) - cosine * offset;
+  const F gap = L::abs(along_m) - ((steep * thickness + box_thickness) + ((rest[0] + rest[1]) + rest[2]));
+  // The lanes' slabs.
+  for (int j = 0; j < 3; ++j) {
+    const F own = (n[0] * turn.of(j, 0) + n[1] * turn.of(j, 1)) + n[2] * turn.of(j, 2);
+    rest[j] = L::abs(own - cosine * own_m[j]) * placed.own_h[j];
+  }
+  const F along_n = ((n[0] * d[0] + n[1] * d[1]) + (n[2] * d[2] - offset)) + cosine * box_offset;
+  return L::max(gap, L::abs(along_n) - ((steep * box_thickness + thickness) + ((rest[0] + rest[1]) + rest[2])));
 }
 
 /// Whether slabs are looked at: always, but for programs that measure what they are worth and specialise this.
@@ -106,38 +183,35 @@ inline constexpr bool looks_at_slabs = true;
 /// any axis of length at most 1 bounds the distance from below, up to the rounding that `margin` of the encounter
 /// covers. `far`: the three gaps of each frame's axes also count together, as the legs of a distance; for boxes that
 /// are apart by more than their sizes that is what bounds it.
-template <class L, bool far = false>
-ODDS_LANES_INLINE typename L::Float gaps(const WideNode& node, const TurnedBox& box, const Turn& turn) noexcept {
-  using F = typename L::Float;
-  F d[3];
-  F c[3];
-  F h[3];
-  for (int i = 0; i < 3; ++i) {
-    c[i] = L::load(node.center[i]);
-    h[i] = L::load(node.half[i]);
-    d[i] = L::all(box.center[i]) - c[i];
+template <class K, bool far = false>
+ODDS_LANES_INLINE typename K::F gaps(const typename K::Nodes& nodes, const typename K::Boxes& boxes,
+                                     const typename K::Turned& turn, const Placed<K>& placed) noexcept {
+  using F = typename K::F;
+  using L = typename K::Lanes;
+  const F(&d)[3] = placed.d;
+  const F(&h)[3] = placed.h;
+  const F(&own_h)[3] = placed.own_h;
+  F one[3];
+  const auto legs = [&one]() noexcept {
+    const F none = L::all(0.0F);
+    F squares = L::max(one[0], none) * L::max(one[0], none);
+    for (int i = 1; i < 3; ++i) squares = squares + L::max(one[i], none) * L::max(one[i], none);
+    return L::root(squares) * L::all(0.999999F);
+  };
+  for (int i = 0; i < 3; ++i) {  // the lanes' axes
+    const F extent = (turn.abs_of(0, i) * own_h[0] + turn.abs_of(1, i) * own_h[1]) + turn.abs_of(2, i) * own_h[2];
+    one[i] = L::abs(d[i]) - (h[i] + extent);
   }
-  F gap = L::abs(d[0]) - (h[0] + L::all(box.extent[0]));  // this frame's axes
-  const F none = L::all(0.0F);
-  F squares = L::max(gap, none) * L::max(gap, none);
-  for (int i = 1; i < 3; ++i) {
-    const F one = L::abs(d[i]) - (h[i] + L::all(box.extent[i]));
-    gap = L::max(gap, one);
-    if constexpr (far) squares = squares + L::max(one, none) * L::max(one, none);
+  F gap = L::max(L::max(one[0], one[1]), one[2]);
+  if constexpr (far) gap = L::max(gap, legs());
+  for (int j = 0; j < 3; ++j) {  // the boxes' own axes
+    const F along = (d[0] * turn.of(j, 0) + d[1] * turn.of(j, 1)) + d[2] * turn.of(j, 2);
+    const F reach = (h[0] * turn.abs_of(j, 0) + h[1] * turn.abs_of(j, 1)) + (h[2] * turn.abs_of(j, 2) + own_h[j]);
+    one[j] = L::abs(along) - reach;
   }
-  if constexpr (far) gap = L::max(gap, L::root(squares) * L::all(0.999999F));
-  if constexpr (looks_at_slabs<L>) gap = L::max(gap, slab_gaps<L>(node, box, turn, c, h));
-  for (int j = 0; j < 3; ++j) {  // the box's own axes
-    const F along =
-        (d[0] * L::all(turn.column[j][0]) + d[1] * L::all(turn.column[j][1])) + d[2] * L::all(turn.column[j][2]);
-    const F reach = (h[0] * L::all(turn.abs_column[j][0]) + h[1] * L::all(turn.abs_column[j][1])) +
-                    h[2] * L::all(turn.abs_column[j][2]);
-    const F one = L::abs(along) - (reach + L::all(box.half[j]));
-    gap = L::max(gap, one);
-    if constexpr (far)
-      squares = j == 0 ? L::max(one, none) * L::max(one, none) : squares + L::max(one, none) * L::max(one, none);
-  }
-  if constexpr (far) gap = L::max(gap, L::root(squares) * L::all(0.999999F));
+  gap = L::max(gap, L::max(L::max(one[0], one[1]), one[2]));
+  if constexpr (far) gap = L::max(gap, legs());
+  if constexpr (looks_at_slabs<L>) gap = L::max(gap, slab_gaps<K>(nodes, boxes, turn, placed));
   return gap;
 }
 
@@ -145,11 +219,14 @@ ODDS_LANES_INLINE typename L::Float gaps(const WideNode& node, const TurnedBox& 
 /// relative to how thick both surfaces are. Surfaces that fill their slabs evenly meet with a probability that grows
 /// with it; on near-contact poses it leads to a hit in fewer steps than the kinematic rate does, at a fifth of its
 /// cost. Lanes that do not overlap get a very negative number.
-template <class L>
-ODDS_LANES_INLINE typename L::Float ranks(const WideNode& node, const TurnedBox& box, typename L::Float gap) noexcept {
+template <class K>
+ODDS_LANES_INLINE typename K::F ranks(const typename K::Nodes& nodes, const typename K::Boxes& boxes,
+                                      typename K::F gap) noexcept {
+  using F = typename K::F;
+  using L = typename K::Lanes;
   constexpr float least = 1e-30F;
-  const typename L::Float depth = L::max(L::all(0.0F) - gap, L::all(least));
-  const typename L::Float thickness = L::max(L::load(node.thickness) + L::all(box.thickness), L::all(least));
+  const F depth = L::max(L::all(0.0F) - gap, L::all(least));
+  const F thickness = L::max(nodes.thickness() + boxes.thickness(), L::all(least));
   return lanes::rough_log2<L>(L::divide(depth, thickness));
 }
 

@@ -40,19 +40,6 @@ Encounter::Encounter(const tree::WideTree& a, const tree::WideTree& b, const Pos
   margin_ = relative_.margin;
 }
 
-void Encounter::shift(Slot slot_a, Slot slot_b, float shift[3]) const noexcept {
-  const tree::WideNode& node_a = a_.nodes()[slot_a / wide_lanes];
-  const tree::WideNode& node_b = b_.nodes()[slot_b / wide_lanes];
-  const std::uint32_t i = slot_a % wide_lanes;
-  const std::uint32_t j = slot_b % wide_lanes;
-  const Vec3 center_a(static_cast<double>(node_a.center[0][i]), static_cast<double>(node_a.center[1][i]),
-                      static_cast<double>(node_a.center[2][i]));
-  const Vec3 center_b(static_cast<double>(node_b.center[0][j]), static_cast<double>(node_b.center[1][j]),
-                      static_cast<double>(node_b.center[2][j]));
-  const Vec3 difference = meshes_.pose() * center_b - center_a;
-  for (int k = 0; k < 3; ++k) shift[k] = static_cast<float>(difference[k]);
-}
-
 bool Encounter::triangles_meet(std::uint32_t triangle_a, std::uint32_t triangle_b) const noexcept {
   return meshes_.meet({triangle_a, triangle_b});
 }

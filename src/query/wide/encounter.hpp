@@ -29,6 +29,9 @@ class Encounter {
   [[nodiscard]] const tree::WideTree& b() const noexcept { return b_; }
   /// Sides are 0 (A) and 1 (B).
   [[nodiscard]] const WideNode* nodes(std::uint32_t side) const noexcept { return nodes_[side]; }
+  [[nodiscard]] ODDS_LANES_INLINE LaneNumbers numbers(std::uint32_t side, Slot slot) const noexcept {
+    return {nodes_[side][slot / wide_lanes], slot % wide_lanes};
+  }
   [[nodiscard]] tree::ChildRef child(std::uint32_t side, Slot slot) const noexcept {
     return nodes_[side][slot / wide_lanes].child[slot % wide_lanes];
   }
@@ -45,7 +48,17 @@ class Encounter {
   [[nodiscard]] float margin() const noexcept { return margin_; }
 
   /// Where the centre of B's slot stands from that of A's, in A's frame: in doubles, so that near pairs lose nothing.
-  void shift(Slot slot_a, Slot slot_b, float shift[3]) const noexcept;
+  ODDS_LANES_INLINE void shift(Slot slot_a, Slot slot_b, float shift[3]) const noexcept {
+    const LaneNumbers a = numbers(0, slot_a);
+    const LaneNumbers b = numbers(1, slot_b);
+    const double* const r = meshes_.pose().rotation.data();  // by columns
+    const double* const t = meshes_.pose().translation.data();
+    const double center[3] = {b.center(0), b.center(1), b.center(2)};
+    for (int k = 0; k < 3; ++k) {
+      const double placed = ((r[k] * center[0] + r[k + 3] * center[1]) + r[k + 6] * center[2]) + t[k];
+      shift[k] = static_cast<float>(placed - static_cast<double>(a.center(k)));
+    }
+  }
 
   /// The exact test of two triangles, given by their indices in the meshes.
   [[nodiscard]] bool triangles_meet(std::uint32_t triangle_a, std::uint32_t triangle_b) const noexcept;

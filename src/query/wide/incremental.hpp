@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "query/spread_step.hpp"
-#include "query/wide/opening.hpp"
+#include "query/wide/open_pairs.hpp"
 
 namespace odds::query::wide {
 
@@ -213,9 +213,9 @@ class Incremental {
     // Taken first is what comes last: leaves, then the deepest overlap, where a hit is found soonest.
     const unsigned inner = lanes & ~expanded.leaf_lanes;
     const unsigned deepest = 1U << L::least(expanded.gaps);
-    stack_.add<false>(expanded, inner & ~deepest);
-    stack_.add<false>(expanded, inner & deepest);
-    stack_.add<false>(expanded, lanes & expanded.leaf_lanes);
+    stack_.add(expanded, inner & ~deepest);
+    stack_.add(expanded, inner & deepest);
+    stack_.add(expanded, lanes & expanded.leaf_lanes);
     entry.opened = static_cast<std::uint16_t>(entry.opened | expanded.lanes);
     alignas(64) float gap[wide_lanes];
     L::store(gap, expanded.gaps);
@@ -253,7 +253,7 @@ class Incremental {
   /// from all over the rim. Going down from there needs as much room again at most.
   void go_elsewhere() noexcept {
     if (stack_.size < 2 || stack_.size > wide_stack_capacity) return;
-    stack_.bring_up<false>(elsewhere(task_.hits.size(), stack_.size - 1));
+    stack_.bring_up(elsewhere(task_.hits.size(), stack_.size - 1));
   }
 
   bool leave() noexcept {

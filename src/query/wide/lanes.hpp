@@ -1,4 +1,5 @@
-// Eight floats at a time: AVX2, two SSE registers, or plain loops. All three give the same bits: no fused multiply-add.
+// Eight floats at a time: AVX-512 (sixteen), AVX2, two SSE registers, or plain loops. All give the same bits: no fused
+// multiply-add.
 #pragma once
 
 #include <bit>
@@ -35,6 +36,13 @@ template <class L>
 struct WritesInOrder {
   ODDS_LANES_INLINE static void write_lanes(std::uint32_t* to, std::uint32_t first, unsigned mask) noexcept {
     for (int i = 0; i < 8; ++i) to[i] = first + lane_order.of[mask][i];
+  }
+  ODDS_LANES_INLINE static void write_either(std::uint32_t* to, std::uint32_t first, std::uint32_t other, unsigned mask,
+                                             unsigned counted) noexcept {
+    for (; mask != 0; mask &= mask - 1U) {
+      const auto lane = static_cast<unsigned>(std::countr_zero(mask));
+      *to++ = (counted >> lane & 1U) != 0 ? first + lane : other;
+    }
   }
   template <class Float>
   ODDS_LANES_INLINE static void write_some(float* to, const Float& a, unsigned mask) noexcept {
@@ -78,6 +86,18 @@ struct Avx2 {
     const __m256i lanes = _mm256_add_epi32(_mm256_cvtepu8_epi32(packed), _mm256_set1_epi32(static_cast<int>(first)));
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), lanes);
   }
+  /// Writes `first` + lane for every lane of the mask that is `counted`, else `other`, in order, to `to`, and anything to
+  /// the rest of to[0 .. 8).
+  ODDS_LANES_INLINE static void write_either(std::uint32_t* to, std::uint32_t first, std::uint32_t other, unsigned mask,
+                                             unsigned counted) noexcept {
+    const __m256i bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+    const __m256i lane = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+    const __m256i is_counted = _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(static_cast<int>(counted)), bits), bits);
+    const __m256i counts = _mm256_add_epi32(_mm256_set1_epi32(static_cast<int>(first)), lane);
+    const __m256i all = _mm256_blendv_epi8(_mm256_set1_epi32(static_cast<int>(other)), counts, is_counted);
+    const __m128i packed = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(lane_order.of[mask]));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_permutevar8x32_epi32(all, _mm256_cvtepu8_epi32(packed)));
+  }
   /// Writes the lanes of the mask, in order, to `to`, and anything to the rest of to[0 .. 8).
   ODDS_LANES_INLINE static void write_some(float* to, Float a, unsigned mask) noexcept {
     const __m128i packed = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(lane_order.of[mask]));
@@ -102,6 +122,48 @@ struct Avx2 {
 ODDS_LANES_INLINE Avx2::Float operator+(Avx2::Float a, Avx2::Float b) noexcept { return {_mm256_add_ps(a.v, b.v)}; }
 ODDS_LANES_INLINE Avx2::Float operator-(Avx2::Float a, Avx2::Float b) noexcept { return {_mm256_sub_ps(a.v, b.v)}; }
 ODDS_LANES_INLINE Avx2::Float operator*(Avx2::Float a, Avx2::Float b) noexcept { return {_mm256_mul_ps(a.v, b.v)}; }
+#endif
+
+#if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
+/// Eight lanes as before, and sixteen for two pairs at once.
+struct Avx512 : Avx2 {
+  static constexpr const char* name = "avx512";
+};
+
+/// Sixteen lanes: the lower eight of one pair, the upper eight of another.
+struct Sixteen {
+  struct Float {
+    __m512 v;
+  };
+  ODDS_LANES_INLINE static Float load(const float* p) noexcept { return {_mm512_load_ps(p)}; }
+  ODDS_LANES_INLINE static Float load(const float* lower, const float* upper) noexcept {
+    return {_mm512_insertf32x8(_mm512_castps256_ps512(_mm256_load_ps(lower)), _mm256_load_ps(upper), 1)};
+  }
+  ODDS_LANES_INLINE static Float all(float x) noexcept { return {_mm512_set1_ps(x)}; }
+  ODDS_LANES_INLINE static Float all(float lower, float upper) noexcept {
+    return {_mm512_mask_broadcastss_ps(_mm512_set1_ps(lower), 0xFF00, _mm_set_ss(upper))};
+  }
+  ODDS_LANES_INLINE static Float abs(Float a) noexcept { return {_mm512_abs_ps(a.v)}; }
+  ODDS_LANES_INLINE static Float divide(Float a, Float b) noexcept { return {_mm512_div_ps(a.v, b.v)}; }
+  ODDS_LANES_INLINE static Float root(Float a) noexcept { return {_mm512_sqrt_ps(a.v)}; }
+  ODDS_LANES_INLINE static void split(Float a, Float& exponent, Float& fraction) noexcept {
+    const __m512i bits = _mm512_castps_si512(a.v);
+    exponent.v = _mm512_cvtepi32_ps(_mm512_sub_epi32(_mm512_srli_epi32(bits, 23), _mm512_set1_epi32(127)));
+    const __m512i mantissa = _mm512_and_si512(bits, _mm512_set1_epi32(0x007FFFFF));
+    const __m512i one = _mm512_set1_epi32(0x3F800000);
+    fraction.v = _mm512_sub_ps(_mm512_castsi512_ps(_mm512_or_si512(mantissa, one)), _mm512_set1_ps(1.0F));
+  }
+  ODDS_LANES_INLINE static Float max(Float a, Float b) noexcept { return {_mm512_max_ps(a.v, b.v)}; }
+};
+ODDS_LANES_INLINE Sixteen::Float operator+(Sixteen::Float a, Sixteen::Float b) noexcept {
+  return {_mm512_add_ps(a.v, b.v)};
+}
+ODDS_LANES_INLINE Sixteen::Float operator-(Sixteen::Float a, Sixteen::Float b) noexcept {
+  return {_mm512_sub_ps(a.v, b.v)};
+}
+ODDS_LANES_INLINE Sixteen::Float operator*(Sixteen::Float a, Sixteen::Float b) noexcept {
+  return {_mm512_mul_ps(a.v, b.v)};
+}
 #endif
 
 #if defined(__SSE2__)

@@ -8,7 +8,7 @@
 
 namespace odds::query::wide {
 
-/// Two pairs push at most sixteen, at most once a level of either tree.
+/// One pair pushes at most eight, at most once a level of either tree; with room for twice as many.
 inline constexpr std::size_t wide_stack_capacity = 2 * wide_lanes * 2 * (tree::deepest_level + 2);
 /// Work units between two looks at the clock: some 100 ns.
 inline constexpr std::uint32_t units_between_polls = 16;
@@ -68,51 +68,59 @@ struct Expanded {
   Slot first;          ///< slot of its first lane
   Slot other;          ///< the other side's
   unsigned lanes;
-  unsigned leaf_lanes;  ///< of those the ones that make a pair of leaves
+  unsigned leaf_lanes;  ///< those of them that are leaves, if the other is one, too
   typename L::Float gaps;
-  typename L::Float ranks;  ///< if asked for
+  typename L::Float ranks;  ///< if they were asked for
 };
 
 /// -1 for a leaf, which cannot be opened.
-ODDS_LANES_INLINE float opening_size(const WideNode& node, std::uint32_t lane) noexcept {
-  const float size = squared_radius(node, lane);
-  return node.child[lane].is_leaf() ? -1.0F : size;
+ODDS_LANES_INLINE float opening_size(const LaneNumbers& lane) noexcept {
+  const float size = squared_radius(lane);
+  return lane.child().is_leaf() ? -1.0F : size;
 }
 
 /// Opens the larger of both, or the one that is no leaf. Not both may be leaves. Without branches on which side it is:
 /// nobody could predict them.
 template <class L, bool ranked = false, bool far = false>
 ODDS_LANES_INLINE Expanded<L> expand(const Encounter& met, const SlotPair& pair) noexcept {
-  const WideNode* nodes[2] = {met.nodes(0) + pair.of[0] / wide_lanes, met.nodes(1) + pair.of[1] / wide_lanes};
-  const std::uint32_t lanes[2] = {pair.of[0] % wide_lanes, pair.of[1] % wide_lanes};
-  const std::uint32_t side = opening_size(*nodes[0], lanes[0]) >= opening_size(*nodes[1], lanes[1]) ? 0 : 1;
-  const Turn& into = met.turn_into(side);
-  const std::uint32_t opened = nodes[side]->child[lanes[side]].index();
-  const TurnedBox box = turn(*nodes[1 - side], lanes[1 - side], into);
-  const typename L::Float gap = gaps<L, far>(met.nodes(side)[opened], box, into);
-  const WideNode& node = met.nodes(side)[opened];
+  using One = OnePair<L>;
+  const LaneNumbers of[2] = {met.numbers(0, pair.of[0]), met.numbers(1, pair.of[1])};
+  const std::uint32_t side = opening_size(of[0]) >= opening_size(of[1]) ? 0 : 1;
+  const std::uint32_t opened = of[side].child().node_index();
+  const typename One::Turned turn{met.turn_into(side)};
+  const typename One::Boxes box{of[1 - side]};
+  const typename One::Nodes node{met.nodes(side)[opened]};
+  const Placed<One> placed(node, box, turn);
+  const typename L::Float gap = gaps<One, far>(node, box, turn, placed);
   const unsigned overlapping = L::less_equal(gap, L::all(met.margin()));
-  const unsigned other_is_leaf = nodes[1 - side]->child[lanes[1 - side]].is_leaf() ? 0xFFU : 0U;
+  const unsigned other_is_leaf = of[1 - side].child().is_leaf() ? 0xFFU : 0U;
   Expanded<L> expanded{side,
                        opened * wide_lanes,
                        pair.of[1 - side],
                        overlapping,
-                       overlapping & L::highest_bits(node.child) & other_is_leaf,
+                       overlapping & L::highest_bits(node.node.child) & other_is_leaf,
                        gap,
                        gap};
-  if constexpr (ranked) expanded.ranks = ranks<L>(node, box, gap);
+  if constexpr (ranked) expanded.ranks = ranks<One>(node, box, gap);
   return expanded;
+}
+
+/// The gaps between one side's slot and the lanes of the node in which the other side's slot stands.
+template <class L>
+ODDS_LANES_INLINE typename L::Float gaps_beside(const Encounter& met, std::uint32_t side, Slot slot,
+                                                Slot other) noexcept {
+  using One = OnePair<L>;
+  const typename One::Turned turn{met.turn_into(side)};
+  const typename One::Boxes box{met.numbers(1 - side, other)};
+  const typename One::Nodes node{met.nodes(side)[slot / wide_lanes]};
+  return gaps<One>(node, box, turn, Placed<One>(node, box, turn));
 }
 
 /// The lanes of the node in which one side's slot stands whose volumes overlap the other side's slot, its own among
 /// them.
 template <class L>
 [[nodiscard]] unsigned overlapping_neighbours(const Encounter& met, std::uint32_t side, const SlotPair& pair) noexcept {
-  const Slot other = pair.of[1 - side];
-  const Turn& into = met.turn_into(side);
-  const TurnedBox box = turn(met.nodes(1 - side)[other / wide_lanes], other % wide_lanes, into);
-  const typename L::Float gap = gaps<L, false>(met.nodes(side)[pair.of[side] / wide_lanes], box, into);
-  return L::less_equal(gap, L::all(met.margin()));
+  return L::less_equal(gaps_beside<L>(met, side, pair.of[side], pair.of[1 - side]), L::all(met.margin()));
 }
 
 /// Stands for a rank that nobody has computed: above all others.
@@ -121,10 +129,11 @@ inline constexpr float unranked = 1e30F;
 /// The rank of one pair, as `expand` gives it to lanes.
 template <class L>
 float rank_of(const Encounter& met, Slot slot_a, Slot slot_b) noexcept {
-  const WideNode& node = met.nodes(0)[slot_a / wide_lanes];
-  const TurnedBox box = turn(met.nodes(1)[slot_b / wide_lanes], slot_b % wide_lanes, met.turn_into(0));
+  using One = OnePair<L>;
+  const typename One::Boxes box{met.numbers(1, slot_b)};
+  const typename One::Nodes node{met.nodes(0)[slot_a / wide_lanes]};
   alignas(64) float rank[wide_lanes];
-  L::store(rank, ranks<L>(node, box, gaps<L>(node, box, met.turn_into(0))));
+  L::store(rank, ranks<One>(node, box, gaps_beside<L>(met, 0, slot_a, slot_b)));
   return rank[slot_a % wide_lanes];
 }
 
@@ -139,34 +148,23 @@ void leave_open(Task& task, NodePair pair) noexcept {
 /// Open pairs, newest last, each side's slots in one array.
 struct SlotPairs {
   Slot* of[2];
-  float* ranks = nullptr;  ///< of each pair, if they are wanted
   std::size_t size = 0;
 
-  template <bool ranked, class L>
+  template <class L>
   ODDS_LANES_INLINE void add(const Expanded<L>& expanded, unsigned lanes) noexcept {
     L::write_lanes(of[expanded.side] + size, expanded.first, lanes);
     L::write_all(of[1 - expanded.side] + size, expanded.other);
-    if constexpr (ranked) L::write_some(ranks + size, expanded.ranks, lanes);
     size += static_cast<std::size_t>(std::popcount(lanes));
   }
   /// Brings another pair to where the next one is taken from.
-  template <bool ranked>
   void bring_up(std::size_t index) noexcept {
     std::swap(of[0][index], of[0][size - 1]);
     std::swap(of[1][index], of[1][size - 1]);
-    if constexpr (ranked) std::swap(ranks[index], ranks[size - 1]);
   }
   ODDS_LANES_INLINE SlotPair take() noexcept {
     --size;
     return {{of[0][size], of[1][size]}};
   }
 };
-
-/// An index below `count` that follows no order: the golden section of the number of hits so far.
-[[nodiscard]] inline std::size_t elsewhere(std::size_t hits, std::size_t count) noexcept {
-  constexpr std::uint64_t golden = 0x9E3779B9U;  // of 2^32: no index comes again soon
-  const std::uint64_t fraction = (hits * golden) & 0xFFFFFFFFU;
-  return static_cast<std::size_t>((fraction * count) >> 32U);
-}
 
 }  // namespace odds::query::wide

@@ -86,16 +86,15 @@ class RayCast {
       from[i] = L::load(node.center[i]) - L::all(segment_.origin[i]);
       crossing.clip(from[i], L::load(node.half[i]) + margin, L::all(turned_[i]), L::all(inverse_[i]));
     }
-    F origin_along = L::all(0.0F);
+    F middle = L::load(node.offset);  // of the slab, from the ray's origin, along its normal
     F across = L::all(0.0F);
     for (int i = 0; i < 3; ++i) {
       const F normal = L::load(node.normal[i]);
-      origin_along = origin_along + normal * L::all(segment_.origin[i]);
+      middle = middle + normal * from[i];
       across = across + normal * L::all(segment_.direction[i]);
     }
     const F inverse = L::divide(L::all(1.0F), L::max(L::abs(across), L::all(least_motion)));
-    crossing.clip(L::load(node.offset) - origin_along, L::load(node.thickness) + margin, across * inverse * inverse,
-                  inverse);
+    crossing.clip(middle, L::load(node.thickness) + margin, across * inverse * inverse, inverse);
     L::store(enter, crossing.enter);
     // Each end is wrong by a few roundings of its own size.
     const F slack = L::all(4e-7F) * (L::abs(crossing.enter) + L::abs(crossing.leave));

@@ -27,10 +27,23 @@ const Searches* avx2_searches_here() noexcept {
 #endif
 }
 
+// Not where the processor slows its clock for such registers: those that do lack a later part of the family, VBMI2.
+const Searches* avx512_searches_here() noexcept {
+#if defined(__x86_64__)
+  const bool has = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+                   __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512vbmi2");
+  return has ? avx512_searches() : nullptr;
+#else
+  return nullptr;
+#endif
+}
+
 }  // namespace
 
 const Searches* searches_for(InstructionSet set) noexcept {
   switch (set) {
+    case InstructionSet::avx512:
+      return avx512_searches_here();
     case InstructionSet::avx2:
       return avx2_searches_here();
     case InstructionSet::sse2:
@@ -40,6 +53,7 @@ const Searches* searches_for(InstructionSet set) noexcept {
     case InstructionSet::best:
       break;
   }
+  if (const Searches* searches = avx512_searches_here()) return searches;
   if (const Searches* searches = avx2_searches_here()) return searches;
   if (const Searches* searches = sse2_searches()) return searches;
   return portable_searches();

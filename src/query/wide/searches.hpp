@@ -72,6 +72,7 @@ struct Searches {
 
 /// Null where the program was not built with them.
 [[nodiscard]] const Searches* avx2_searches() noexcept;
+[[nodiscard]] const Searches* avx512_searches() noexcept;
 /// Null where the program was not built with them or this processor lacks them.
 [[nodiscard]] const Searches* searches_for(InstructionSet set) noexcept;
 

@@ -56,17 +56,18 @@ class TimeCritical {
     DepthFirst<L, true> search(task_);
     search.run(tree::WideTree::root, tree::WideTree::root);
     if (task_.result.ended != Progressed::finished) return false;
-    keep(search.open());
-    keep(search.leaf_pairs());
+    const OpenPairs& open = search.open();
+    for (std::size_t i = 0; i < open.size && !finished_; ++i) keep(open.pair(i), open.ranks[i]);
+    const SlotPairs& leaf_pairs = search.leaf_pairs();
+    for (std::size_t i = 0; i < leaf_pairs.size && !finished_; ++i) {
+      keep({{leaf_pairs.of[0][i], leaf_pairs.of[1][i]}}, unranked);
+    }
     return !task_.queue.empty();
   }
 
-  void keep(const SlotPairs& pairs) noexcept {
-    for (std::size_t i = 0; i < pairs.size; ++i) {
-      const NodePair pair{pairs.of[0][i], pairs.of[1][i], pairs.ranks == nullptr ? unranked : pairs.ranks[i]};
-      add(pair, log_cost.of[std::min<std::uint32_t>(levels_left(pair), log_cost.most)]);
-      if (finished_) return;
-    }
+  void keep(const SlotPair& slots, float rank) noexcept {
+    const NodePair pair{slots.of[0], slots.of[1], rank};
+    add(pair, log_cost.of[std::min<std::uint32_t>(levels_left(pair), log_cost.most)]);
   }
 
   void finish(Progressed how) noexcept {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -75,21 +76,26 @@ struct EightTriangles {
   }
 };
 
-/// B's triangles one by one, for tests against eight of A at once.
+/// B's triangles one by one, for tests against eight of A at once: first of their boxes, then of their planes.
 template <class L>
 struct Rows {
   using F = typename L::Float;
   alignas(64) float corner[3][3][wide_lanes];
-  alignas(64) float lower[3][wide_lanes];
+  alignas(64) float lower[3][wide_lanes];  ///< of the box widened by `slack`
   alignas(64) float upper[3][wide_lanes];
   alignas(64) float normal[3][wide_lanes];
   alignas(64) float tolerance[wide_lanes];
 
-  ODDS_LANES_INLINE explicit Rows(const EightTriangles<L>& b) noexcept {
+  /// `slack`: error of a difference of coordinates.
+  ODDS_LANES_INLINE void keep_boxes(const EightTriangles<L>& b, float slack) noexcept {
+    for (int i = 0; i < 3; ++i) {
+      L::store(lower[i], b.lower[i] - L::all(slack));
+      L::store(upper[i], b.upper[i] + L::all(slack));
+    }
+  }
+  ODDS_LANES_INLINE void keep_planes(const EightTriangles<L>& b) noexcept {
     for (int i = 0; i < 3; ++i) {
       for (int k = 0; k < 3; ++k) L::store(corner[k][i], b.corner[k][i]);
-      L::store(lower[i], b.lower[i]);
-      L::store(upper[i], b.upper[i]);
       L::store(normal[i], b.normal[i]);
     }
     L::store(tolerance, b.tolerance);
@@ -147,18 +153,21 @@ ODDS_LANES_INLINE typename L::Float plane_gap_of_a(const EightTriangles<L>& a, c
   return gap.value();
 }
 
-/// One triangle against eight: false lanes are certainly apart. `slack`: error of a difference of coordinates.
+/// One triangle's box against those of eight: false lanes are certainly apart.
 template <class L>
-ODDS_LANES_INLINE unsigned may_meet(const EightTriangles<L>& a, const Rows<L>& b, unsigned row, float slack) noexcept {
+ODDS_LANES_INLINE unsigned boxes_meet(const EightTriangles<L>& a, const Rows<L>& b, unsigned row) noexcept {
   unsigned mask = 0xFFU;
   for (int i = 0; i < 3; ++i) {
-    mask &= L::less_equal(a.lower[i], L::all(b.upper[i][row] + slack)) &
-            L::less_equal(L::all(b.lower[i][row] - slack), a.upper[i]);
+    mask &= L::less_equal(a.lower[i], L::all(b.upper[i][row])) & L::less_equal(L::all(b.lower[i][row]), a.upper[i]);
   }
-  if (mask == 0) return 0;
-  mask &= L::less_equal(plane_gap_of_b<L>(a, b, row), L::all(b.tolerance[row]));
-  if (mask == 0) return 0;
-  return mask & L::less_equal(plane_gap_of_a<L>(a, b, row), a.tolerance);
+  return mask;
+}
+
+/// One triangle's plane against eight triangles, and their planes against it: false lanes are certainly apart.
+template <class L>
+ODDS_LANES_INLINE unsigned planes_meet(const EightTriangles<L>& a, const Rows<L>& b, unsigned row) noexcept {
+  return L::less_equal(plane_gap_of_b<L>(a, b, row), L::all(b.tolerance[row])) &
+         L::less_equal(plane_gap_of_a<L>(a, b, row), a.tolerance);
 }
 
 /// Two leaves in A's frame, about the centre of A's lane, times `scale`.
@@ -176,13 +185,14 @@ struct TwoLeaves {
   /// `delta`: half a rounding of A, half of B and of the rotation times the box, three products and sums.
   ODDS_LANES_INLINE void measure(const PlacedLeaf& in_a, const PlacedLeaf& in_b, const Turn& turn, const float shift[3],
                                  float margin) noexcept {
+    const LaneNumbers box_a(in_a.node, in_a.lane);
+    const LaneNumbers box_b(in_b.node, in_b.lane);
+    const Vector extent =
+        (turn.abs_column[0] * box_b.half(0) + turn.abs_column[1] * box_b.half(1)) + turn.abs_column[2] * box_b.half(2);
     span = 0.0F;
     for (int i = 0; i < 3; ++i) {
-      const float extent = (turn.abs_column[0][i] * in_b.node.half[0][in_b.lane] +
-                            turn.abs_column[1][i] * in_b.node.half[1][in_b.lane]) +
-                           turn.abs_column[2][i] * in_b.node.half[2][in_b.lane];
       const float away = shift[i] < 0.0F ? -shift[i] : shift[i];
-      span = std::max(span, std::max(in_a.node.half[i][in_a.lane], away + extent));
+      span = std::max(span, std::max(box_a.half(i), away + extent[i]));
     }
     span = span + margin;
     delta = 12.0F * 0x1p-24F * span + std::numeric_limits<float>::min();
@@ -212,7 +222,6 @@ struct TwoLeaves {
     b.bound();
   }
 
-  /// And all planes.
   ODDS_LANES_INLINE void place_a(const WideLeaf& leaf) noexcept {
     for (int k = 0; k < 3; ++k) {
       for (int i = 0; i < 3; ++i) a.corner[k][i] = L::load(leaf.corner[k][i]);
@@ -220,6 +229,9 @@ struct TwoLeaves {
     if (scale != 1.0F) [[unlikely]]
       a.scale(scale);
     a.bound();
+  }
+
+  ODDS_LANES_INLINE void find_planes() noexcept {
     a.find_planes(delta, span);
     b.find_planes(delta, span);
   }
@@ -242,15 +254,25 @@ ODDS_LANES_INLINE LeafPairs leaf_pairs(const PlacedLeaf& in_a, const PlacedLeaf&
   }
   if (rows == 0) return found;
   leaves.place_a(in_a.leaf);
-  const Rows<L> b(leaves.b);
+  Rows<L> b;
+  b.keep_boxes(leaves.b, 2.0F * delta);
+  found.tested = static_cast<std::uint32_t>(std::popcount(rows));
   for (unsigned left = rows; left != 0; left &= left - 1U) {
     const auto row = static_cast<unsigned>(__builtin_ctz(left));
-    const unsigned met = leaves.lanes_a & may_meet<L>(leaves.a, b, row, 2.0F * delta);
-    ++found.tested;
-    if (met == 0) continue;
+    const unsigned met = leaves.lanes_a & boxes_meet<L>(leaves.a, b, row);
     found.lanes_a[row] = static_cast<std::uint8_t>(met);
-    found.rows |= 1U << row;
+    rows &= met != 0 ? ~0U : ~(1U << row);
   }
+  if (rows == 0) return found;
+  leaves.find_planes();
+  b.keep_planes(leaves.b);
+  for (unsigned left = rows; left != 0; left &= left - 1U) {
+    const auto row = static_cast<unsigned>(__builtin_ctz(left));
+    const unsigned met = found.lanes_a[row] & planes_meet<L>(leaves.a, b, row);
+    found.lanes_a[row] = static_cast<std::uint8_t>(met);
+    rows &= met != 0 ? ~0U : ~(1U << row);
+  }
+  found.rows = rows;
   return found;
 }
 
@@ -267,7 +289,10 @@ ODDS_LANES_INLINE void triangle_gaps(const PlacedLeaf& in_a, const PlacedLeaf& i
   leaves.measure(in_a, in_b, turn, shift, margin);
   leaves.place_b(in_b.leaf, turn, shift);
   leaves.place_a(in_a.leaf);
-  const Rows<L> b(leaves.b);
+  leaves.find_planes();
+  Rows<L> b;
+  b.keep_boxes(leaves.b, 0.0F);
+  b.keep_planes(leaves.b);
   const EightTriangles<L>& a = leaves.a;
   const F inverse_a = L::divide(L::all(below), L::max(a.lengths_of_normals(), L::all(shortest_normal)));
   alignas(64) float lengths_b[wide_lanes];
