@@ -12,13 +12,19 @@ namespace odds::query::wide {
 /// Where contacts are wanted and a budget may end the search, it does not go on beside a hit but somewhere else: the
 /// hits that are found until then come from all over the rim, and contacts made of them hold a body on all sides.
 ///
+/// Where all has to be seen or one hit is enough, four pairs are opened at a time, as they come. In `order`, where a budget
+/// may end it or hits are kept, two, the deepest overlap first: it is where a hit is found soonest.
+///
 /// As the start of another search (`ranked`) it ends early, keeps the ranks of what is open, and leaves it to that.
-template <class L, bool ranked = false>
+template <class L, bool ranked = false, bool order = true>
 class DepthFirst {
  public:
   static void run(Task& task, Slot start_a, Slot start_b) noexcept {
-    DepthFirst search(task);
-    search.run(start_a, start_b);
+    if (task.wanted > 1 || task.request.budget.is_limited()) {
+      DepthFirst<L>(task).run(start_a, start_b);
+    } else {
+      DepthFirst<L, false, false>(task).run(start_a, start_b);
+    }
   }
 
   explicit DepthFirst(Task& task) noexcept
@@ -64,7 +70,7 @@ class DepthFirst {
     const auto count = static_cast<std::uint32_t>(std::min(open_.size, most));
     open_.size -= count;
     task_.spending.spend_node_pairs(count * wide_lanes);
-    opener_.template run<ranked>(count, open_, leaf_pairs_);
+    opener_.template run<ranked, order>(count, open_, leaf_pairs_);
   }
 
   /// After a hit, to an open pair that follows no order.
@@ -122,7 +128,7 @@ class DepthFirst {
   }
 
   /// Pairs. More are faster where nothing is hit (8: a tenth), and open more for nothing where something is (a third).
-  static constexpr std::size_t at_once = 4;
+  static constexpr std::size_t at_once = order ? 2 : 4;
   static_assert(at_once <= Opener<L>::most);
   /// With more than these open one pair is opened at a time, and then seven more a level are all there can be.
   static constexpr std::size_t crowded = 2 * wide_stack_capacity;

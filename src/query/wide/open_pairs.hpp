@@ -86,8 +86,9 @@ class Opener {
   ODDS_LANES_INLINE explicit Opener(const Encounter& met) noexcept
       : met_(met), turns_{TurnLanes<L>(met.turn_into(0)), TurnLanes<L>(met.turn_into(1))} {}
 
-  /// Opens the `count` pairs, at most `most`, that were taken from the end of `open` last.
-  template <bool ranked>
+  /// Opens the `count` pairs, at most `most`, that were taken from the end of `open` last. In `order` the deepest overlap
+  /// of each is added after its others; else as the lanes come, which is faster.
+  template <bool ranked, bool order>
   ODDS_LANES_INLINE void run(std::uint32_t count, OpenPairs& open, SlotPairs& leaf_pairs) const noexcept {
     LaneAddress opened[most];
     LaneAddress other[most];
@@ -95,13 +96,13 @@ class Opener {
       opened[k] = open.opened[open.size + k];
       other[k] = open.other[open.size + k];
     }
-    for (std::uint32_t k = 0; k < count; ++k) run<ranked>({met_, opened[k], other[k]}, open, leaf_pairs);
+    for (std::uint32_t k = 0; k < count; ++k) run<ranked, order>({met_, opened[k], other[k]}, open, leaf_pairs);
   }
 
   static constexpr std::uint32_t most = 4;
 
  private:
-  template <bool ranked>
+  template <bool ranked, bool order>
   ODDS_LANES_INLINE void run(const Opened& opened, OpenPairs& open, SlotPairs& leaf_pairs) const noexcept {
     using One = OnePair<L, TurnLanes<L>>;
     using F = typename L::Float;
@@ -117,15 +118,22 @@ class Opener {
     if (both_leaves != 0) add_leaves<L>(opened, both_leaves, leaf_pairs);
     // Which is opened next: the larger of both, or what is no leaf.
     const F size = (placed.h[0] * placed.h[0] + placed.h[1] * placed.h[1]) + placed.h[2] * placed.h[2];
-    const float other_size = other_is_leaf ? -1.0F : squared_radius(opened.box);
+    // Of two of a size A's.
+    const float box_size = other_is_leaf ? -1.0F : squared_radius(opened.box);
+    const float other_size = std::bit_cast<float>(std::bit_cast<std::uint32_t>(box_size) + opened.side);
     const unsigned opens_lane = L::less_equal(L::all(other_size), size) & ~leaves;
-    const unsigned inner = overlapping & ~both_leaves;
     const LaneAddress mark = opened.side * OpenPairs::of_b;
-    L::write_either(open.opened + open.size, opened.first | mark, opened.other | (mark ^ OpenPairs::of_b), inner,
-                    opens_lane);
-    L::write_either(open.other + open.size, opened.first, opened.other, inner, ~opens_lane);
-    if constexpr (ranked) L::write_some(open.ranks + open.size, ranks<One>(node, box, gap), inner);
-    open.size += static_cast<std::size_t>(std::popcount(inner));
+    const auto add = [&](unsigned lanes) noexcept {
+      L::write_either(open.opened + open.size, opened.first | mark, opened.other | (mark ^ OpenPairs::of_b), lanes,
+                      opens_lane);
+      L::write_either(open.other + open.size, opened.first, opened.other, lanes, ~opens_lane);
+      if constexpr (ranked) L::write_some(open.ranks + open.size, ranks<One>(node, box, gap), lanes);
+      open.size += static_cast<std::size_t>(std::popcount(lanes));
+    };
+    const unsigned inner = overlapping & ~both_leaves;
+    const unsigned last = order ? inner & 1U << L::least(gap) : 0U;
+    add(inner & ~last);
+    if constexpr (order) add(last);
   }
 
   const Encounter& met_;
@@ -144,7 +152,7 @@ class Opener<lanes::Avx512> {
     }
   }
 
-  template <bool ranked>
+  template <bool ranked, bool order>
   ODDS_LANES_INLINE void run(std::uint32_t count, OpenPairs& open, SlotPairs& leaf_pairs) const noexcept {
     LaneAddress opened[most];
     LaneAddress other[most];
@@ -155,7 +163,7 @@ class Opener<lanes::Avx512> {
     for (std::uint32_t k = 0; k < count; k += 2) {
       const std::uint32_t upper = k + 1 < count ? k + 1 : k;
       const unsigned in_use = k + 1 < count ? 0xFFFFU : 0xFFU;
-      run_two<ranked>({met_, opened[k], other[k]}, {met_, opened[upper], other[upper]}, in_use, open, leaf_pairs);
+      run_two<ranked, order>({met_, opened[k], other[k]}, {met_, opened[upper], other[upper]}, in_use, open, leaf_pairs);
     }
   }
 
@@ -165,7 +173,7 @@ class Opener<lanes::Avx512> {
   using Two = TwoPairs<lanes::Avx512>;
   using Lanes = lanes::Sixteen;
 
-  template <bool ranked>
+  template <bool ranked, bool order>
   ODDS_LANES_INLINE void run_two(const Opened& lower, const Opened& upper, unsigned in_use, OpenPairs& open,
                                  SlotPairs& leaf_pairs) const noexcept {
     const Two::Turned& turn = turns_[2 * lower.side + upper.side];
@@ -187,8 +195,10 @@ class Opener<lanes::Avx512> {
       if (both_leaves >> 8U != 0) add_leaves<lanes::Avx512>(upper, both_leaves >> 8U, leaf_pairs);
     }
     const auto squares = [](const Two::F(&h)[3]) noexcept { return (h[0] * h[0] + h[1] * h[1]) + h[2] * h[2]; };
-    const __m512 other_size =
+    const __m512 box_size =
         _mm512_mask_mov_ps(squares(placed.own_h).v, static_cast<__mmask16>(other_leaves), _mm512_set1_ps(-1.0F));
+    const __m512 other_size =
+        _mm512_castsi512_ps(_mm512_add_epi32(_mm512_castps_si512(box_size), both(lower.side, upper.side)));
     const __mmask16 opens_lane =
         _mm512_mask_cmp_ps_mask(static_cast<__mmask16>(~leaves), other_size, squares(placed.h).v, _CMP_LE_OQ);
 
@@ -199,12 +209,35 @@ class Opener<lanes::Avx512> {
     const __m512i other_mark = _mm512_xor_si512(mark, _mm512_set1_epi32(static_cast<int>(OpenPairs::of_b)));
     const __m512i opened = _mm512_mask_or_epi32(_mm512_or_si512(others, other_mark), opens_lane, lanes, mark);
     const __m512i against = _mm512_mask_mov_epi32(lanes, opens_lane, others);
-    _mm512_storeu_si512(open.opened + open.size, _mm512_maskz_compress_epi32(inner, opened));
-    _mm512_storeu_si512(open.other + open.size, _mm512_maskz_compress_epi32(inner, against));
-    if constexpr (ranked) {
-      _mm512_storeu_ps(open.ranks + open.size, _mm512_maskz_compress_ps(inner, ranks<Two>(nodes, boxes, gap).v));
+    const auto add = [&](unsigned lanes_added) noexcept {
+      const auto which = static_cast<__mmask16>(lanes_added);
+      _mm512_storeu_si512(open.opened + open.size, _mm512_maskz_compress_epi32(which, opened));
+      _mm512_storeu_si512(open.other + open.size, _mm512_maskz_compress_epi32(which, against));
+      if constexpr (ranked) {
+        _mm512_storeu_ps(open.ranks + open.size, _mm512_maskz_compress_ps(which, ranks<Two>(nodes, boxes, gap).v));
+      }
+      open.size += static_cast<std::size_t>(std::popcount(lanes_added));
+    };
+    if constexpr (order) {
+      const unsigned deepest = least_of_both(gap.v);
+      for (const unsigned half : {0xFFU, 0xFF00U}) {
+        add(inner & half & ~deepest);
+        add(inner & half & deepest);
+      }
+    } else {
+      add(inner);
     }
-    open.size += static_cast<std::size_t>(std::popcount(static_cast<unsigned>(inner)));
+  }
+
+  /// The bit of the lane with the least number in either half.
+  [[nodiscard]] ODDS_LANES_INLINE static unsigned least_of_both(__m512 a) noexcept {
+    __m512 least = _mm512_min_ps(a, _mm512_shuffle_f32x4(a, a, 0xB1));
+    least = _mm512_min_ps(least, _mm512_permute_ps(least, 0x4E));
+    least = _mm512_min_ps(least, _mm512_permute_ps(least, 0xB1));
+    const unsigned lanes = _mm512_cmp_ps_mask(a, least, _CMP_LE_OQ);
+    const unsigned lower = lanes & 0xFFU;
+    const unsigned upper = lanes & 0xFF00U;
+    return (lower & (0U - lower)) | (upper & (0U - upper));
   }
 
   [[nodiscard]] ODDS_LANES_INLINE static __m256i load_children(const Opened& opened) noexcept {
