@@ -11,6 +11,8 @@ namespace odds::tree {
 namespace {
 
 constexpr std::size_t header_end = sizeof(SavedHeader);
+/// The slab of a lane was counted from the tree's origin before, not from the lane's centre.
+constexpr std::uint32_t oldest_read = 2;
 
 template <class Number>
 Number swapped(Number value) noexcept {
@@ -66,9 +68,10 @@ class Examination {
     if (header_.byte_order != SavedHeader::our_byte_order) {
       return error(offsetof(SavedHeader, byte_order), "the mark of the byte order is neither way round");
     }
-    if (header_.version > SavedHeader::newest_version) {
+    if (header_.version > SavedHeader::newest_version || (header_.version != 0 && header_.version < oldest_read)) {
       return error(offsetof(SavedHeader, version),
-                   "written in format " + std::to_string(header_.version) + " by a newer odds; this one reads format " +
+                   "written in format " + std::to_string(header_.version) + " by " +
+                       (header_.version < oldest_read ? "an older" : "a newer") + " odds; this one reads format " +
                        std::to_string(SavedHeader::newest_version),
                    "use that odds, or make the file anew with this one");
     }

@@ -46,7 +46,7 @@ struct SectionEntry {
 struct SavedHeader {
   static constexpr std::array<unsigned char, 8> right_magic = {0x89, 'O', 'D', 'D', 'S', '\r', '\n', 0x1A};
   static constexpr std::uint32_t our_byte_order = 0x01020304;
-  static constexpr std::uint32_t newest_version = 1;
+  static constexpr std::uint32_t newest_version = 2;
   static constexpr std::size_t block_bytes = std::size_t{1} << 18U;
   static constexpr std::size_t alignment = 64;
 

@@ -76,6 +76,18 @@ TEST(DamagedShapes, OfANewerFormatAreSaidToBeSo) {
   EXPECT_NE(error_of(testing::other_byte_order(bytes)).what.find("newer"), std::string::npos);
 }
 
+TEST(DamagedShapes, OfAnOlderFormatAreSaidToBeSo) {
+  std::string bytes = small_file(volume::Kind::wide);
+  tree::SavedHeader header = testing::header_of(bytes);
+  header.version = 1;
+  testing::put_header(bytes, header);
+  testing::reseal(bytes);
+  const Error error = error_of(bytes);
+  EXPECT_EQ(error.place, "byte 12");
+  EXPECT_NE(error.what.find("format 1 by an older"), std::string::npos) << error.message();
+  EXPECT_NE(error.remedy.find("anew"), std::string::npos) << error.message();
+}
+
 TEST(DamagedShapes, SayWhatHappenedToThem) {
   const std::string bytes = small_file(volume::Kind::wide);
   EXPECT_EQ(error_of(bytes.substr(0, 1000)).place, "byte 1000");
