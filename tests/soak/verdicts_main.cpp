@@ -56,7 +56,8 @@ class Engine {
   Engine(const soak::MeshPair& meshes, const Variant& variant, std::size_t rotate, volume::Kind kind,
          InstructionSet set)
       : variant_(variant),
-        name_(std::string(volume::name(kind)) + (set == InstructionSet::sse2       ? " sse2"
+        name_(std::string(volume::name(kind)) + (set == InstructionSet::avx2       ? " avx2"
+                                                 : set == InstructionSet::sse2     ? " sse2"
                                                  : set == InstructionSet::portable ? " portable"
                                                                                    : "")),
         a_(testing::changed(*meshes.a, variant.scale, variant.move_a, rotate)),
@@ -99,10 +100,9 @@ std::vector<Engine> engines(const soak::MeshPair& meshes, math::Random& random) 
     for (std::size_t k = 0; k < volume::kind_names.size(); ++k) {
       all.emplace_back(meshes, variant, rotate, static_cast<volume::Kind>(k), InstructionSet::best);
     }
-    for (const InstructionSet set : {InstructionSet::sse2, InstructionSet::portable}) {
-#if !defined(__SSE2__)
-      if (set == InstructionSet::sse2) continue;
-#endif
+    for (const InstructionSet set : {InstructionSet::avx2, InstructionSet::sse2, InstructionSet::portable}) {
+      const auto shape = query::Shape::build(meshes.a).value();
+      if (!query::Pair::make(shape, shape, {.instruction_set = set}).ok()) continue;  // not on this processor
       all.emplace_back(meshes, variant, rotate, volume::Kind::wide, set);
     }
     rotate += 17;
