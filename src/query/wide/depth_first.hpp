@@ -12,7 +12,7 @@ namespace odds::query::wide {
 /// Where contacts are wanted and a budget may end the search, it does not go on beside a hit but somewhere else: the
 /// hits that are found until then come from all over the rim, and contacts made of them hold a body on all sides.
 ///
-/// Where all has to be seen or one hit is enough, four pairs are opened at a time, as they come. In `order`, where a budget
+/// Where all has to be seen or one hit is enough, six pairs are opened at a time, as they come. In `order`, where a budget
 /// may end it or hits are kept, two, the deepest overlap first: it is where a hit is found soonest.
 ///
 /// As the start of another search (`ranked`) it ends early, keeps the ranks of what is open, and leaves it to that.
@@ -127,8 +127,8 @@ class DepthFirst {
     task_.result.open = open;
   }
 
-  /// Pairs. More are faster where nothing is hit (8: a tenth), and open more for nothing where something is (a third).
-  static constexpr std::size_t at_once = order ? 2 : 4;
+  /// Pairs. Of 1 to 8 these are fastest: more waste less time waiting, and open more for nothing where there is a hit.
+  static constexpr std::size_t at_once = order ? 2 : 6;
   static_assert(at_once <= Opener<L>::most);
   /// With more than these open one pair is opened at a time, and then seven more a level are all there can be.
   static constexpr std::size_t crowded = 2 * wide_stack_capacity;

@@ -99,7 +99,7 @@ class Opener {
     for (std::uint32_t k = 0; k < count; ++k) run<ranked, order>({met_, opened[k], other[k]}, open, leaf_pairs);
   }
 
-  static constexpr std::uint32_t most = 4;
+  static constexpr std::uint32_t most = 6;
 
  private:
   template <bool ranked, bool order>
@@ -167,7 +167,7 @@ class Opener<lanes::Avx512> {
     }
   }
 
-  static constexpr std::uint32_t most = 4;
+  static constexpr std::uint32_t most = 6;
 
  private:
   using Two = TwoPairs<lanes::Avx512>;
