@@ -88,7 +88,11 @@ class Spending {
   }
   [[nodiscard]] bool start_may_go_on_after(std::uint32_t units) noexcept {
     if (units_left_ <= start_units_end_) return false;
-    return unpolled_units_ < units || poll() < start_deadline_ns_;
+    if (unpolled_units_ < units) return true;
+    // Of a very short time the share may be more than the search has before its answer has to be made.
+    const std::int64_t now = poll();
+    nears_end_ = now >= search_deadline_ns_ - notice_ns;
+    return now < std::min(start_deadline_ns_, search_deadline_ns_);
   }
   /// From now on contacts are finished as `reserve` expects, which must outlive this and learns how long it took:
   /// `may_finish_contacts` says when that begins. `hasty_ns` before it they are made hastily: `may_make_contacts` says

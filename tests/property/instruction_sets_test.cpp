@@ -1,4 +1,4 @@
-// The wide engine's three instruction sets do the same work and give the same bits.
+// The wide engine's instruction sets do the same work and give the same bits.
 #include <gtest/gtest.h>
 
 #include <bit>

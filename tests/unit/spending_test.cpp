@@ -37,6 +37,24 @@ TEST(Spending, ContactsAreMadeInHasteBeforeTheyAreFinished) {
   EXPECT_FALSE(query.spending.may_finish_contacts());
 }
 
+TEST(Spending, AStartEndsNoLaterThanItsSearch) {
+  // Of a microsecond the answer needs 0.6, which is less than the start's share leaves of it.
+  Query query(1.0);
+  query.spending.begin_start(0.6, 0.6, 4096);
+  query.clock.advance(300);
+  EXPECT_TRUE(query.spending.start_may_go_on_after(0));
+  query.clock.advance(150);
+  EXPECT_FALSE(query.spending.start_may_go_on_after(0));
+  EXPECT_FALSE(query.spending.may_go_on());
+  Query longer(10.0);
+  longer.spending.begin_start(0.6, 0.6, 4096);
+  longer.clock.advance(5'900);
+  EXPECT_TRUE(longer.spending.start_may_go_on_after(0));
+  longer.clock.advance(200);
+  EXPECT_FALSE(longer.spending.start_may_go_on_after(0));
+  EXPECT_TRUE(longer.spending.may_go_on());
+}
+
 TEST(Spending, AReserveLearnsHowLongContactsTakeToEnd) {
   EndingReserve reserve({2000, 600, 6000, 100, 400, 1});
   for (int i = 0; i < 200; ++i) {

@@ -28,11 +28,10 @@ struct OpenPairs {
   std::size_t size = 0;
 
   [[nodiscard]] SlotPair pair(std::size_t index) const noexcept {
-    const std::uint32_t side = opened[index] / of_b;
-    SlotPair pair;
-    pair.of[side] = slot_at(opened[index] % of_b);
-    pair.of[1 - side] = slot_at(other[index]);
-    return pair;
+    const Slot own = slot_at(opened[index] % of_b);
+    const Slot its = slot_at(other[index]);
+    const bool is_b = opened[index] >= of_b;
+    return {{is_b ? its : own, is_b ? own : its}};
   }
   /// Precondition: not both are leaves.
   void add(const Encounter& met, const SlotPair& pair) noexcept {

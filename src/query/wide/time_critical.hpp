@@ -28,6 +28,7 @@ class TimeCritical {
     } else if (!start()) {
       return;
     }
+    if (!task_.spending.may_go_on()) finish(Progressed::spent);  // the queue took time to fill
     while (!task_.queue.empty() && !finished_) {
       if (!task_.spending.may_go_on_after(units_between_polls)) {
         finish(Progressed::spent);
