@@ -29,7 +29,8 @@ struct Turn {
 /// The numbers of one lane, found by the address of the first: arrays of a node follow each other.
 class LaneNumbers {
  public:
-  ODDS_LANES_INLINE LaneNumbers(const WideNode& node, std::uint32_t lane) noexcept : first_(&node.center[0][0] + lane) {}
+  ODDS_LANES_INLINE LaneNumbers(const WideNode& node, std::uint32_t lane) noexcept
+      : first_(&node.center[0][0] + lane) {}
   ODDS_LANES_INLINE explicit LaneNumbers(const float* first) noexcept : first_(first) {}
 
   [[nodiscard]] ODDS_LANES_INLINE float center(int i) const noexcept { return at(offsetof(WideNode, center), i); }
@@ -60,7 +61,8 @@ struct TurnNumbers {
   [[nodiscard]] ODDS_LANES_INLINE F t(int i) const noexcept { return L::all(turn.t[i]); }
 };
 
-/// The same for a search that opens many pairs: they stand in every lane in memory, where kernels read them as operands.
+/// The same for a search that opens many pairs: they stand in every lane in memory, where kernels read them as
+/// operands.
 template <class L>
 struct alignas(64) TurnLanes {
   using F = typename L::Float;

@@ -5,15 +5,15 @@
 
 namespace odds::query::wide {
 
-/// The newest few pairs are opened at a time: what is found below one says which pair is next, so that one pair after the
-/// other would wait for the end of every sum, and for its numbers from memory. What remains is kept without branches
-/// that nobody could predict.
+/// The newest few pairs are opened at a time: what is found below one says which pair is next, so that one pair after
+/// the other would wait for the end of every sum, and for its numbers from memory. What remains is kept without
+/// branches that nobody could predict.
 ///
 /// Where contacts are wanted and a budget may end the search, it does not go on beside a hit but somewhere else: the
 /// hits that are found until then come from all over the rim, and contacts made of them hold a body on all sides.
 ///
-/// Where all has to be seen or one hit is enough, six pairs are opened at a time, as they come. In `order`, where a budget
-/// may end it or hits are kept, two, the deepest overlap first: it is where a hit is found soonest.
+/// Where all has to be seen or one hit is enough, six pairs are opened at a time, as they come. In `order`, where a
+/// budget may end it or hits are kept, two, the deepest overlap first: it is where a hit is found soonest.
 ///
 /// As the start of another search (`ranked`) it ends early, keeps the ranks of what is open, and leaves it to that.
 template <class L, bool ranked = false, bool order = true>

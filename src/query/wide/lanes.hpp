@@ -86,13 +86,14 @@ struct Avx2 {
     const __m256i lanes = _mm256_add_epi32(_mm256_cvtepu8_epi32(packed), _mm256_set1_epi32(static_cast<int>(first)));
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), lanes);
   }
-  /// Writes `first` + lane for every lane of the mask that is `counted`, else `other`, in order, to `to`, and anything to
-  /// the rest of to[0 .. 8).
+  /// Writes `first` + lane for every lane of the mask that is `counted`, else `other`, in order, to `to`, and anything
+  /// to the rest of to[0 .. 8).
   ODDS_LANES_INLINE static void write_either(std::uint32_t* to, std::uint32_t first, std::uint32_t other, unsigned mask,
                                              unsigned counted) noexcept {
     const __m256i bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
     const __m256i lane = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
-    const __m256i is_counted = _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(static_cast<int>(counted)), bits), bits);
+    const __m256i is_counted =
+        _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(static_cast<int>(counted)), bits), bits);
     const __m256i counts = _mm256_add_epi32(_mm256_set1_epi32(static_cast<int>(first)), lane);
     const __m256i all = _mm256_blendv_epi8(_mm256_set1_epi32(static_cast<int>(other)), counts, is_counted);
     const __m128i packed = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(lane_order.of[mask]));

@@ -17,7 +17,8 @@ inline constexpr LaneAddress floats_per_node = sizeof(WideNode) / sizeof(float);
   return address / floats_per_node * wide_lanes + address % floats_per_node;
 }
 
-/// Open pairs, newest last. Of each, which of its slots is opened was decided when it was found, among all lanes at once.
+/// Open pairs, newest last. Of each, which of its slots is opened was decided when it was found, among all lanes at
+/// once.
 struct OpenPairs {
   /// Marks in `opened` that it is B's.
   static constexpr LaneAddress of_b = 1U << 31U;
@@ -53,7 +54,7 @@ struct OpenPairs {
 /// An open pair, taken apart.
 struct Opened {
   std::uint32_t side;
-  LaneAddress first;    ///< of the opened node's lanes
+  LaneAddress first;  ///< of the opened node's lanes
   LaneAddress other;
   const WideNode* node;
   LaneNumbers box;  ///< the other slot's
@@ -85,8 +86,8 @@ class Opener {
   ODDS_LANES_INLINE explicit Opener(const Encounter& met) noexcept
       : met_(met), turns_{TurnLanes<L>(met.turn_into(0)), TurnLanes<L>(met.turn_into(1))} {}
 
-  /// Opens the `count` pairs, at most `most`, that were taken from the end of `open` last. In `order` the deepest overlap
-  /// of each is added after its others; else as the lanes come, which is faster.
+  /// Opens the `count` pairs, at most `most`, that were taken from the end of `open` last. In `order` the deepest
+  /// overlap of each is added after its others; else as the lanes come, which is faster.
   template <bool ranked, bool order>
   ODDS_LANES_INLINE void run(std::uint32_t count, OpenPairs& open, SlotPairs& leaf_pairs) const noexcept {
     LaneAddress opened[most];
@@ -162,7 +163,8 @@ class Opener<lanes::Avx512> {
     for (std::uint32_t k = 0; k < count; k += 2) {
       const std::uint32_t upper = k + 1 < count ? k + 1 : k;
       const unsigned in_use = k + 1 < count ? 0xFFFFU : 0xFFU;
-      run_two<ranked, order>({met_, opened[k], other[k]}, {met_, opened[upper], other[upper]}, in_use, open, leaf_pairs);
+      run_two<ranked, order>({met_, opened[k], other[k]}, {met_, opened[upper], other[upper]}, in_use, open,
+                             leaf_pairs);
     }
   }
 
