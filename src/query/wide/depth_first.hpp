@@ -131,7 +131,7 @@ class DepthFirst {
   static constexpr std::size_t at_once = order ? 2 : 6;
   static_assert(at_once <= Opener<L>::most);
   /// With more than these open one pair is opened at a time, and then seven more a level are all there can be.
-  static constexpr std::size_t crowded = 2 * wide_stack_capacity;
+  static constexpr std::size_t crowded = wide_stack_capacity / 2;
   static constexpr std::size_t capacity = crowded + (at_once + 2) * wide_lanes + wide_stack_capacity;
 
   Task& task_;
