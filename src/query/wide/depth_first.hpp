@@ -73,9 +73,10 @@ class DepthFirst {
     opener_.template run<ranked, order>(count, open_, leaf_pairs_);
   }
 
-  /// After a hit, to an open pair that follows no order.
+  /// After a hit, to an open pair that follows no order. Not while crowded: what bounds the room is that then the
+  /// newest is opened, always.
   void go_elsewhere() noexcept {
-    if (task_.hits.size() == hits_ || open_.size < 2) return;
+    if (task_.hits.size() == hits_ || open_.size < 2 || open_.size > crowded) return;
     hits_ = task_.hits.size();
     open_.bring_up<ranked>(elsewhere(hits_, open_.size - 1));
   }
