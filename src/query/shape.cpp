@@ -214,6 +214,11 @@ Result<std::shared_ptr<const Shape>> Shape::build(std::shared_ptr<const mesh::Tr
   data->tree = build_tree(options.volume, *mesh, build_options, progress,
                           std::make_index_sequence<std::variant_size_v<AnyTree>>());
   data->solid = solid.get();
+  if (const auto* tree = std::get_if<tree::WideTree>(&data->tree); tree != nullptr && tree->node_count() == 0) {
+    return Error{mesh->name(), "",
+                 "its hierarchy would have more than " + std::to_string(tree::WideTree::most_nodes) + " nodes",
+                 "put more triangles into a leaf, or divide the mesh"};
+  }
   data->summary = summarise(data->tree, *mesh);
   data->summary.build_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   data->mesh = std::move(mesh);

@@ -122,7 +122,7 @@ class WideWalk {
       : parts_(parts), level_(parts.nodes.size(), unseen), height_(parts.nodes.size(), 1) {}
 
   Found walk() {
-    if (parts_.nodes.empty() || parts_.nodes.size() > ChildRef::most_nodes) {
+    if (parts_.nodes.empty() || parts_.nodes.size() > WideTree::most_nodes) {
       return Defect{Section::wide_nodes, 0, "the number of nodes is out of range"};
     }
     if (parts_.statistics_at.size() != parts_.nodes.size()) {

@@ -211,6 +211,7 @@ WideTree WideTree::build(const mesh::TriangleMesh& mesh, const BuildOptions& opt
   }
   const std::vector<Bounds> bounds = bounds_of_nodes(topology, corners);
   const Plan plan = plan_nodes(topology, bounds);
+  if (plan.nodes.size() > most_nodes) return {};
   parts.levels = plan.levels;
   NodeSurface surface = measure_surface(topology, corners, plan.wanted);
   if (progress) progress(0.7);

@@ -32,8 +32,7 @@ struct Pose {
     const auto z = rotation.col(2);
     const double longest = std::max({std::abs(x.dot(x) - 1.0), std::abs(y.dot(y) - 1.0), std::abs(z.dot(z) - 1.0)});
     const double askew = std::max({std::abs(x.dot(y)), std::abs(y.dot(z)), std::abs(z.dot(x))});
-    const double sum = rotation.sum() + translation.sum();
-    return longest <= orthonormality && askew <= orthonormality && x.cross(y).dot(z) > 0.0 && sum - sum == 0.0;
+    return longest <= orthonormality && askew <= orthonormality && x.cross(y).dot(z) > 0.0 && translation.allFinite();
   }
 };
 

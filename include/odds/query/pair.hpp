@@ -17,10 +17,11 @@ namespace odds::query {
 
 /// What the wide engine's searches run on. All give the same bits.
 enum class InstructionSet : std::uint8_t {
-  best,      ///< the widest that the program was built with and the processor has
-  avx512,    ///< x86: Intel since 2019, AMD since 2022
-  avx2,      ///< x86, since 2013
-  sse2,      ///< every x86-64
+  best,    ///< the widest that the program was built with and the processor has
+  avx512,  ///< x86 with AVX-512 VBMI2: Intel since 2019 (servers 2021), AMD since 2022; not the older ones, whose clock
+           ///< it slows
+  avx2,    ///< x86, since 2013
+  sse2,    ///< every x86-64
   portable,  ///< plain C++
 };
 

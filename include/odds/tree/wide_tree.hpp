@@ -80,6 +80,9 @@ using Slot = std::uint32_t;
 class WideTree {
  public:
   static constexpr Slot root = 0;
+  /// Of the numbers of its nodes, 96 floats each, all have an address of 31 bits.
+  static constexpr std::uint32_t most_nodes = (1U << 31U) / (sizeof(WideNode) / sizeof(float));
+  static_assert(most_nodes <= ChildRef::most_nodes);
 
   /// What a tree consists of, as it stands in a saved file.
   struct Parts {
@@ -93,7 +96,7 @@ class WideTree {
     std::uint32_t levels = 0;  ///< root = 1, leaves included
   };
 
-  /// `options.leaf_triangles` above 8 counts as 8.
+  /// `options.leaf_triangles` above 8 counts as 8. A tree without nodes if it would have more than `most_nodes`.
   [[nodiscard]] static WideTree build(const mesh::TriangleMesh& mesh, const BuildOptions& options,
                                       const Progress& progress = {});
 

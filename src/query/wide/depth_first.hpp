@@ -12,11 +12,12 @@ namespace odds::query::wide {
 /// Where contacts are wanted and a budget may end the search, it does not go on beside a hit but somewhere else: the
 /// hits that are found until then come from all over the rim, and contacts made of them hold a body on all sides.
 ///
-/// Where all has to be seen or one hit is enough, six pairs are opened at a time, as they come. In `order`, where a
-/// budget may end it or hits are kept, two, the deepest overlap first: it is where a hit is found soonest.
+/// Where one hit is enough and no budget may end the search, six pairs are opened at a time, as they come. If
+/// `ordered`, where a budget may end it or several hits are kept, two, the deepest overlap first: it is where a hit is
+/// found soonest.
 ///
 /// As the start of another search (`ranked`) it ends early, keeps the ranks of what is open, and leaves it to that.
-template <class L, bool ranked = false, bool order = true>
+template <class L, bool ranked = false, bool ordered = true>
 class DepthFirst {
  public:
   static void run(Task& task, Slot start_a, Slot start_b) noexcept {
@@ -70,7 +71,7 @@ class DepthFirst {
     const auto count = static_cast<std::uint32_t>(std::min(open_.size, most));
     open_.size -= count;
     task_.spending.spend_node_pairs(count * wide_lanes);
-    opener_.template run<ranked, order>(count, open_, leaf_pairs_);
+    opener_.template run<ranked, ordered>(count, open_, leaf_pairs_);
   }
 
   /// After a hit, to an open pair that follows no order. Not while crowded: what bounds the room is that then the
@@ -129,7 +130,7 @@ class DepthFirst {
   }
 
   /// Pairs. Of 1 to 8 these are fastest: more waste less time waiting, and open more for nothing where there is a hit.
-  static constexpr std::size_t at_once = order ? 2 : 6;
+  static constexpr std::size_t at_once = ordered ? 2 : 6;
   static_assert(at_once <= Opener<L>::most);
   /// With more than these open one pair is opened at a time, and then seven more a level are all there can be.
   static constexpr std::size_t crowded = wide_stack_capacity / 2;

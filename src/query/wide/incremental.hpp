@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "query/spread_step.hpp"
-#include "query/wide/open_pairs.hpp"
+#include "query/wide/opening.hpp"
 
 namespace odds::query::wide {
 

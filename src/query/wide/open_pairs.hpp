@@ -9,6 +9,7 @@ namespace odds::query::wide {
 /// An address of a lane's numbers from a tree's first node on, in floats: slot s stands at `s / 8 * 96 + s % 8`.
 using LaneAddress = std::uint32_t;
 inline constexpr LaneAddress floats_per_node = sizeof(WideNode) / sizeof(float);
+static_assert(tree::WideTree::most_nodes <= (1U << 31U) / floats_per_node, "the highest bit is the opened side's");
 
 [[nodiscard]] ODDS_LANES_INLINE LaneAddress address_of(Slot slot) noexcept {
   return slot / wide_lanes * floats_per_node + slot % wide_lanes;
@@ -28,14 +29,14 @@ struct OpenPairs {
   float* ranks;         ///< of each pair, if they are wanted
   std::size_t size = 0;
 
-  [[nodiscard]] SlotPair pair(std::size_t index) const noexcept {
+  [[nodiscard]] ODDS_LANES_INLINE SlotPair pair(std::size_t index) const noexcept {
     const Slot own = slot_at(opened[index] % of_b);
     const Slot its = slot_at(other[index]);
     const bool is_b = opened[index] >= of_b;
     return {{is_b ? its : own, is_b ? own : its}};
   }
   /// Precondition: not both are leaves.
-  void add(const Encounter& met, const SlotPair& pair) noexcept {
+  ODDS_LANES_INLINE void add(const Encounter& met, const SlotPair& pair) noexcept {
     const std::uint32_t side =
         opening_size(met.numbers(0, pair.of[0])) >= opening_size(met.numbers(1, pair.of[1])) ? 0 : 1;
     opened[size] = address_of(pair.of[side]) + side * of_b;
@@ -44,7 +45,7 @@ struct OpenPairs {
   }
   /// Brings another pair to where the next one is taken from.
   template <bool ranked>
-  void bring_up(std::size_t index) noexcept {
+  ODDS_LANES_INLINE void bring_up(std::size_t index) noexcept {
     std::swap(opened[index], opened[size - 1]);
     std::swap(other[index], other[size - 1]);
     if constexpr (ranked) std::swap(ranks[index], ranks[size - 1]);
@@ -73,7 +74,7 @@ struct Opened {
 
 /// Puts the lanes of a mask that are pairs of leaves where those are kept.
 template <class L>
-void add_leaves(const Opened& opened, unsigned lanes, SlotPairs& leaf_pairs) noexcept {
+ODDS_LANES_INLINE void add_leaves(const Opened& opened, unsigned lanes, SlotPairs& leaf_pairs) noexcept {
   L::write_lanes(leaf_pairs.of[opened.side] + leaf_pairs.size, slot_at(opened.first), lanes);
   L::write_all(leaf_pairs.of[1 - opened.side] + leaf_pairs.size, slot_at(opened.other));
   leaf_pairs.size += static_cast<std::size_t>(std::popcount(lanes));
@@ -86,9 +87,9 @@ class Opener {
   ODDS_LANES_INLINE explicit Opener(const Encounter& met) noexcept
       : met_(met), turns_{TurnLanes<L>(met.turn_into(0)), TurnLanes<L>(met.turn_into(1))} {}
 
-  /// Opens the `count` pairs, at most `most`, that were taken from the end of `open` last. In `order` the deepest
+  /// Opens the `count` pairs, at most `most`, that were taken from the end of `open` last. If `ordered` the deepest
   /// overlap of each is added after its others; else as the lanes come, which is faster.
-  template <bool ranked, bool order>
+  template <bool ranked, bool ordered>
   ODDS_LANES_INLINE void run(std::uint32_t count, OpenPairs& open, SlotPairs& leaf_pairs) const noexcept {
     LaneAddress opened[most];
     LaneAddress other[most];
@@ -96,13 +97,13 @@ class Opener {
       opened[k] = open.opened[open.size + k];
       other[k] = open.other[open.size + k];
     }
-    for (std::uint32_t k = 0; k < count; ++k) run<ranked, order>({met_, opened[k], other[k]}, open, leaf_pairs);
+    for (std::uint32_t k = 0; k < count; ++k) run<ranked, ordered>({met_, opened[k], other[k]}, open, leaf_pairs);
   }
 
   static constexpr std::uint32_t most = 6;
 
  private:
-  template <bool ranked, bool order>
+  template <bool ranked, bool ordered>
   ODDS_LANES_INLINE void run(const Opened& opened, OpenPairs& open, SlotPairs& leaf_pairs) const noexcept {
     using One = OnePair<L, TurnLanes<L>>;
     using F = typename L::Float;
@@ -131,9 +132,9 @@ class Opener {
       open.size += static_cast<std::size_t>(std::popcount(lanes));
     };
     const unsigned inner = overlapping & ~both_leaves;
-    const unsigned last = order ? inner & 1U << L::least(gap) : 0U;
+    const unsigned last = ordered ? inner & 1U << L::least(gap) : 0U;
     add(inner & ~last);
-    if constexpr (order) add(last);
+    if constexpr (ordered) add(last);
   }
 
   const Encounter& met_;
@@ -152,7 +153,7 @@ class Opener<lanes::Avx512> {
     }
   }
 
-  template <bool ranked, bool order>
+  template <bool ranked, bool ordered>
   ODDS_LANES_INLINE void run(std::uint32_t count, OpenPairs& open, SlotPairs& leaf_pairs) const noexcept {
     LaneAddress opened[most];
     LaneAddress other[most];
@@ -163,8 +164,8 @@ class Opener<lanes::Avx512> {
     for (std::uint32_t k = 0; k < count; k += 2) {
       const std::uint32_t upper = k + 1 < count ? k + 1 : k;
       const unsigned in_use = k + 1 < count ? 0xFFFFU : 0xFFU;
-      run_two<ranked, order>({met_, opened[k], other[k]}, {met_, opened[upper], other[upper]}, in_use, open,
-                             leaf_pairs);
+      run_two<ranked, ordered>({met_, opened[k], other[k]}, {met_, opened[upper], other[upper]}, in_use, open,
+                               leaf_pairs);
     }
   }
 
@@ -174,7 +175,7 @@ class Opener<lanes::Avx512> {
   using Two = TwoPairs<lanes::Avx512>;
   using Lanes = lanes::Sixteen;
 
-  template <bool ranked, bool order>
+  template <bool ranked, bool ordered>
   ODDS_LANES_INLINE void run_two(const Opened& lower, const Opened& upper, unsigned in_use, OpenPairs& open,
                                  SlotPairs& leaf_pairs) const noexcept {
     const Two::Turned& turn = turns_[2 * lower.side + upper.side];
@@ -219,7 +220,7 @@ class Opener<lanes::Avx512> {
       }
       open.size += static_cast<std::size_t>(std::popcount(lanes_added));
     };
-    if constexpr (order) {
+    if constexpr (ordered) {
       const unsigned deepest = least_of_both(gap.v);
       for (const unsigned half : {0xFFU, 0xFF00U}) {
         add(inner & half & ~deepest);
@@ -252,12 +253,5 @@ class Opener<lanes::Avx512> {
   Two::Turned turns_[4];
 };
 #endif
-
-/// An index below `count` that follows no order: the golden section of the number of hits so far.
-[[nodiscard]] inline std::size_t elsewhere(std::size_t hits, std::size_t count) noexcept {
-  constexpr std::uint64_t golden = 0x9E3779B9U;  // of 2^32: no index comes again soon
-  const std::uint64_t fraction = (hits * golden) & 0xFFFFFFFFU;
-  return static_cast<std::size_t>((fraction * count) >> 32U);
-}
 
 }  // namespace odds::query::wide

@@ -145,6 +145,13 @@ void leave_open(Task& task, NodePair pair) noexcept {
   consider(task.result, pair);
 }
 
+/// An index below `count` that follows no order: the golden section of the number of hits so far.
+[[nodiscard]] ODDS_LANES_INLINE std::size_t elsewhere(std::size_t hits, std::size_t count) noexcept {
+  constexpr std::uint64_t golden = 0x9E3779B9U;  // of 2^32: no index comes again soon
+  const std::uint64_t fraction = (hits * golden) & 0xFFFFFFFFU;
+  return static_cast<std::size_t>((fraction * count) >> 32U);
+}
+
 /// Open pairs, newest last, each side's slots in one array.
 struct SlotPairs {
   Slot* of[2];
