@@ -11,6 +11,7 @@
 #include "odds/probability/kinematic.hpp"
 #include "odds/query/answer.hpp"
 #include "odds/query/request.hpp"
+#include "odds/volume/kind.hpp"
 
 namespace odds::query {
 
@@ -65,16 +66,26 @@ struct NodesPlaced {
 
 /// Numbers from which the odds of a pair of nodes are made, all of order 1 to 10.
 struct NodeNumbers {
-  static constexpr std::size_t count = 7;
+  static constexpr std::size_t count = 12;
+  static constexpr std::size_t usual = 7;  ///< the others tell more of pairs of hulls: see numbers_used
   /// 1; log2 of the kinematic rate; of which the mean sine; how deep each surface lies in the other's slab, the lesser
   /// of both: 1 in its middle, 0 where they part, as far as is known of how they are turned; levels below both; leaves
-  /// among both; distance of the centroids over both radii.
+  /// among both; distance of the centroids over both radii. Further ones: log2 of the share of the lesser volume that
+  /// is in both; cosine between the slabs; levels below both, squared, over ten; how much the surfaces face the same
+  /// way, as in nested shells, 0 .. 1; that times the levels.
   std::array<float, count> x{};
 };
 
-/// In single precision and with few divisions: a search that asks for the odds of every pair that it meets spends half
-/// of its time here.
-[[nodiscard]] inline NodeNumbers numbers_of(const NodesMet& met, const NodesPlaced& placed) noexcept {
+/// How many of the numbers the stated odds of such volumes are made from: that hulls overlap says less of how much of
+/// their surfaces does.
+[[nodiscard]] constexpr std::size_t numbers_used(volume::Kind kind) noexcept {
+  return kind == volume::Kind::hull ? NodeNumbers::count : NodeNumbers::usual;
+}
+
+/// The first `used` of them; the others are 0. In single precision and with few divisions: a search that asks for the
+/// odds of every pair that it meets spends half of its time here.
+[[nodiscard]] inline NodeNumbers numbers_of(const NodesMet& met, const NodesPlaced& placed,
+                                            std::size_t used = NodeNumbers::count) noexcept {
   const tree::NodeStatistics& a = met.a;
   const tree::NodeStatistics& b = met.b;
   const float log_sine =
@@ -101,16 +112,28 @@ struct NodeNumbers {
                static_cast<float>(a.height + b.height),
                static_cast<float>((a.height == 0 ? 1 : 0) + (b.height == 0 ? 1 : 0)),
                std::clamp(apart, 0.0F, 2.0F)};
+  if (used > NodeNumbers::usual) {
+    const float share = math::rough_log2(met.common) - std::min(a.log_volume, b.log_volume);
+    const float levels = numbers.x[4];
+    const float facing = std::clamp(a.mean_normal.dot(met.rotation * b.mean_normal), 0.0F, 1.0F);
+    numbers.x[7] = std::clamp(share, -20.0F, 4.0F);
+    numbers.x[8] = cosine;
+    numbers.x[9] = 0.1F * levels * levels;
+    numbers.x[10] = facing;
+    numbers.x[11] = facing * levels;
+  }
   return numbers;
 }
 
 /// Weights of the numbers, of one kind of bounding volume.
 using NodeWeights = std::array<float, NodeNumbers::count>;
 
-/// Natural logarithm of the odds that surfaces below both nodes meet; 0 where nothing can be said.
-[[nodiscard]] inline float log_odds(const NodeNumbers& numbers, const NodeWeights& weights) noexcept {
+/// Natural logarithm of the odds that surfaces below both nodes meet, by the first `used` numbers; 0 where nothing can
+/// be said.
+[[nodiscard]] inline float log_odds(const NodeNumbers& numbers, const NodeWeights& weights,
+                                    std::size_t used = NodeNumbers::count) noexcept {
   float z = 0.0F;
-  for (std::size_t i = 0; i < NodeNumbers::count; ++i) z += weights[i] * numbers.x[i];
+  for (std::size_t i = 0; i < used; ++i) z += weights[i] * numbers.x[i];
   return std::isfinite(z) ? z : 0.0F;
 }
 

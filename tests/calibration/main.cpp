@@ -32,6 +32,7 @@ struct Options {
   std::string volume;  ///< empty: all
   std::vector<std::string> held_out;
   bool nodes = false;
+  bool standing = false;
 };
 
 struct Kept {
@@ -177,9 +178,10 @@ int main(int argc, char** argv) {
   app.add_option("--held-out", options.held_out, "more meshes to judge by, each with its copy");
   app.add_option("--bv", options.volume, "tables of this volume alone; default: of all");
   app.add_flag("--nodes", options.nodes, "the odds of pairs of nodes, not of answers");
+  app.add_flag("--standing", options.standing, "fits nothing: judges what stands in the library; with --nodes");
   CLI11_PARSE(app, argc, argv);
   if (options.nodes) {
-    odds::calibration::calibrate_nodes(options.volume, options.poses, options.seed, options.held_out);
+    odds::calibration::calibrate_nodes(options.volume, options.poses, options.seed, options.held_out, options.standing);
   } else {
     odds::calibration::run(options);
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -9,6 +10,7 @@
 #include "calibration/meetings.hpp"
 #include "calibration/nodes.hpp"
 #include "odds/report/accuracy/forecast.hpp"
+#include "query/node_odds_table.hpp"
 
 namespace odds::calibration {
 namespace {
@@ -32,19 +34,26 @@ std::vector<Judged> judge(const std::vector<Meeting>& meetings, volume::Kind vol
   return all;
 }
 
-query::NodeWeights fit(const std::vector<Judged>& training) {
+query::NodeWeights fit(const std::vector<Judged>& training, std::size_t used) {
   std::vector<Case> cases;
   for (const Judged& judged : training) {
     // Each meeting counts the same, however many pairs it has; but a handful does not outweigh a thousand.
     const double weight = 1000.0 / std::max(300.0, static_cast<double>(judged.pairs.size()));
     for (const JudgedPair& pair : judged.pairs) {
-      cases.push_back({{pair.numbers.x.begin(), pair.numbers.x.end()}, pair.meet, weight});
+      const auto* x = pair.numbers.x.data();
+      cases.push_back({{x, x + used}, pair.meet, weight});
     }
   }
   const std::vector<double> found = fit_logistic(cases, 1.0);
   query::NodeWeights weights{};
   std::transform(found.begin(), found.end(), weights.begin(), [](double w) { return static_cast<float>(w); });
   return weights;
+}
+
+void print(const query::NodeWeights& weights, std::size_t used, std::string_view comment) {
+  std::string list;
+  for (std::size_t i = 0; i < used; ++i) list += fmt::format("{}{:.4f}F", list.empty() ? "" : ", ", weights[i]);
+  fmt::print("    {{{}}},  // {}\n", list, comment);
 }
 
 /// The other half's forecasts, by two numbers learnt from the poses of even number.
@@ -99,15 +108,23 @@ void show(const std::vector<Judged>& all, const query::NodeWeights& weights, con
 }  // namespace
 
 void calibrate_nodes(const std::string& only, std::uint64_t poses_per_band, std::uint64_t seed,
-                     const std::vector<std::string>& held_out) {
+                     const std::vector<std::string>& held_out, bool standing) {
   for (const std::string_view word : volume::kind_names) {
     const volume::Kind volume = *volume::kind_from_name(word);
     if (volume == volume::Kind::wide || (!only.empty() && only != word)) continue;
+    if (standing) {
+      show(judge(held_out_meetings(held_out), volume, poses_per_band, seed + 1),
+           query::node_weights[static_cast<std::size_t>(volume)], fmt::format("{}: held out", word));
+      continue;
+    }
     const std::vector<Judged> training = judge(training_meetings(), volume, poses_per_band, seed);
-    const query::NodeWeights weights = fit(training);
-    std::string list;
-    for (const float w : weights) list += fmt::format("{}{:.4f}F", list.empty() ? "" : ", ", w);
-    fmt::print("    {{{}}},  // {}\n", list, word);
+    const std::size_t used = query::numbers_used(volume);
+    const query::NodeWeights weights = fit(training, used);
+    print(weights, used, word);
+    if (used > query::NodeNumbers::usual) {
+      constexpr std::size_t usual = query::NodeNumbers::usual;
+      print(fit(training, usual), usual, fmt::format("{}, what orders a search", word));
+    }
     show(training, weights, fmt::format("{}: fitted on", word));
     show(judge(held_out_meetings(held_out), volume, poses_per_band, seed + 1), weights,
          fmt::format("{}: held out", word));

@@ -33,6 +33,39 @@ TEST(NodeOdds, AreLikelierTheGreaterTheRateAndTheDeeperTheSlabs) {
   }
 }
 
+TEST(NodeOdds, OfHullsAreLessWhereTheSurfacesFaceTheSameWay) {
+  const NodeWeights& weights = node_weights[static_cast<std::size_t>(volume::Kind::hull)];
+  tree::NodeStatistics a;
+  a.mean_normal = Vec3f(0, 0, 0.9F);
+  a.height = 3;
+  tree::NodeStatistics b = a;
+  const Vec3f place(0, 0, 0.1F);
+  const auto odds = [&](const tree::NodeStatistics& other) {
+    return log_odds(numbers_of({a, other, Mat3f::Identity(), 1.0, 1.0, 0.2}, {place, 1.0F, 1.0F}), weights);
+  };
+  const float one_behind_the_other = odds(b);
+  b.mean_normal = Vec3f(0, 0, -0.9F);
+  EXPECT_LT(one_behind_the_other, odds(b) - 0.5F);
+}
+
+TEST(NodeOdds, HaveFurtherNumbersWhereTheyAreAskedFor) {
+  tree::NodeStatistics a;
+  a.mean_normal = Vec3f(0, 0, 0.9F);
+  a.height = 3;
+  const Vec3f place(0, 0, 0.1F);
+  const NodesMet met{a, a, Mat3f::Identity(), 1.0, 1.0, 0.2};
+  const NodeNumbers all = numbers_of(met, {place, 1.0F, 1.0F});
+  const NodeNumbers usual = numbers_of(met, {place, 1.0F, 1.0F}, NodeNumbers::usual);
+  for (std::size_t i = 0; i < NodeNumbers::count; ++i) {
+    EXPECT_EQ(usual.x[i], i < NodeNumbers::usual ? all.x[i] : 0.0F) << i;
+  }
+  EXPECT_NEAR(all.x[7], std::log2(0.2F), 0.1F);
+  EXPECT_FLOAT_EQ(all.x[8], 1.0F);
+  EXPECT_FLOAT_EQ(all.x[9], 3.6F);
+  EXPECT_FLOAT_EQ(all.x[10], 0.81F);
+  EXPECT_FLOAT_EQ(all.x[11], 6.0F * 0.81F);
+}
+
 TEST(NodeOdds, AreProbabilitiesAndKeepTheirOrder) {
   float last = -1.0F;
   float last_rate = -infinite;
@@ -152,7 +185,8 @@ TEST_P(NodeOddsOf, MeanWhatTheySayOnMeshesThatTheyWereNotFittedOn) {
 
 INSTANTIATE_TEST_SUITE_P(Volumes, NodeOddsOf,
                          ::testing::Values(volume::Kind::aabb, volume::Kind::obb, volume::Kind::sphere,
-                                           volume::Kind::kdop14, volume::Kind::kdop18, volume::Kind::kdop26),
+                                           volume::Kind::kdop14, volume::Kind::kdop18, volume::Kind::kdop26,
+                                           volume::Kind::hull),
                          [](const auto& kind) { return std::string(volume::name(kind.param)); });
 
 }  // namespace
