@@ -11,6 +11,7 @@
 #include "odds/query/pair.hpp"
 #include "odds/realtime/fitness.hpp"
 #include "odds/realtime/periodic_loop.hpp"
+#include "odds/realtime/thread_setup.hpp"
 #include "odds/realtime/usage.hpp"
 #include "support/all_kinds.hpp"
 #include "support/allocation_counter.hpp"
@@ -118,7 +119,10 @@ TEST(Budget, HoldsInA1kHzLoopNetOfStalls) {
   undisturbed.clear();
   math::Random random(3);
   const Request request = {.budget = Budget::time(budget_us), .max_contacts = 8};
-  // Every way to an answer is gone once: pages of code and of the stack that nobody has touched yet are faults, too.
+  // Pages of code and of the stack that nobody has touched yet are faults, too. Where memory cannot be locked, most of
+  // them are touched as every way to an answer is gone a few times.
+  const auto setup = realtime::set_up_this_thread({.lock_memory = true, .prefault_stack_bytes = 512 * 1024});
+  const bool locked = setup.front().outcome != realtime::SetupLine::Outcome::refused;
   for (const double warm_us : {1.0, 2.0, 5.0, 10.0, 20.0, 50.0, budget_us}) {
     Request warm = request;
     warm.budget = Budget::time(warm_us);
@@ -147,7 +151,8 @@ TEST(Budget, HoldsInA1kHzLoopNetOfStalls) {
   // Others may have come while it ran: they slow down even what is not stalled.
   const auto fitness_after = realtime::probe_fitness();
   if (!fitness_after.fit) GTEST_SKIP() << "INCONCLUSIVE: after the run " << fitness_after.reason;
-  EXPECT_EQ(faults.minor_faults + faults.major_faults, 0u) << "a page fault would hide among the stalls";
+  EXPECT_LE(faults.minor_faults + faults.major_faults, locked ? 0u : 2u)
+      << "page faults would hide among the stalls; " << setup.front().text();
   EXPECT_GE(undisturbed.size(), net.size() * 9 / 10) << "too many: own work without a look at the clock is no stall";
   EXPECT_LE(quantile(undisturbed, 0.99), budget_us + 1.0);
   EXPECT_LE(quantile(undisturbed, 0.999), budget_us + 5.0) << "two ticks; odds_bench_overshoot has more";
