@@ -26,7 +26,7 @@ struct Pose {
 
   /// True if every number is finite and the rotation is orthonormal to `orthonormality` (largest entry of R^T R - I).
   [[nodiscard]] bool is_rigid(double orthonormality) const {
-    // Written out, for every query asks it. No comparison holds for what is not a number.
+    // Written out, for every query asks it. What is not a number std::max may lose, but not the triple product.
     const auto x = rotation.col(0);
     const auto y = rotation.col(1);
     const auto z = rotation.col(2);
