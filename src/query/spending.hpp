@@ -117,9 +117,7 @@ class Spending {
     return static_cast<double>(deadline_ns_ - poll()) * 1e-3;
   }
 
-  /// From the moment that the search should have heard that its time was up until `close`: of cold caches and of large
-  /// pieces of work the last piece takes as long as what follows it. 0: it was not told to stop, or there was a stall,
-  /// after which caches are another's.
+  /// From the moment that the search was told to stop for want of time until `close`; 0: it was not.
   [[nodiscard]] std::int64_t ending_ns() const noexcept { return ending_ns_; }
 
   /// Closes the accounts; the last thing a query does.
@@ -127,7 +125,7 @@ class Spending {
     const std::int64_t now = clock_();
     note_time(now);
     cost_.longest_unpolled_units = std::max(cost_.longest_unpolled_units, unpolled_units_);
-    if (search_end_ns_ != 0 && ledger_.stalls() == 0) ending_ns_ = now - search_deadline_ns_;
+    if (search_end_ns_ != 0) ending_ns_ = now - search_end_ns_;
     note_contacts_ending(now);
     cost_.gross_us = static_cast<double>(ledger_.gross_ns()) * 1e-3;
     // Without polls a long gap is the query's own work, not a stall.

@@ -81,25 +81,6 @@ TEST(Spending, WhatIsHeardLateIsLearntToo) {
   EXPECT_GE(reserve.ns(), 1'500);
 }
 
-TEST(Spending, OfASearchTheLastPieceIsPartOfTheEnding) {
-  Query query(10.0);  // of which 0.6 us are kept
-  for (int i = 0; i < 3; ++i) {
-    query.clock.advance(3'000);
-    EXPECT_TRUE(query.spending.may_go_on());
-  }
-  query.clock.advance(1'500);
-  EXPECT_FALSE(query.spending.may_go_on());
-  query.clock.advance(250);
-  static_cast<void>(query.spending.close());
-  EXPECT_EQ(query.spending.ending_ns(), 1'350);
-
-  Query stalled(10.0);
-  stalled.clock.advance(50'000);
-  EXPECT_FALSE(stalled.spending.may_go_on());
-  static_cast<void>(stalled.spending.close());
-  EXPECT_EQ(stalled.spending.ending_ns(), 0) << "another's work is no ending";
-}
-
 TEST(Spending, OwnWorkBeyondTheBudgetIsNeverExcused) {
   Query query(20.0);
   query.work(23'000);
