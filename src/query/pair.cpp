@@ -55,6 +55,11 @@ SearchResult search(const Encounter<V>& encounter, const PosedMeshes&, const Req
                     Pair::Implementation& pair, Spending& spending) noexcept {
   SearchResult result;
   if (encounter.far_apart()) return result;
+  if (pieces_are_long<V> && !spending.may_go_on()) {
+    result.ended = Progressed::spent;
+    consider(result, {0, 0, 0.0F});
+    return result;
+  }
   spending.spend_node_pairs(1);
   if (!encounter.volumes_overlap(0, 0)) return result;
   const std::uint32_t wanted = wanted_hits(request, pair);
@@ -247,8 +252,11 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
   // A hit that the search finds last still wants its contact, a rough one; of pages and triangles that its reserve pays
   // for, the search has just touched some.
   const std::int64_t last_contact_ns = request.max_contacts > 0 ? pair.endings.rough.ns() * 2 / 3 : 0;
-  Spending spending(request.budget, std::max(pair.endings.search.ns(), last_contact_ns),
-                    (request.max_contacts > 1 ? pair.endings.rough : pair.endings.single).ns());
+  Spending spending(request.budget,
+                    {.search_ns = pair.endings.search.ns(),
+                     .contacts_ns = (request.max_contacts > 1 ? pair.endings.rough : pair.endings.single).ns(),
+                     .last_contact_ns = last_contact_ns,
+                     .pieces_are_long = pair.a->volume() == volume::Kind::hull});
   Answer& answer = pair.answer;
   answer = {};
   pair.hits.clear();

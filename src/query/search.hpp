@@ -2,7 +2,9 @@
 #pragma once
 
 #include <bit>
+#include <type_traits>
 
+#include "odds/volume/hull.hpp"
 #include "query/encounter.hpp"
 #include "query/shortlist.hpp"
 
@@ -83,6 +85,10 @@ inline constexpr float highest_rank = 0.5F;
   return bucket_of_value(std::min(rank, highest_rank) - math::rough_log2(static_cast<double>(levels_left + 2)));
 }
 
+/// Whether two pairs of volumes take longer than may pass between two looks at the clock.
+template <volume::BoundingVolume V>
+inline constexpr bool pieces_are_long = std::is_same_v<V, volume::Hull>;
+
 /// Algorithm 4.3. Ends on proof (`wanted` hits, or nothing left), on k_min pairs with p >= p_min, or with the budget.
 template <volume::BoundingVolume V>
 class TimeCriticalSearch {
@@ -123,7 +129,12 @@ class TimeCriticalSearch {
     encounter_.prefetch(children.first);
     encounter_.prefetch(children.second);
     meet(children.first);
-    if (!finished_) meet(children.second);
+    if (finished_) return;
+    if (pieces_are_long<V> && !spending_.may_go_on()) {
+      consider(result_, pair);  // of the second child nothing is known yet
+      return finish(Progressed::spent);
+    }
+    meet(children.second);
   }
 
   void visit_leaves(const NodePair& pair) noexcept {

@@ -17,22 +17,28 @@ namespace odds::query {
 /// is asked after every piece of work that `pair` bounds (a node pair's children, one row of a leaf pair).
 class Spending {
  public:
-  /// `ending_ns`: what of the time is kept for the answer that follows a search without a proof, or with one that came
-  /// last. Of a short time no more than three tenths are kept for any ending, but `least_ending_ns`.
-  /// `contacts_ns`: the same for contacts, once there is a hit to make them from.
-  explicit Spending(const Budget& budget, std::int64_t ending_ns = EndingReserves{}.search.ns(),
-                    std::int64_t contacts_ns = 0) noexcept
+  /// What of the time is kept for what follows a search; of a short time no more than three tenths for any of it, but
+  /// `least_ending_ns`.
+  struct Kept {
+    std::int64_t search_ns = EndingReserves{}.search.ns();  ///< the answer of one without a proof
+    std::int64_t contacts_ns = 0;                           ///< contacts, once there is a hit to make them from
+    std::int64_t last_contact_ns = 0;                       ///< a contact of a hit that comes last
+    /// A pair of volumes takes a microsecond: for the search's last one and the answer six tenths may be kept, and a
+    /// microsecond of any time.
+    bool pieces_are_long = false;
+  };
+  explicit Spending(const Budget& budget) noexcept : Spending(budget, Kept{}) {}
+  Spending(const Budget& budget, const Kept& kept) noexcept
       : clock_(budget.clock.now_ns != nullptr ? budget.clock : realtime::fastest_clock()),
         start_ns_(clock_()),
         ledger_(start_ns_),
-        contacts_ns_(contacts_ns),
+        kept_(kept),
         units_left_(budget.work_units) {
     if (std::isfinite(budget.microseconds)) {
       timed_ = true;
       const double ns = std::clamp(budget.microseconds * 1e3, 0.0, 1e15);
       deadline_ns_ = start_ns_ + static_cast<std::int64_t>(ns);
-      search_ending_ns_ = kept_ns(ending_ns);
-      search_deadline_ns_ = last_moment_ns_ = deadline_ns_ - search_ending_ns_;
+      search_deadline_ns_ = last_moment_ns_ = deadline_ns_ - search_kept_ns(false);
     }
   }
 
@@ -58,7 +64,7 @@ class Spending {
     if (!timed_) return;
     const auto share_ns = static_cast<std::int64_t>((allowance_ns() < short_ns ? short_search_share : search_share) *
                                                     static_cast<double>(allowance_ns()));
-    last_moment_ns_ = std::min(last_moment_ns_, deadline_ns_ - kept_ns(contacts_ns_));
+    last_moment_ns_ = std::min(last_moment_ns_, deadline_ns_ - kept_ns(kept_.contacts_ns));
     search_deadline_ns_ = std::min({search_deadline_ns_, start_ns_ + share_ns, last_moment_ns_});
   }
 
@@ -67,7 +73,7 @@ class Spending {
     const std::int64_t now = poll();
     nears_end_ = now >= search_deadline_ns_ - notice_ns;
     if (now < search_deadline_ns_) return true;
-    search_end_ns_ = now;
+    told_to_stop_ = true;
     return false;
   }
   /// The same, but looks at the clock only when `units` were spent since the last look.
@@ -117,7 +123,8 @@ class Spending {
     return static_cast<double>(deadline_ns_ - poll()) * 1e-3;
   }
 
-  /// From the moment that the search was told to stop for want of time until `close`; 0: it was not.
+  /// From the moment that the search should have heard that its time was up until `close`, so that its last piece is in
+  /// it. 0: it was not told to stop, or there was a stall, after which caches are another's.
   [[nodiscard]] std::int64_t ending_ns() const noexcept { return ending_ns_; }
 
   /// Closes the accounts; the last thing a query does.
@@ -125,7 +132,7 @@ class Spending {
     const std::int64_t now = clock_();
     note_time(now);
     cost_.longest_unpolled_units = std::max(cost_.longest_unpolled_units, unpolled_units_);
-    if (search_end_ns_ != 0) ending_ns_ = now - search_end_ns_;
+    if (told_to_stop_ && ledger_.stalls() == 0) ending_ns_ = now - search_deadline_ns_;
     note_contacts_ending(now);
     cost_.gross_us = static_cast<double>(ledger_.gross_ns()) * 1e-3;
     // Without polls a long gap is the query's own work, not a stall.
@@ -146,6 +153,7 @@ class Spending {
   static constexpr std::int64_t short_ns = 50'000;
 
  private:
+  static constexpr std::int64_t long_piece_ns = 1'000;
   /// Some three pieces of work.
   static constexpr std::int64_t notice_ns = 400;
 
@@ -164,19 +172,30 @@ class Spending {
   /// Whoever had the processor had its caches too: what is still to come takes up to twice as long.
   [[nodiscard]] bool caches_are_cold() const noexcept { return ledger_.stalls() > 0; }
 
+  /// `cold`: as after a stall.
+  [[nodiscard]] std::int64_t kept_ns(std::int64_t ending_ns, bool cold) const noexcept {
+    return std::min((cold ? 2 : 1) * ending_ns, most_kept_ns());
+  }
   [[nodiscard]] std::int64_t kept_ns(std::int64_t ending_ns) const noexcept {
-    return std::min((caches_are_cold() ? 2 : 1) * ending_ns, most_kept_ns());
+    return kept_ns(ending_ns, caches_are_cold());
+  }
+  [[nodiscard]] std::int64_t search_kept_ns(bool cold) const noexcept {
+    const std::int64_t most_ns =
+        kept_.pieces_are_long ? std::max(std::min(long_piece_ns, allowance_ns()), allowance_ns() * 6 / 10)
+                              : most_kept_ns();
+    return std::max(std::min((cold ? 2 : 1) * kept_.search_ns, most_ns), kept_ns(kept_.last_contact_ns, cold));
   }
   [[nodiscard]] std::int64_t most_kept_ns() const noexcept {
     return std::max(least_ending_ns, allowance_ns() * 3 / 10);
   }
 
   void end_earlier() noexcept {
-    search_deadline_ns_ -= kept_ns(search_ending_ns_) - search_ending_ns_;
+    const std::int64_t search_earlier_ns = search_kept_ns(true) - search_kept_ns(false);
+    search_deadline_ns_ -= search_earlier_ns;
     if (contacts_ended_) return;
-    const std::int64_t earlier_ns = contacts_reserve_ != nullptr ? kept_ns(contacts_reserve_->ns()) -
-                                                                       std::min(contacts_reserve_->ns(), most_kept_ns())
-                                                                 : kept_ns(search_ending_ns_) - search_ending_ns_;
+    const std::int64_t earlier_ns =
+        contacts_reserve_ != nullptr ? kept_ns(contacts_reserve_->ns(), true) - kept_ns(contacts_reserve_->ns(), false)
+                                     : search_earlier_ns;
     last_moment_ns_ -= earlier_ns;
     contacts_deadline_ns_ -= earlier_ns;
   }
@@ -222,13 +241,12 @@ class Spending {
   bool contacts_ended_ = false;  ///< they were told to be finished
   std::int64_t excused_ns_ = 0;
   realtime::StallLedger ledger_;
-  std::int64_t search_ending_ns_ = 0;  ///< kept for the answer that follows a search
-  std::int64_t contacts_ns_;
+  Kept kept_;
   std::uint64_t units_left_;
   std::uint32_t unpolled_units_ = 0;
   bool timed_ = false;
   bool nears_end_ = false;
-  std::int64_t search_end_ns_ = 0;  ///< 0: not told to stop
+  bool told_to_stop_ = false;
   std::int64_t ending_ns_ = 0;
   Cost cost_;
 };

@@ -7,7 +7,7 @@ namespace odds::query {
 namespace {
 
 struct Query {
-  explicit Query(double budget_us) : spending(budget(budget_us), 600) {}
+  explicit Query(double budget_us) : spending(budget(budget_us), {.search_ns = 600}) {}
   Budget budget(double us) {
     Budget made = Budget::time(us);
     made.clock = clock.clock();
@@ -79,6 +79,46 @@ TEST(Spending, WhatIsHeardLateIsLearntToo) {
     static_cast<void>(query.spending.close());
   }
   EXPECT_GE(reserve.ns(), 1'500);
+}
+
+TEST(Spending, OfASearchTheLastPieceIsPartOfTheEnding) {
+  Query query(10.0);             // of which 0.6 us are kept
+  for (int i = 0; i < 3; ++i) {  // longer gaps would be stalls
+    query.clock.advance(3'000);
+    EXPECT_TRUE(query.spending.may_go_on());
+  }
+  query.clock.advance(1'500);
+  EXPECT_FALSE(query.spending.may_go_on());
+  query.clock.advance(250);
+  static_cast<void>(query.spending.close());
+  EXPECT_EQ(query.spending.ending_ns(), 1'350);
+}
+
+TEST(Spending, OfLongPiecesAShortTimeIsKeptAsAWhole) {
+  const auto goes_on_after = [](double budget_us, bool pieces_are_long, std::int64_t ns) {
+    realtime::ManualClock clock;
+    Budget budget = Budget::time(budget_us);
+    budget.clock = clock.clock();
+    Spending spending(budget, {.search_ns = 1'500, .pieces_are_long = pieces_are_long});
+    clock.advance(ns);
+    return spending.may_go_on();
+  };
+  EXPECT_FALSE(goes_on_after(1.0, true, 0));
+  EXPECT_TRUE(goes_on_after(1.0, false, 399));
+  EXPECT_FALSE(goes_on_after(1.0, false, 400));
+  EXPECT_TRUE(goes_on_after(2.0, true, 799));
+  EXPECT_FALSE(goes_on_after(2.0, true, 800));
+  EXPECT_TRUE(goes_on_after(2.0, false, 1'399));
+  EXPECT_TRUE(goes_on_after(5.0, true, 3'499)) << "what it needs and no more";
+  EXPECT_FALSE(goes_on_after(5.0, true, 3'500));
+}
+
+TEST(Spending, AnEndingWithAStallIsNotLearnt) {
+  Query query(10.0);
+  query.clock.advance(50'000);
+  EXPECT_FALSE(query.spending.may_go_on());
+  static_cast<void>(query.spending.close());
+  EXPECT_EQ(query.spending.ending_ns(), 0);
 }
 
 TEST(Spending, OwnWorkBeyondTheBudgetIsNeverExcused) {
