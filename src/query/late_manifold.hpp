@@ -58,12 +58,15 @@ class LateManifold {
                        [&pose](const Entry& entry) { return entry.given >= all * entry.held.parted(pose).depth; });
   }
   /// A run begins, at `pose`. What the bodies have come deeper where a contact held them is given at once: they did so
-  /// against its push.
+  /// against its push. Where they part faster than a depth is given, less is: what a solver makes of a depth, a speed,
+  /// is energy that nobody put in.
   void age(const math::Pose& pose, double size, double least) noexcept {
     for (Entry& entry : std::span(held_).first(count_)) {
       const double depth = std::max(entry.held.parted(pose).depth, 0.0);
       const double deeper = entry.holds ? std::max(depth - entry.depth, 0.0) : 0.0;
-      entry.given = std::min(depth, std::max(entry.given + deeper + tolerances::late_rise * size, least));
+      const double rise = tolerances::late_rise * size;
+      const bool parts = entry.holds && entry.depth - depth > rise;
+      entry.given = std::min(depth, std::max(entry.given + deeper + (parts ? -rise : rise), least));
       entry.depth = depth;
       entry.holds = false;
     }

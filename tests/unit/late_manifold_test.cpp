@@ -116,6 +116,24 @@ TEST(LateManifold, GivesADepthNoFasterThanItsRate) {
   EXPECT_NEAR(runs, deep / (tolerances::late_rise * size), 10.0);
 }
 
+// A solver that takes back a fifth of a depth in a step makes a speed of it: 12 mm of depth would be 2.4 m/s.
+TEST(LateManifold, PushesApartNoFasterThanItsRate) {
+  constexpr double taken_back = 0.2;
+  LateManifold manifold;
+  const double deep = 0.01;
+  manifold.keep(std::vector{contact_at(0.0, 0.0, deep)}, {}, {}, size, least, 12);
+  double depth = deep;
+  double fastest = 0.0;
+  for (int run = 0; run < 10000 && depth > 1e-4 * deep; ++run) {
+    manifold.age(moved(depth - deep), size, least);
+    const double way = taken_back * written(manifold, moved(depth - deep))[0].depth;
+    fastest = std::max(fastest, way);
+    depth -= way;
+  }
+  EXPECT_LE(fastest, 1.3 * tolerances::late_rise * size);
+  EXPECT_LE(depth, 1e-4 * deep) << "they do come apart";
+}
+
 // What presses bodies together against their contacts finds a resistance that grows with the depth, as ever; but what
 // comes deeper while nothing holds it comes slowly into account.
 TEST(LateManifold, GivesWhatIsPressedInAgainstItAtOnce) {

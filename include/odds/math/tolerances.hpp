@@ -144,7 +144,8 @@ inline constexpr double late_still = 2e-4;
 inline constexpr double late_spacing = 0.05;
 /// Of the smaller body's size, a run: how fast a depth is given that a late contact has at first, and so how fast at
 /// most it pushes bodies apart. With 1e-4 one stack that fell had won 129 J, for 15 at most.
-/// Test: LateManifold.GivesADepthNoFasterThanItsRate, ShortBudget.GivesTheWholeDepthInTheEnd.
+/// Test: LateManifold.GivesADepthNoFasterThanItsRate, LateManifold.PushesApartNoFasterThanItsRate,
+/// ShortBudget.GivesTheWholeDepthInTheEnd.
 inline constexpr double late_rise = 2e-5;
 /// Cosine below which a surface is a wall, whose slope tells nothing of where an overlap gets deeper.
 inline constexpr double steep = 0.05;
