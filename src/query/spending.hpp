@@ -60,13 +60,7 @@ class Spending {
   void note_full_queue() noexcept { ++cost_.queue_full; }
 
   /// From now on the search ends early enough for contacts to be made from what it found.
-  void keep_time_for_contacts() noexcept {
-    if (!timed_) return;
-    const auto share_ns = static_cast<std::int64_t>((allowance_ns() < short_ns ? short_search_share : search_share) *
-                                                    static_cast<double>(allowance_ns()));
-    last_moment_ns_ = std::min(last_moment_ns_, deadline_ns_ - kept_ns(kept_.contacts_ns));
-    search_deadline_ns_ = std::min({search_deadline_ns_, start_ns_ + share_ns, last_moment_ns_});
-  }
+  void keep_time_for_contacts() noexcept;
 
   /// Polls the clock if there is a deadline. False once the search should stop.
   [[nodiscard]] bool may_go_on() noexcept {
@@ -154,6 +148,8 @@ class Spending {
 
  private:
   static constexpr std::int64_t long_piece_ns = 1'000;
+  /// The last piece and the answer of a pose that caches know nothing of; of a short time less than half.
+  static constexpr std::int64_t cold_ending_ns = 850;
   /// Some three pieces of work.
   static constexpr std::int64_t notice_ns = 400;
 
@@ -179,26 +175,12 @@ class Spending {
   [[nodiscard]] std::int64_t kept_ns(std::int64_t ending_ns) const noexcept {
     return kept_ns(ending_ns, caches_are_cold());
   }
-  [[nodiscard]] std::int64_t search_kept_ns(bool cold) const noexcept {
-    const std::int64_t most_ns =
-        kept_.pieces_are_long ? std::max(std::min(long_piece_ns, allowance_ns()), allowance_ns() * 6 / 10)
-                              : most_kept_ns();
-    return std::max(std::min((cold ? 2 : 1) * kept_.search_ns, most_ns), kept_ns(kept_.last_contact_ns, cold));
-  }
+  [[nodiscard]] std::int64_t search_kept_ns(bool cold) const noexcept;
   [[nodiscard]] std::int64_t most_kept_ns() const noexcept {
     return std::max(least_ending_ns, allowance_ns() * 3 / 10);
   }
 
-  void end_earlier() noexcept {
-    const std::int64_t search_earlier_ns = search_kept_ns(true) - search_kept_ns(false);
-    search_deadline_ns_ -= search_earlier_ns;
-    if (contacts_ended_) return;
-    const std::int64_t earlier_ns =
-        contacts_reserve_ != nullptr ? kept_ns(contacts_reserve_->ns(), true) - kept_ns(contacts_reserve_->ns(), false)
-                                     : search_earlier_ns;
-    last_moment_ns_ -= earlier_ns;
-    contacts_deadline_ns_ -= earlier_ns;
-  }
+  void end_earlier() noexcept;
 
   /// Of a stall only what lies beyond the moment when the query had to end excuses it: what was before that was time
   /// that it could still react to.

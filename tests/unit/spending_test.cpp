@@ -108,7 +108,10 @@ TEST(Spending, OfLongPiecesAShortTimeIsKeptAsAWhole) {
   EXPECT_FALSE(goes_on_after(1.0, false, 400));
   EXPECT_TRUE(goes_on_after(2.0, true, 799));
   EXPECT_FALSE(goes_on_after(2.0, true, 800));
-  EXPECT_TRUE(goes_on_after(2.0, false, 1'399));
+  EXPECT_TRUE(goes_on_after(2.0, false, 1'149));
+  EXPECT_FALSE(goes_on_after(2.0, false, 1'150));
+  EXPECT_TRUE(goes_on_after(4.0, false, 2'799));
+  EXPECT_FALSE(goes_on_after(4.0, false, 2'800));
   EXPECT_TRUE(goes_on_after(5.0, true, 3'499)) << "what it needs and no more";
   EXPECT_FALSE(goes_on_after(5.0, true, 3'500));
 }
