@@ -55,9 +55,14 @@ SearchResult search(const Encounter<V>& encounter, const PosedMeshes&, const Req
                     Pair::Implementation& pair, Spending& spending) noexcept {
   SearchResult result;
   if (encounter.far_apart()) return result;
-  if (pieces_are_long<V> && !spending.may_go_on()) {
+  if (pieces_are_long<V> && !spending.may_begin_long_piece()) {
+    if (request.method == Method::exact && !request.polygon_free) result.method = Method::exact;
+    if (request.method == Method::incremental && !by_probability(request)) {
+      result.method = Method::incremental;
+      remember_witness(pair);
+    }
     result.ended = Progressed::spent;
-    consider(result, {0, 0, 0.0F});
+    consider(result, {0, 0, encounter.rank(0, 0)});
     return result;
   }
   spending.spend_node_pairs(1);
@@ -256,7 +261,7 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
                     {.search_ns = pair.endings.search.ns(),
                      .contacts_ns = (request.max_contacts > 1 ? pair.endings.rough : pair.endings.single).ns(),
                      .last_contact_ns = last_contact_ns,
-                     .pieces_are_long = pair.a->volume() == volume::Kind::hull});
+                     .pieces_are_long = are_pieces_long(pair.a->volume())});
   Answer& answer = pair.answer;
   answer = {};
   pair.hits.clear();

@@ -2,9 +2,7 @@
 #pragma once
 
 #include <bit>
-#include <type_traits>
 
-#include "odds/volume/hull.hpp"
 #include "query/encounter.hpp"
 #include "query/shortlist.hpp"
 
@@ -34,6 +32,10 @@ inline void consider(SearchResult& result, const BucketQueue& queue) noexcept {
   result.open += queue.size();
   queue.show_first(Shortlist::capacity, [&](const NodePair& pair) { result.shortlist.add(pair); });
 }
+
+/// Whether two pairs of volumes take longer than may pass between two looks at the clock.
+template <volume::BoundingVolume V>
+inline constexpr bool pieces_are_long = are_pieces_long(kind_of<V>);
 
 /// Depth-first from `start` until done, `wanted` hits or the budget's end. Without estimates, so the fastest way to a
 /// proof of separation. On the budget's end the newest undecided pairs are estimated once.
@@ -68,6 +70,10 @@ void search_depth_first(const Encounter<V>& encounter, NodePair start, std::uint
     const auto children = encounter.children(pair.a, pair.b);
     spending.spend_node_pairs(2);
     if (encounter.volumes_overlap(children.second.a, children.second.b)) stack[size++] = children.second;
+    if (pieces_are_long<V> && !spending.may_begin_long_piece()) {
+      stack[size++] = children.first;
+      return stop(Progressed::spent);
+    }
     if (encounter.volumes_overlap(children.first.a, children.first.b)) stack[size++] = children.first;
   }
 }
@@ -84,10 +90,6 @@ inline constexpr float highest_rank = 0.5F;
 [[nodiscard]] inline std::uint32_t bucket_of(float rank, int levels_left) noexcept {
   return bucket_of_value(std::min(rank, highest_rank) - math::rough_log2(static_cast<double>(levels_left + 2)));
 }
-
-/// Whether two pairs of volumes take longer than may pass between two looks at the clock.
-template <volume::BoundingVolume V>
-inline constexpr bool pieces_are_long = std::is_same_v<V, volume::Hull>;
 
 /// Algorithm 4.3. Ends on proof (`wanted` hits, or nothing left), on k_min pairs with p >= p_min, or with the budget.
 template <volume::BoundingVolume V>
@@ -130,8 +132,9 @@ class TimeCriticalSearch {
     encounter_.prefetch(children.second);
     meet(children.first);
     if (finished_) return;
-    if (pieces_are_long<V> && !spending_.may_go_on()) {
-      consider(result_, pair);  // of the second child nothing is known yet
+    if (pieces_are_long<V> && !spending_.may_begin_long_piece()) {
+      consider(result_, {children.second.a, children.second.b,
+                         encounter_.rank(children.second.a, children.second.b)});
       return finish(Progressed::spent);
     }
     meet(children.second);

@@ -18,13 +18,13 @@ namespace odds::query {
 class Spending {
  public:
   /// What of the time is kept for what follows a search; of a short time no more than three tenths for any of it, but
-  /// `least_ending_ns`.
+  /// `least_ending_ns`, and what is said below.
   struct Kept {
-    std::int64_t search_ns = EndingReserves{}.search.ns();  ///< the answer of one without a proof
-    std::int64_t contacts_ns = 0;                           ///< contacts, once there is a hit to make them from
-    std::int64_t last_contact_ns = 0;                       ///< a contact of a hit that comes last
-    /// A pair of volumes takes a microsecond: for the search's last one and the answer six tenths may be kept, and a
-    /// microsecond of any time.
+    /// The last piece of a search without a proof, and its answer: `cold_ending_ns` where that is less than 45 %.
+    std::int64_t search_ns = EndingReserves{}.search.ns();
+    std::int64_t contacts_ns = 0;      ///< contacts, once there is a hit to make them from
+    std::int64_t last_contact_ns = 0;  ///< a contact of a hit that comes last
+    /// A pair of volumes takes a microsecond: `search_ns` may be six tenths, and a microsecond of any time.
     bool pieces_are_long = false;
   };
   explicit Spending(const Budget& budget) noexcept : Spending(budget, Kept{}) {}
@@ -72,6 +72,8 @@ class Spending {
   }
   /// The same, but looks at the clock only when `units` were spent since the last look.
   [[nodiscard]] bool may_go_on_after(std::uint32_t units) noexcept { return unpolled_units_ < units || may_go_on(); }
+  /// As `may_go_on`, where it is not asked of short pieces.
+  [[nodiscard]] bool may_begin_long_piece() noexcept { return !timed_ || may_go_on(); }
   /// Whether the last look at the clock found the search's end near: time to ask the caches for what the answer needs.
   [[nodiscard]] bool nears_end() const noexcept { return nears_end_; }
   /// A search that changes its manner after a start has up to these shares (< 1) of time and work for it, and these
@@ -104,12 +106,13 @@ class Spending {
     last_moment_ns_ = deadline_ns_ - kept_ns(reserve.ns());
     contacts_deadline_ns_ = last_moment_ns_ - hasty_ns;
   }
-  [[nodiscard]] bool may_make_contacts() noexcept { return may_go_on_with_contacts(contacts_deadline_ns_); }
-  [[nodiscard]] bool may_finish_contacts() noexcept { return may_go_on_with_contacts(last_moment_ns_); }
+  [[nodiscard]] bool may_make_contacts() noexcept { return poll_of_contacts() < contacts_deadline_ns_; }
+  [[nodiscard]] bool may_finish_contacts() noexcept { return poll_of_contacts() < last_moment_ns_; }
   /// Microseconds for contacts before they have to be made hastily; infinite without a deadline.
   [[nodiscard]] double left_for_contacts_us() noexcept {
     if (!timed_) return std::numeric_limits<double>::infinity();
-    return static_cast<double>(contacts_deadline_ns_ - poll()) * 1e-3;
+    const std::int64_t now = poll();  // after a stall the deadline is another one
+    return static_cast<double>(contacts_deadline_ns_ - now) * 1e-3;
   }
   /// Microseconds until the deadline, which may be past; infinite without one.
   [[nodiscard]] double left_us() noexcept {
@@ -126,7 +129,7 @@ class Spending {
     const std::int64_t now = clock_();
     note_time(now);
     cost_.longest_unpolled_units = std::max(cost_.longest_unpolled_units, unpolled_units_);
-    if (told_to_stop_ && ledger_.stalls() == 0) ending_ns_ = now - search_deadline_ns_;
+    if (told_to_stop_ && ledger_.stalls() == 0) ending_ns_ = now - std::max(search_deadline_ns_, start_ns_);
     note_contacts_ending(now);
     cost_.gross_us = static_cast<double>(ledger_.gross_ns()) * 1e-3;
     // Without polls a long gap is the query's own work, not a stall.
@@ -193,10 +196,11 @@ class Spending {
     if (timed_ && ledger_.stalls() == 1) end_earlier();
   }
 
-  [[nodiscard]] bool may_go_on_with_contacts(std::int64_t deadline_ns) noexcept {
+  /// To be compared with a deadline that is read afterwards: after a stall it is another one.
+  [[nodiscard]] std::int64_t poll_of_contacts() noexcept {
     const std::int64_t now = poll();
     contacts_ended_ = contacts_ended_ || (contacts_reserve_ != nullptr && now >= last_moment_ns_);
-    return now < deadline_ns;
+    return now;
   }
 
   /// After a stall, caches are another's: such an ending says nothing of the next.

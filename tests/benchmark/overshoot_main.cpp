@@ -48,7 +48,8 @@ struct Settings {
 class CacheEmptier {
  public:
   void run() noexcept {
-    for (std::size_t i = 0; i < bytes_.size(); i += cache_line) ++bytes_[i];
+    volatile unsigned char* const bytes = bytes_.data();
+    for (std::size_t i = 0; i < bytes_.size(); i += cache_line) bytes[i] = static_cast<unsigned char>(i);
   }
 
  private:

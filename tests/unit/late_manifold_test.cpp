@@ -116,7 +116,7 @@ TEST(LateManifold, GivesADepthNoFasterThanItsRate) {
   EXPECT_NEAR(runs, deep / (tolerances::late_rise * size), 10.0);
 }
 
-// A solver that takes back a fifth of a depth in a step makes a speed of it: 12 mm of depth would be 2.4 m/s.
+// A solver that takes back a fifth of a depth in a step makes a speed of it: 10 mm of depth would be 2 m/s.
 TEST(LateManifold, PushesApartNoFasterThanItsRate) {
   constexpr double taken_back = 0.2;
   LateManifold manifold;

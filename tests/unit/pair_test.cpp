@@ -114,6 +114,39 @@ TEST_P(PairOfSpheres, StopsAtAnInjectedDeadline) {
   EXPECT_LE(answer.cost.longest_unpolled_units, most);
 }
 
+// A pair of hulls takes as long as dozens of boxes.
+class PairOfHulls : public PairOfSpheres {};
+
+TEST_P(PairOfHulls, LooksAtTheClockBeforeEachPiece) {
+  realtime::ManualClock clock(100);
+  request_.budget = Budget::time(12.0);
+  request_.budget.clock = clock.clock();
+  const Answer& answer = at(1.99);
+  EXPECT_GT(answer.cost.node_pairs, 20u);
+  EXPECT_LE(answer.cost.node_pairs, static_cast<std::uint64_t>(clock.readings()));
+  // Neither the first pair of all, where the answer alone needs the time.
+  pair_->reset();
+  realtime::ManualClock late(300);
+  request_.budget = Budget::time(1.0);
+  request_.budget.clock = late.clock();
+  const Answer& guess = at(1.99);
+  EXPECT_EQ(guess.cost.node_pairs, 0u);
+  EXPECT_EQ(guess.basis, Basis::budget);
+  EXPECT_TRUE(guess.has_cell_pair);
+  EXPECT_LE(guess.cost.overshoot_us, 0.3);
+}
+
+INSTANTIATE_TEST_SUITE_P(AllMethods, PairOfHulls,
+                         ::testing::Combine(::testing::Values(volume::Kind::hull),
+                                            ::testing::Values(Method::exact, Method::time_critical,
+                                                              Method::incremental)),
+                         [](const auto& tested) {
+                           const Method method = std::get<1>(tested.param);
+                           return std::string(method == Method::exact           ? "exact"
+                                              : method == Method::time_critical ? "time_critical"
+                                                                                : "incremental");
+                         });
+
 INSTANTIATE_TEST_SUITE_P(AllVolumesAndMethods, PairOfSpheres,
                          ::testing::Combine(::testing::ValuesIn(testing::all_kinds()),
                                             ::testing::Values(Method::exact, Method::time_critical)),
