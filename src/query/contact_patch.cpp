@@ -148,17 +148,21 @@ void PatchBuilder::Scratch::straighten(const PatchInput& input, std::span<const 
   if (chosen == nullptr) return;
   const Vec3 direction = *chosen;
   const double limit = input.believed_depth > 0.0 ? input.believed_depth : deepest + rounding;
+  constexpr double tilted = 1.5;
   for (std::size_t i = 0, made = 0; i < sums.size() && !watch.late(); ++i) {
     const Indices indices = pieces_of(i);
     if (indices.empty()) continue;
     Patch& own = patches[made++];
+    if (own.normal.dot(direction) > tolerances::same_face) continue;
+    // A whole rim has a direction of its own, unless this is by far the shorter way out: as of a lump between faces that
+    // are flush to within rounding, which overlaps from one end of them to the other. It is as high as they are tilted.
     const bool is_whole = sums[i].closed() && sums[i].length > 0.0;
-    if (is_whole || own.normal.dot(direction) > tolerances::same_face) continue;
+    const double acceptable = is_whole ? std::min(tilted * limit, tolerances::shorter_way * own.depth) : limit;
     const patch::PatchView view{input, rim, sums[i], indices, thorough.sample};
-    if (!patch::is_of_direction(view, direction, limit, watch)) continue;
+    if (!patch::is_of_direction(view, direction, acceptable, watch)) continue;
     const Patch straight = patch_along(direction, input, sums[i], indices, thorough, watch);
     if (watch.late()) return;  // it was not measured to its end
-    if (straight.depth <= limit) own = straight;
+    if (straight.depth <= acceptable) own = straight;
   }
 }
 

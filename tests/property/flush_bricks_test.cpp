@@ -107,6 +107,41 @@ TEST(FlushBricks, ThatTouchWithinRoundingAreNotPushedFromEndToEnd) {
   }
 }
 
+// As late contacts ask for bodies that are pressed together, flush by any power of ten, or exactly, along each axis:
+// strips of their sides overlap, and what rounding makes of their rims is closed and points anywhere.
+TEST(FlushBricks, ThatLieInEachOtherPushUpwards) {
+  for (const auto& [cells, seed] : {std::pair{1, 3}, {1, 6}, {8, 5}, {8, 6}}) {
+    auto pair = std::move(Pair::make(brick(cells), brick(cells))).value();
+    math::Random random(static_cast<std::uint64_t>(seed));
+    const auto power = [&random](double least, double most) {
+      if (random.uniform(0, 1) < 0.15) return 0.0;
+      return std::pow(10.0, random.uniform(least, most)) * (random.uniform(0, 1) < 0.5 ? -1.0 : 1.0);
+    };
+    int sideways = 0;
+    double deepest = 0.0;
+    for (int i = 0; i < 20000; ++i) {
+      const double x = power(-10, -3.5);
+      const double y = power(-10, -3.5);
+      const double z = power(-10, -3.5);
+      math::Pose pose;
+      pose.rotation = (Eigen::AngleAxisd(x, Vec3::UnitX()) * Eigen::AngleAxisd(y, Vec3::UnitY()) *
+                       Eigen::AngleAxisd(z, Vec3::UnitZ()))
+                          .toRotationMatrix();
+      pose.translation.x() = power(-12, -3.5);
+      pose.translation.y() = power(-12, -3.5);
+      pose.translation.z() = 2.0 * half.z() - 6e-4 - std::abs(power(-9, -4));
+      pair.reset();
+      for (const Contact& contact :
+           pair.run(pose, {.method = Method::exact, .max_contacts = most_contacts, .solids = true}).contacts) {
+        sideways += contact.normal.z() > -0.99 ? 1 : 0;
+        deepest = std::max(deepest, contact.depth);
+      }
+    }
+    EXPECT_EQ(sideways, 0) << cells << " cells, seed " << seed;
+    EXPECT_LE(deepest, 1e-3) << cells << " cells, seed " << seed;
+  }
+}
+
 // As a stack at rest does: the sides are flush to within the rounding of a simulation, and what crosses there is
 // closed.
 TEST(FlushBricks, ThatStandExactlyOnEachOtherPushUpwards) {
