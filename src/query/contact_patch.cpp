@@ -128,41 +128,38 @@ bool PatchBuilder::Scratch::make_patches(const PatchInput& input, Watch& watch) 
 /// belongs to that.
 void PatchBuilder::Scratch::straighten(const PatchInput& input, std::span<const patch::RimSums> sums,
                                        Watch& watch) noexcept {
-  const Vec3* chosen = input.known_normal;
-  double most = 0.0;
-  double deepest = 0.0;
   const double rounding = tolerances::rim_noise * rim.origin.cwiseAbs().maxCoeff();
+  const std::span<const Patch> made(patches.data(), patch_count);
+  const auto agree = [](const Vec3& x, const Vec3& y) noexcept { return x.dot(y) > tolerances::same_face; };
+  const Vec3* chosen = input.known_normal;
+  double longest = 0.0;
   for (std::size_t p = 0; p < patch_count && input.known_normal == nullptr; ++p) {
     double agreeing = 0.0;
-    double depth = 0.0;
-    for (std::size_t q = 0; q < patch_count; ++q) {
-      if (!(patches[q].normal.dot(patches[p].normal) > tolerances::same_face)) continue;
-      agreeing += patches[q].length + rounding;
-      depth = std::max(depth, patches[q].depth);
-    }
-    if (!(agreeing > most)) continue;
-    chosen = &patches[p].normal;
-    most = agreeing;
-    deepest = depth;
+    for (const Patch& other : made) agreeing += agree(other.normal, made[p].normal) ? other.length + rounding : 0.0;
+    if (!(agreeing > longest)) continue;
+    chosen = &made[p].normal;
+    longest = agreeing;
   }
   if (chosen == nullptr) return;
   const Vec3 direction = *chosen;
+  double deepest = 0.0;
+  for (const Patch& patch : made) deepest = agree(patch.normal, direction) ? std::max(deepest, patch.depth) : deepest;
   const double limit = input.believed_depth > 0.0 ? input.believed_depth : deepest + rounding;
-  constexpr double tilted = 1.5;
-  for (std::size_t i = 0, made = 0; i < sums.size() && !watch.late(); ++i) {
+  for (std::size_t i = 0, next = 0; i < sums.size() && !watch.late(); ++i) {
     const Indices indices = pieces_of(i);
     if (indices.empty()) continue;
-    Patch& own = patches[made++];
-    if (own.normal.dot(direction) > tolerances::same_face) continue;
-    // A whole rim has a direction of its own, unless this is by far the shorter way out: as of a lump between faces that
-    // are flush to within rounding, which overlaps from one end of them to the other. It is as high as they are tilted.
+    Patch& own = patches[next++];
+    if (agree(own.normal, direction)) continue;
+    // A whole rim has a direction of its own, unless this is by far the shorter way out: as of a lump between faces
+    // that are flush to within rounding, which overlaps from one end of them to the other.
     const bool is_whole = sums[i].closed() && sums[i].length > 0.0;
-    const double acceptable = is_whole ? std::min(tilted * limit, tolerances::shorter_way * own.depth) : limit;
+    const double most =
+        is_whole ? std::min(tolerances::flush_lump * limit, tolerances::shorter_way * own.depth) : limit;
     const patch::PatchView view{input, rim, sums[i], indices, thorough.sample};
-    if (!patch::is_of_direction(view, direction, acceptable, watch)) continue;
+    if (!patch::is_of_direction(view, direction, most, watch)) continue;
     const Patch straight = patch_along(direction, input, sums[i], indices, thorough, watch);
     if (watch.late()) return;  // it was not measured to its end
-    if (straight.depth <= acceptable) own = straight;
+    if (straight.depth <= most) own = straight;
   }
 }
 

@@ -133,8 +133,7 @@ class TimeCriticalSearch {
     meet(children.first);
     if (finished_) return;
     if (pieces_are_long<V> && !spending_.may_begin_long_piece()) {
-      consider(result_, {children.second.a, children.second.b,
-                         encounter_.rank(children.second.a, children.second.b)});
+      consider(result_, {children.second.a, children.second.b, encounter_.rank(children.second.a, children.second.b)});
       return finish(Progressed::spent);
     }
     meet(children.second);

@@ -44,8 +44,11 @@ inline constexpr double same_face = 0.9994;
 /// Sines of the angles from and to which a normal ceases to belong to a flat face (0.5 and 3 degrees).
 inline constexpr double flat_from = 0.0087;
 inline constexpr double flat_to = 0.0523;  ///< see flat_from
-/// Part of the depth along a whole rim's own direction below which another, on which most of the rim agrees, is the way
-/// out. Test: FlushBricks.ThatLieInEachOtherPushUpwards.
+/// A lump of a whole rim between flush faces is no higher than by this factor than the patch beside it is deep: it is
+/// as much higher as the faces are tilted, by some per cent. Test: FlushBricks.ThatLieInEachOtherPushUpwards.
+inline constexpr double flush_lump = 1.5;
+/// A whole rim has its own direction unless the one of the patch beside it is shorter by this factor: of a rod through
+/// a plate both ways out are as long. Test: ContactPatch.PreviousNormalBreaksTies.
 inline constexpr double shorter_way = 0.5;
 /// Share of the rim on one flat face from and to which the patch's normal becomes that face's.
 /// Test: ContactPatch.BoxOverALedgeKeepsTheFaceNormal.
