@@ -32,11 +32,17 @@ Answer refused() noexcept {
 /// Only a search from the roots, the likeliest pair first, may end on probability.
 bool by_probability(const Request& request) noexcept { return request.polygon_free || request.p_min < 1.0; }
 
+/// The order in which a search looks for an answer to it.
+Method order_of(const Request& request) noexcept {
+  if (request.method == Method::exact) return request.polygon_free ? Method::time_critical : Method::exact;
+  return by_probability(request) ? Method::time_critical : request.method;
+}
+
 /// The witness of the last hit. True: it still is one, and no more are wanted.
 bool witness_suffices(const PosedMeshes& meshes, const Request& request, Pair::Implementation& pair,
                       Spending& spending) noexcept {
-  if (request.method != Method::incremental || by_probability(request) || wanted_hits(request, pair) != 1 ||
-      !pair.has_witness || !spending.allows(1)) {
+  if (order_of(request) != Method::incremental || wanted_hits(request, pair) != 1 || !pair.has_witness ||
+      !spending.allows(1)) {
     return false;
   }
   spending.spend_triangle_pairs(1);
@@ -55,12 +61,9 @@ SearchResult search(const Encounter<V>& encounter, const PosedMeshes&, const Req
                     Pair::Implementation& pair, Spending& spending) noexcept {
   SearchResult result;
   if (encounter.far_apart()) return result;
+  const Method order = order_of(request);
   if (pieces_are_long<V> && !spending.may_begin_long_piece()) {
-    if (request.method == Method::exact && !request.polygon_free) result.method = Method::exact;
-    if (request.method == Method::incremental && !by_probability(request)) {
-      result.method = Method::incremental;
-      remember_witness(pair);
-    }
+    result.method = order;
     result.ended = Progressed::spent;
     consider(result, {0, 0, encounter.rank(0, 0)});
     return result;
@@ -68,13 +71,12 @@ SearchResult search(const Encounter<V>& encounter, const PosedMeshes&, const Req
   spending.spend_node_pairs(1);
   if (!encounter.volumes_overlap(0, 0)) return result;
   const std::uint32_t wanted = wanted_hits(request, pair);
-  if (request.method == Method::exact && !request.polygon_free) {
+  if (order == Method::exact) {
     result.method = Method::exact;
     search_depth_first(encounter, {0, 0, 0.0F}, wanted, pair.hits, spending, result);
     return result;
   }
-  if (request.method == Method::incremental && !by_probability(request) &&
-      !(request.budget.is_limited() && pair.slice.pauses())) {
+  if (order == Method::incremental && !(request.budget.is_limited() && pair.slice.pauses())) {
     result.method = Method::incremental;
     pair.slice.search(encounter, wanted, pair.hits, spending, result);
     remember_witness(pair);
@@ -89,12 +91,13 @@ SearchResult search(const wide::Encounter& encounter, const PosedMeshes& meshes,
   if (encounter.far_apart()) return result;
   const std::uint32_t wanted = wanted_hits(request, pair);
   wide::Task task{encounter, request, wanted, queue, pair.hits, spending, result};
-  if (request.method == Method::exact && !request.polygon_free) {
+  const Method order = order_of(request);
+  if (order == Method::exact) {
     result.method = Method::exact;
     pair.wide->depth_first(task, tree::WideTree::root, tree::WideTree::root);
     return result;
   }
-  if (request.method == Method::time_critical || by_probability(request)) {
+  if (order == Method::time_critical) {
     pair.wide->time_critical(task);
     return result;
   }
@@ -186,8 +189,7 @@ bool is_still_apart(const tree::Hierarchy<V>&, const PosedMeshes&, const Request
 
 bool is_still_apart(const tree::WideTree& b, const PosedMeshes& meshes, const Request& request,
                     const Pair::Implementation& pair) noexcept {
-  return request.method == Method::incremental && !by_probability(request) &&
-         pair.front.is_apart(meshes.pose(), b.reach());
+  return order_of(request) == Method::incremental && pair.front.is_apart(meshes.pose(), b.reach());
 }
 
 /// Bodies that have gone by more than half of the smaller one between two runs may have been anywhere: nothing is known

@@ -72,7 +72,7 @@ class Spending {
   }
   /// The same, but looks at the clock only when `units` were spent since the last look.
   [[nodiscard]] bool may_go_on_after(std::uint32_t units) noexcept { return unpolled_units_ < units || may_go_on(); }
-  /// As `may_go_on`, where it is not asked of short pieces.
+  /// As `may_go_on`, between two pieces that need no look at the clock between them unless they are long.
   [[nodiscard]] bool may_begin_long_piece() noexcept { return !timed_ || may_go_on(); }
   /// Whether the last look at the clock found the search's end near: time to ask the caches for what the answer needs.
   [[nodiscard]] bool nears_end() const noexcept { return nears_end_; }

@@ -38,6 +38,7 @@ struct Settings {
   std::vector<std::string> volumes{"wide"};
   std::string only;
   std::size_t count = 10000;
+  std::uint64_t seed = 7;     ///< of the poses
   long wait_us = 0;           ///< between two queries
   bool empty_caches = false;  ///< between two queries
   bool late = false;          ///< contacts are made over several queries
@@ -66,7 +67,7 @@ struct Tally {
 
 class Poses {
  public:
-  Poses(const Course& course, double size) : course_(course), size_(size) {
+  Poses(const Course& course, double size, std::uint64_t seed) : course_(course), size_(size), random_(seed) {
     pose_.translation = course.place * size * Vec3::UnitX();
     if (course.place > 0.0) pose_.rotation = random_.rotation().toRotationMatrix();
   }
@@ -89,7 +90,7 @@ class Poses {
  private:
   const Course& course_;
   double size_;
-  math::Random random_{7};
+  math::Random random_;
   math::Pose pose_;
   Vec3 direction_ = Vec3(1.0, 2.0, 3.0).normalized();
   int steps_ = 0;
@@ -111,7 +112,7 @@ void measure(const query::Shape& shape, query::Pair& pair, query::Pair* referenc
   pair.reset();
   if (reference != nullptr) reference->reset();
   std::vector<double> angles;
-  Poses poses(course, shape.mesh().size());
+  Poses poses(course, shape.mesh().size(), settings.seed);
   std::vector<double> net_us;
   std::vector<double> gross_us;
   std::vector<double> own_us;   // the query's own time, gross less stalls, beyond the budget
@@ -160,18 +161,13 @@ void measure(const query::Shape& shape, query::Pair& pair, query::Pair* referenc
 }
 
 std::shared_ptr<const query::Shape> shape_of(const std::string& name, const std::string& volume) {
-  const auto kind = volume::kind_from_name(volume);
-  if (!kind) {
-    std::fprintf(stderr, "there is no bounding volume \"%s\"\n", volume.c_str());
-    return nullptr;
-  }
   auto mesh = name.starts_with("made:") ? mesh::made::make_shape(name) : mesh::read(name);
   if (!mesh) {
     std::fprintf(stderr, "%s\n", mesh.error().message().c_str());
     return nullptr;
   }
   auto shape = query::Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(mesh).value()),
-                                   {.volume = kind.value()});
+                                   {.volume = volume::kind_from_name(volume).value()});
   if (!shape) std::fprintf(stderr, "%s\n", shape.error().message().c_str());
   return shape ? shape.value() : nullptr;
 }
@@ -219,10 +215,14 @@ int main(int argc, char** argv) {
   app.add_option("meshes", settings.meshes, "files, or made ones")->capture_default_str();
   app.add_option("--budgets-us", settings.budgets_us, "microseconds")->delimiter(',')->check(CLI::PositiveNumber);
   app.add_option("--contacts", settings.contacts, "most contacts a query")->delimiter(',')->check(CLI::Range(0, 8));
-  app.add_option("--bv", settings.volumes, "bounding volumes")->delimiter(',')->capture_default_str();
+  app.add_option("--bv", settings.volumes, "bounding volumes")
+      ->delimiter(',')
+      ->check(CLI::IsMember(std::vector<std::string>(odds::volume::kind_words.begin(), odds::volume::kind_words.end())))
+      ->capture_default_str();
   app.add_option("--only", settings.only, "courses whose name has this in it");
   app.add_option("--count", settings.count, "queries each")
       ->check(CLI::Range(std::size_t{1000}, std::size_t{10000000}));
+  app.add_option("--seed", settings.seed, "of the poses")->capture_default_str();
   app.add_option("--wait-us", settings.wait_us, "microseconds between two queries, in which caches grow cold")
       ->check(CLI::Range(0L, 1000000L));
   app.add_flag("--empty-caches", settings.empty_caches, "fill the caches with something else between two queries");

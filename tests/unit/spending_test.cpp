@@ -116,6 +116,40 @@ TEST(Spending, OfLongPiecesAShortTimeIsKeptAsAWhole) {
   EXPECT_FALSE(goes_on_after(5.0, true, 3'500));
 }
 
+TEST(Spending, AContactOfTheLastHitIsKeptTimeForToo) {
+  const auto goes_on_after = [](double budget_us, std::int64_t last_contact_ns, std::int64_t ns) {
+    realtime::ManualClock clock;
+    Budget budget = Budget::time(budget_us);
+    budget.clock = clock.clock();
+    Spending spending(budget, {.search_ns = 300, .last_contact_ns = last_contact_ns});
+    clock.advance(ns);
+    return spending.may_go_on();
+  };
+  EXPECT_TRUE(goes_on_after(5.0, 1'000, 3'999));
+  EXPECT_FALSE(goes_on_after(5.0, 1'000, 4'000));
+  EXPECT_FALSE(goes_on_after(5.0, 100, 4'700)) << "the longer of both";
+  EXPECT_TRUE(goes_on_after(5.0, 3'000, 3'499)) << "three tenths at most";
+  EXPECT_FALSE(goes_on_after(5.0, 3'000, 3'500));
+}
+
+// What is kept then is twice as much.
+TEST(Spending, AfterAStallASearchEndsEarlier) {
+  const auto goes_on_at = [](std::int64_t search_ns, bool pieces_are_long, std::int64_t ns) {
+    realtime::ManualClock clock;
+    Budget budget = Budget::time(40.0);
+    budget.clock = clock.clock();
+    Spending spending(budget, {.search_ns = search_ns, .pieces_are_long = pieces_are_long});
+    clock.advance(30'000);
+    EXPECT_TRUE(spending.may_go_on());
+    clock.advance(ns - 30'000);
+    return spending.may_go_on();
+  };
+  EXPECT_TRUE(goes_on_at(2'000, false, 35'999));
+  EXPECT_FALSE(goes_on_at(2'000, false, 36'000));
+  EXPECT_TRUE(goes_on_at(2'000, true, 35'999));
+  EXPECT_FALSE(goes_on_at(2'000, true, 36'000));
+}
+
 TEST(Spending, AnEndingWithAStallIsNotLearnt) {
   Query query(10.0);
   query.clock.advance(50'000);
