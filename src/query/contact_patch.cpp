@@ -123,9 +123,9 @@ bool PatchBuilder::Scratch::make_patches(const PatchInput& input, Watch& watch) 
 
 /// A few pieces that a search without time has left of a rim, say along the side of a brick that stands flush on
 /// another, span an area of their own: where a brick hangs over by as little as it is deep, that points anywhere. Nor
-/// has a crumb that rounding has left of a whole rim a direction of its own. What is no deeper than is believed (of a
-/// whole rim: than the rest is) along the direction that is known, or else that on which most of the rim agrees,
-/// belongs to that.
+/// has a crumb that rounding has left of a whole rim a direction of its own. What is no deeper than is believed, or
+/// else than the rest is, along the direction that is known, or else that on which most of the rim agrees, belongs to
+/// that.
 void PatchBuilder::Scratch::straighten(const PatchInput& input, std::span<const patch::RimSums> sums,
                                        Watch& watch) noexcept {
   const double rounding = tolerances::rim_noise * rim.origin.cwiseAbs().maxCoeff();
@@ -154,7 +154,7 @@ void PatchBuilder::Scratch::straighten(const PatchInput& input, std::span<const 
     // that are flush to within rounding, which overlaps from one end of them to the other.
     const bool is_whole = sums[i].closed() && sums[i].length > 0.0;
     const double most =
-        is_whole ? std::min(tolerances::flush_lump * limit, tolerances::shorter_way * own.depth) : limit;
+        is_whole ? std::min(tolerances::flush_lump * limit, tolerances::by_far_shorter * own.depth) : limit;
     const patch::PatchView view{input, rim, sums[i], indices, thorough.sample};
     if (!patch::is_of_direction(view, direction, most, watch)) continue;
     const Patch straight = patch_along(direction, input, sums[i], indices, thorough, watch);

@@ -29,13 +29,12 @@ Answer refused() noexcept {
   return answer;
 }
 
-/// Only a search from the roots, the likeliest pair first, may end on probability.
-bool by_probability(const Request& request) noexcept { return request.polygon_free || request.p_min < 1.0; }
-
-/// The order in which a search looks for an answer to it.
+/// The order in which a search looks for an answer. Only one from the roots, the likeliest pair first, may end on
+/// probability.
 Method order_of(const Request& request) noexcept {
-  if (request.method == Method::exact) return request.polygon_free ? Method::time_critical : Method::exact;
-  return by_probability(request) ? Method::time_critical : request.method;
+  if (request.polygon_free) return Method::time_critical;
+  if (request.method == Method::exact) return Method::exact;
+  return request.p_min < 1.0 ? Method::time_critical : request.method;
 }
 
 /// The witness of the last hit. True: it still is one, and no more are wanted.
@@ -61,8 +60,9 @@ SearchResult search(const Encounter<V>& encounter, const PosedMeshes&, const Req
                     Pair::Implementation& pair, Spending& spending) noexcept {
   SearchResult result;
   if (encounter.far_apart()) return result;
-  const Method order = order_of(request);
-  if (pieces_are_long<V> && !spending.may_begin_long_piece()) {
+  Method order = order_of(request);
+  if (order == Method::incremental && request.budget.is_limited() && pair.slice.pauses()) order = Method::time_critical;
+  if (pieces_are_long<V> && !spending.may_go_on()) {
     result.method = order;
     result.ended = Progressed::spent;
     consider(result, {0, 0, encounter.rank(0, 0)});
@@ -76,7 +76,7 @@ SearchResult search(const Encounter<V>& encounter, const PosedMeshes&, const Req
     search_depth_first(encounter, {0, 0, 0.0F}, wanted, pair.hits, spending, result);
     return result;
   }
-  if (order == Method::incremental && !(request.budget.is_limited() && pair.slice.pauses())) {
+  if (order == Method::incremental) {
     result.method = Method::incremental;
     pair.slice.search(encounter, wanted, pair.hits, spending, result);
     remember_witness(pair);

@@ -33,7 +33,9 @@ inline void consider(SearchResult& result, const BucketQueue& queue) noexcept {
   queue.show_first(Shortlist::capacity, [&](const NodePair& pair) { result.shortlist.add(pair); });
 }
 
-/// Whether two pairs of volumes take longer than may pass between two looks at the clock.
+/// Whether a pair of volumes takes some microsecond to compare, not some hundredths of one: then the clock is read
+/// before each.
+constexpr bool are_pieces_long(volume::Kind kind) noexcept { return kind == volume::Kind::hull; }
 template <volume::BoundingVolume V>
 inline constexpr bool pieces_are_long = are_pieces_long(kind_of<V>);
 
@@ -70,7 +72,7 @@ void search_depth_first(const Encounter<V>& encounter, NodePair start, std::uint
     const auto children = encounter.children(pair.a, pair.b);
     spending.spend_node_pairs(2);
     if (encounter.volumes_overlap(children.second.a, children.second.b)) stack[size++] = children.second;
-    if (pieces_are_long<V> && !spending.may_begin_long_piece()) {
+    if (pieces_are_long<V> && !spending.may_go_on()) {
       stack[size++] = children.first;
       return stop(Progressed::spent);
     }
@@ -132,7 +134,7 @@ class TimeCriticalSearch {
     encounter_.prefetch(children.second);
     meet(children.first);
     if (finished_) return;
-    if (pieces_are_long<V> && !spending_.may_begin_long_piece()) {
+    if (pieces_are_long<V> && !spending_.may_go_on()) {
       consider(result_, {children.second.a, children.second.b, encounter_.rank(children.second.a, children.second.b)});
       return finish(Progressed::spent);
     }

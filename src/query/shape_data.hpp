@@ -37,9 +37,6 @@ inline constexpr volume::Kind kind_of = []<class... Tree>(std::type_identity<std
   return static_cast<volume::Kind>(found);
 }(std::type_identity<AnyTree>{});
 
-/// Whether a pair of volumes takes some microsecond to compare, not some hundredths of one.
-constexpr bool are_pieces_long(volume::Kind kind) noexcept { return kind == volume::Kind::hull; }
-
 struct Shape::Data {
   std::shared_ptr<const mesh::TriangleMesh> mesh;
   ShapeOptions options;

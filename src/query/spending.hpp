@@ -17,15 +17,13 @@ namespace odds::query {
 /// is asked after every piece of work that `pair` bounds (a node pair's children, one row of a leaf pair).
 class Spending {
  public:
-  /// What of the time is kept for what follows a search; of a short time no more than three tenths for any of it, but
-  /// `least_ending_ns`, and what is said below.
+  /// What of the time is kept for what follows a search; of a short time no more than `most_ending_ns`, and
+  /// `most_search_ending_ns` for the search.
   struct Kept {
-    /// The last piece of a search without a proof, and its answer: `cold_ending_ns` where that is less than 45 %.
-    std::int64_t search_ns = EndingReserves{}.search.ns();
-    std::int64_t contacts_ns = 0;      ///< contacts, once there is a hit to make them from
-    std::int64_t last_contact_ns = 0;  ///< a contact of a hit that comes last
-    /// A pair of volumes takes a microsecond: `search_ns` may be six tenths, and a microsecond of any time.
-    bool pieces_are_long = false;
+    std::int64_t search_ns = EndingReserves{}.search.ns();  ///< the last piece of one without a proof, and its answer
+    std::int64_t contacts_ns = 0;                           ///< contacts, once there is a hit to make them from
+    std::int64_t last_contact_ns = 0;                       ///< a contact of a hit that comes last
+    bool pieces_are_long = false;                           ///< a pair of volumes takes a microsecond
   };
   explicit Spending(const Budget& budget) noexcept : Spending(budget, Kept{}) {}
   Spending(const Budget& budget, const Kept& kept) noexcept
@@ -72,8 +70,6 @@ class Spending {
   }
   /// The same, but looks at the clock only when `units` were spent since the last look.
   [[nodiscard]] bool may_go_on_after(std::uint32_t units) noexcept { return unpolled_units_ < units || may_go_on(); }
-  /// As `may_go_on`, between two pieces that need no look at the clock between them unless they are long.
-  [[nodiscard]] bool may_begin_long_piece() noexcept { return !timed_ || may_go_on(); }
   /// Whether the last look at the clock found the search's end near: time to ask the caches for what the answer needs.
   [[nodiscard]] bool nears_end() const noexcept { return nears_end_; }
   /// A search that changes its manner after a start has up to these shares (< 1) of time and work for it, and these
@@ -150,9 +146,6 @@ class Spending {
   static constexpr std::int64_t short_ns = 50'000;
 
  private:
-  static constexpr std::int64_t long_piece_ns = 1'000;
-  /// The last piece and the answer of a pose that caches know nothing of; of a short time less than half.
-  static constexpr std::int64_t cold_ending_ns = 850;
   /// Some three pieces of work.
   static constexpr std::int64_t notice_ns = 400;
 
@@ -171,15 +164,19 @@ class Spending {
   /// Whoever had the processor had its caches too: what is still to come takes up to twice as long.
   [[nodiscard]] bool caches_are_cold() const noexcept { return ledger_.stalls() > 0; }
 
-  /// `cold`: as after a stall.
-  [[nodiscard]] std::int64_t kept_ns(std::int64_t ending_ns, bool cold) const noexcept {
-    return std::min((cold ? 2 : 1) * ending_ns, most_kept_ns());
+  [[nodiscard]] static std::int64_t kept_ns(std::int64_t ending_ns, std::int64_t most_ns, bool cold) noexcept {
+    return std::min((cold ? 2 : 1) * ending_ns, most_ns);
   }
   [[nodiscard]] std::int64_t kept_ns(std::int64_t ending_ns) const noexcept {
-    return kept_ns(ending_ns, caches_are_cold());
+    return kept_ns(ending_ns, most_ending_ns(), caches_are_cold());
+  }
+  /// What the first stall adds to what is kept.
+  [[nodiscard]] std::int64_t more_when_cold_ns(std::int64_t ending_ns) const noexcept {
+    return kept_ns(ending_ns, most_ending_ns(), true) - kept_ns(ending_ns, most_ending_ns(), false);
   }
   [[nodiscard]] std::int64_t search_kept_ns(bool cold) const noexcept;
-  [[nodiscard]] std::int64_t most_kept_ns() const noexcept {
+  [[nodiscard]] std::int64_t most_search_ending_ns() const noexcept;
+  [[nodiscard]] std::int64_t most_ending_ns() const noexcept {
     return std::max(least_ending_ns, allowance_ns() * 3 / 10);
   }
 
@@ -224,6 +221,7 @@ class Spending {
   std::int64_t contacts_deadline_ns_ = std::numeric_limits<std::int64_t>::max();
   std::int64_t last_moment_ns_ = std::numeric_limits<std::int64_t>::max();  ///< to begin to end in
   EndingReserve* contacts_reserve_ = nullptr;
+  bool contacts_wait_ = false;   ///< time is kept for them
   bool contacts_ended_ = false;  ///< they were told to be finished
   std::int64_t excused_ns_ = 0;
   realtime::StallLedger ledger_;

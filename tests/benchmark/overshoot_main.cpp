@@ -45,7 +45,7 @@ struct Settings {
   bool quality = false;       ///< also how far contacts point from where those of a query without a budget do
 };
 
-/// Fills the caches of one core with something else.
+/// Fills a core's own caches with something else, not one that cores share.
 class CacheEmptier {
  public:
   void run() noexcept {
@@ -63,6 +63,11 @@ struct Tally {
   std::size_t cases = 0;
   std::size_t half_us_at_p99 = 0;
   std::size_t one_us_at_p999 = 0;
+
+  void print(const std::string& of) const {
+    std::printf("  %s: p99 <= 0.5 us in %zu of %zu cases, p99.9 <= 1 us in %zu\n", of.c_str(), half_us_at_p99, cases,
+                one_us_at_p999);
+  }
 };
 
 class Poses {
@@ -107,7 +112,7 @@ double angle_between(const query::Answer& one, const query::Answer& other) {
 }
 
 void measure(const query::Shape& shape, query::Pair& pair, query::Pair* reference, const Course& course, int contacts,
-             double budget_us, const Settings& settings, Tally& tally) {
+             double budget_us, const Settings& settings, Tally& tally, Tally& total) {
   const std::size_t count = settings.count;
   pair.reset();
   if (reference != nullptr) reference->reset();
@@ -143,14 +148,18 @@ void measure(const query::Shape& shape, query::Pair& pair, query::Pair* referenc
     }
     made_of += static_cast<double>(answer.contact_pairs);
   }
-  ++tally.cases;
-  tally.half_us_at_p99 += quantile(net_us, 0.99) <= 0.5 ? 1U : 0U;
-  tally.one_us_at_p999 += quantile(net_us, 0.999) <= 1.0 ? 1U : 0U;
+  const double p99 = quantile(net_us, 0.99);
+  const double p999 = quantile(net_us, 0.999);
+  for (Tally* const each : {&tally, &total}) {
+    ++each->cases;
+    each->half_us_at_p99 += p99 <= 0.5 ? 1U : 0U;
+    each->one_us_at_p999 += p999 <= 1.0 ? 1U : 0U;
+  }
   const auto n = static_cast<double>(count);
   std::printf("  %-22s %8d %8g %8.2f %8.2f %8.2f %8.2f %9.2f %9.2f %8zu %8.2f %8.2f %8.1f %8.1f %8.1f %8.1f %8.1f\n",
-              course.name, contacts, budget_us, quantile(net_us, 0.5), quantile(net_us, 0.99), quantile(net_us, 0.999),
-              quantile(net_us, 1.0), quantile(gross_us, 0.999), quantile(own_us, 0.999), count - calm_us.size(),
-              quantile(calm_us, 0.99), quantile(calm_us, 0.999), 100.0 * static_cast<double>(hits) / n,
+              course.name, contacts, budget_us, quantile(net_us, 0.5), p99, p999, quantile(net_us, 1.0),
+              quantile(gross_us, 0.999), quantile(own_us, 0.999), count - calm_us.size(), quantile(calm_us, 0.99),
+              quantile(calm_us, 0.999), 100.0 * static_cast<double>(hits) / n,
               100.0 * static_cast<double>(whole) / std::max(1.0, static_cast<double>(hits)),
               100.0 * static_cast<double>(late) / std::max(1.0, static_cast<double>(hits)),
               made_of / std::max(1.0, static_cast<double>(hits)), quantile(unused_us, 0.5));
@@ -160,21 +169,14 @@ void measure(const query::Shape& shape, query::Pair& pair, query::Pair* referenc
   std::fflush(stdout);
 }
 
-std::shared_ptr<const query::Shape> shape_of(const std::string& name, const std::string& volume) {
-  auto mesh = name.starts_with("made:") ? mesh::made::make_shape(name) : mesh::read(name);
-  if (!mesh) {
-    std::fprintf(stderr, "%s\n", mesh.error().message().c_str());
-    return nullptr;
+bool measure_all(const std::string& name, const std::shared_ptr<const mesh::TriangleMesh>& mesh,
+                 const std::string& volume, const Settings& settings, Tally& total) {
+  const auto built = query::Shape::build(mesh, {.volume = volume::kind_from_name(volume).value()});
+  if (!built) {
+    std::fprintf(stderr, "%s\n", built.error().message().c_str());
+    return false;
   }
-  auto shape = query::Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(mesh).value()),
-                                   {.volume = volume::kind_from_name(volume).value()});
-  if (!shape) std::fprintf(stderr, "%s\n", shape.error().message().c_str());
-  return shape ? shape.value() : nullptr;
-}
-
-bool measure_all(const std::string& name, const std::string& volume, const Settings& settings) {
-  const auto shape = shape_of(name, volume);
-  if (!shape) return false;
+  const std::shared_ptr<const query::Shape>& shape = built.value();
   auto pair = std::move(query::Pair::make(shape, shape, {.late_contacts = settings.late})).value();
   auto reference = std::move(query::Pair::make(shape, shape)).value();
   std::printf(
@@ -188,21 +190,29 @@ bool measure_all(const std::string& name, const std::string& volume, const Setti
     if (std::string(course.name).find(settings.only) == std::string::npos) continue;
     for (const int contacts : settings.contacts) {
       for (const double budget_us : settings.budgets_us) {
-        measure(*shape, pair, settings.quality ? &reference : nullptr, course, contacts, budget_us, settings, tally);
+        measure(*shape, pair, settings.quality ? &reference : nullptr, course, contacts, budget_us, settings, tally,
+                total);
       }
     }
   }
-  std::printf("  %s, %s: p99 <= 0.5 us in %zu of %zu cases, p99.9 <= 1 us in %zu\n", name.c_str(), volume.c_str(),
-              tally.half_us_at_p99, tally.cases, tally.one_us_at_p999);
+  tally.print(name + ", " + volume);
   return true;
 }
 
 int run(const Settings& settings) {
+  Tally total;
   for (const std::string& name : settings.meshes) {
+    auto read = name.starts_with("made:") ? mesh::made::make_shape(name) : mesh::read(name);
+    if (!read) {
+      std::fprintf(stderr, "%s\n", read.error().message().c_str());
+      return 1;
+    }
+    const auto mesh = std::make_shared<const mesh::TriangleMesh>(std::move(read).value());
     for (const std::string& volume : settings.volumes) {
-      if (!measure_all(name, volume, settings)) return 1;
+      if (!measure_all(name, mesh, volume, settings, total)) return 1;
     }
   }
+  total.print("all");
   return 0;
 }
 
@@ -225,7 +235,8 @@ int main(int argc, char** argv) {
   app.add_option("--seed", settings.seed, "of the poses")->capture_default_str();
   app.add_option("--wait-us", settings.wait_us, "microseconds between two queries, in which caches grow cold")
       ->check(CLI::Range(0L, 1000000L));
-  app.add_flag("--empty-caches", settings.empty_caches, "fill the caches with something else between two queries");
+  app.add_flag("--empty-caches", settings.empty_caches,
+               "fill a core's own caches with something else between two queries");
   app.add_flag("--late", settings.late, "contacts may be made over several queries (Request::late_contacts)");
   app.add_flag("--quality", settings.quality, "also how far contacts point from those of a query without a budget");
   CLI11_PARSE(app, argc, argv);

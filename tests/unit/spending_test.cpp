@@ -150,6 +150,24 @@ TEST(Spending, AfterAStallASearchEndsEarlier) {
   EXPECT_FALSE(goes_on_at(2'000, true, 36'000));
 }
 
+// What the search would keep no longer counts once time is kept for contacts: here as much before a stall as after it.
+TEST(Spending, AStallIsExcusedFromWhereContactsHaveToEnd) {
+  realtime::ManualClock clock;
+  Budget budget = Budget::time(10.0);
+  budget.clock = clock.clock();
+  Spending spending(budget, {.search_ns = 3'000, .contacts_ns = 3'000, .pieces_are_long = true});
+  spending.keep_time_for_contacts();
+  clock.advance(6'000);  // another's, in time for contacts to end at 7 us
+  static_cast<void>(spending.left_us());
+  clock.advance(5'200);  // another's, of which 4.2 us are beyond that
+  static_cast<void>(spending.left_us());
+  for (int i = 0; i < 4; ++i) {
+    clock.advance(950);
+    static_cast<void>(spending.left_us());
+  }
+  EXPECT_NEAR(spending.close().net_overshoot_us, 5.0 - 4.2, 1e-9);
+}
+
 TEST(Spending, AnEndingWithAStallIsNotLearnt) {
   Query query(10.0);
   query.clock.advance(50'000);

@@ -44,12 +44,13 @@ inline constexpr double same_face = 0.9994;
 /// Sines of the angles from and to which a normal ceases to belong to a flat face (0.5 and 3 degrees).
 inline constexpr double flat_from = 0.0087;
 inline constexpr double flat_to = 0.0523;  ///< see flat_from
-/// A lump of a whole rim between flush faces is no higher than by this factor than the patch beside it is deep: it is
-/// as much higher as the faces are tilted, by some per cent. Test: FlushBricks.ThatLieInEachOtherPushUpwards.
+/// A lump of a whole rim between flush faces is no higher than by this factor than what lies beside it is deep, or is
+/// believed to be: it is as much higher as the faces are tilted, by some per cent.
+/// Test: FlushBricks.ThatLieInEachOtherPushUpwards.
 inline constexpr double flush_lump = 1.5;
-/// A whole rim has its own direction unless the one of the patch beside it is shorter by this factor: of a rod through
-/// a plate both ways out are as long. Test: ContactPatch.PreviousNormalBreaksTies.
-inline constexpr double shorter_way = 0.5;
+/// A whole rim has its own direction unless that of what lies beside it is a way out shorter by this factor: of a rod
+/// through a plate both are as long. Test: ContactPatch.PreviousNormalBreaksTies.
+inline constexpr double by_far_shorter = 0.5;
 /// Share of the rim on one flat face from and to which the patch's normal becomes that face's.
 /// Test: ContactPatch.BoxOverALedgeKeepsTheFaceNormal.
 inline constexpr double snap_from = 0.7;

@@ -63,7 +63,7 @@ struct PatchInput {
   const Vec3* known_normal = nullptr;
   /// Where the hits are a part of all pairs: how deep the bodies are believed to be in each other, metres. What is left
   /// of a rim, and no deeper than that along the known normal, or that on which most of the rim agrees, has that
-  /// direction. 0: the hits are all.
+  /// direction. 0: the hits are all, and what else there is of the rim says how deep.
   double believed_depth = 0.0;
   std::uint32_t most_pairs = 65536;  ///< of the hits; of more, a sample is taken that is spread over all
   int max_contacts = 4;              ///< 1 .. most_contacts (clamped)
