@@ -136,11 +136,13 @@ inline constexpr double resting_motion = 1e-5;
 /// Of the smaller body's size: contacts that are late (Request::late_contacts) are carried along while bodies move
 /// by less. Test: LateManifold.FollowsTheBodies.
 inline constexpr double late_motion = 0.02;
-/// The same: one of them that has come apart by no more is kept for when it touches again; and across its normal.
-/// Of 72 starved stacks (`odds_ode_scenes --only stacks --budgets 5,10,20 --bricks 2,5 --gaps 0.1`) four more stand
-/// with this gap than with 2e-3. Test: LateManifold.ForgetsWhatHasGone.
-inline constexpr double late_gap = 5e-3;
-inline constexpr double late_slip = 5e-3;
+/// The same: one of them that has come apart by no more is kept for when it touches again; and across its normal. What
+/// rocks by two degrees lifts an edge by a hundredth: of 144 starved stacks (`odds_ode_scenes --only stacks --ours
+/// --budgets 5 --bricks 5,10 --gaps 0,0.1,0.5 --seconds 3`) a quarter of these let four fall that rocked higher and
+/// higher on ground that they did not find again in time. Tests: LateManifold.ForgetsWhatHasGone,
+/// LateManifold.AnEdgeThatRocksIsFoundAgain.
+inline constexpr double late_gap = 2e-2;
+inline constexpr double late_slip = 1e-2;
 /// The same: late contacts of a short budget are those of bodies that are pressed together by this: what is about to
 /// touch while a question is being answered is among them. Test: ShortBudget.KnowsWhatIsAboutToTouch.
 inline constexpr double late_press = 1e-3;
@@ -149,11 +151,14 @@ inline constexpr double late_press = 1e-3;
 inline constexpr double late_still = 2e-4;
 /// The same: contacts nearer to each other are one. Test: LateManifold.ASuccessorGivesWhatItsPredecessorGave.
 inline constexpr double late_spacing = 0.05;
-/// Of the smaller body's size, a run: how fast a depth is given that a late contact has at first, and so how fast at
-/// most it pushes bodies apart. With 1e-4 one stack that fell had won 129 J, for 15 at most.
-/// Test: LateManifold.GivesADepthNoFasterThanItsRate, LateManifold.PushesApartNoFasterThanItsRate,
+/// Of the smaller body's size: of a late contact's depth so much is given at once.
+/// Test: ShortBudget.GivesTheWholeDepthInTheEnd.
+inline constexpr double late_least = 3e-5;
+/// The same, a run: how fast the rest is given, and so how fast at most it pushes bodies apart. What they lost when
+/// they sank in they win back then: the stacks above won 0.8 J less in the mean than with three times both.
+/// Tests: LateManifold.GivesADepthNoFasterThanItsRate, LateManifold.PushesApartNoFasterThanItsRate,
 /// ShortBudget.GivesTheWholeDepthInTheEnd.
-inline constexpr double late_rise = 2e-5;
+inline constexpr double late_rise = 6e-6;
 /// Cosine below which a surface is a wall, whose slope tells nothing of where an overlap gets deeper.
 inline constexpr double steep = 0.05;
 /// An overlap that changes by less than this part of itself across the patch is level.
