@@ -62,7 +62,7 @@ void LateContacts::age(const math::Pose& pose_b_in_a, double size) noexcept {
   guesses_ = false;
   pose_last_ = pose_now_;
   pose_now_ = pose_b_in_a;
-  manifold_.age(pose_b_in_a, size, tolerances::late_least * size);
+  manifold_.age(pose_b_in_a, size);
 }
 
 std::span<const TrianglePair> LateContacts::hits() const noexcept {
@@ -163,7 +163,7 @@ bool LateContacts::work(const math::Pose& pose_b_in_a, const Request& request, P
   too_many_ = worker_->hits.size() == worker_->hits.capacity();
   if (too_many_) return false;
   if (!parted_) copy_what_is_known(*worker_, pair);
-  manifold_.keep(answer.contacts, pose_, pose_b_in_a, size, tolerances::late_least * size, answer.contact_pairs);
+  manifold_.keep(answer.contacts, pose_, pose_b_in_a, size, answer.contact_pairs);
   if (!pressed_ && manifold_.gives_all(pose_b_in_a)) {
     if (quick_ >= enough_quick) is_wanted_ = false;
     pair.carried = worker_->carried;

@@ -24,14 +24,14 @@ class LateManifold {
   void forget() noexcept { count_ = 0; }
 
   /// All contacts that there are at `pose`, of B's mesh frame in A's, deepest first, and how many pairs of triangles
-  /// they were made from. `pose_now`: that of this run. `least`: a depth that is given at once, metres.
+  /// they were made from. `pose_now`: that of this run.
   void keep(std::span<const Contact> contacts, const math::Pose& pose, const math::Pose& pose_now, double size,
-            double least, std::uint32_t made_from) noexcept {
+            std::uint32_t made_from) noexcept {
     std::size_t kept = std::min<std::size_t>(contacts.size(), most_contacts);
     std::array<Entry, most> now;
     for (std::size_t i = 0; i < kept; ++i) {
       now[i].held = HeldContact(contacts[i], pose);
-      double given = least;
+      double given = tolerances::late_least * size;
       for (std::size_t k = 0; k < count_; ++k) {
         if (held_[k].holds && is_same(held_[k].held, now[i].held, size)) given = std::max(given, held_[k].given);
       }
@@ -60,7 +60,8 @@ class LateManifold {
   /// A run begins, at `pose`. What the bodies have come deeper where a contact held them is given at once: they did so
   /// against its push. Where they part faster than a depth is given, less is: what a solver makes of a depth, a speed,
   /// is energy that nobody put in.
-  void age(const math::Pose& pose, double size, double least) noexcept {
+  void age(const math::Pose& pose, double size) noexcept {
+    const double least = tolerances::late_least * size;
     for (Entry& entry : std::span(held_).first(count_)) {
       const double depth = std::max(entry.held.parted(pose).depth, 0.0);
       const double deeper = entry.holds ? std::max(depth - entry.depth, 0.0) : 0.0;

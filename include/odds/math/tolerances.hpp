@@ -136,13 +136,12 @@ inline constexpr double resting_motion = 1e-5;
 /// Of the smaller body's size: contacts that are late (Request::late_contacts) are carried along while bodies move
 /// by less. Test: LateManifold.FollowsTheBodies.
 inline constexpr double late_motion = 0.02;
-/// The same: one of them that has come apart by no more is kept for when it touches again; and across its normal. What
-/// rocks by two degrees lifts an edge by a hundredth: of 144 starved stacks (`odds_ode_scenes --only stacks --ours
-/// --budgets 5 --bricks 5,10 --gaps 0,0.1,0.5 --seconds 3`) a quarter of these let four fall that rocked higher and
-/// higher on ground that they did not find again in time. Tests: LateManifold.ForgetsWhatHasGone,
-/// LateManifold.AnEdgeThatRocksIsFoundAgain.
-inline constexpr double late_gap = 2e-2;
-inline constexpr double late_slip = 1e-2;
+/// The same: one of them that has come apart by no more is kept for when it touches again; and across its normal. With
+/// 2e-2 and 1e-2 an edge that rocks by two degrees is found again without a patch, but bodies that land are held in the
+/// wrong places: of 528 starved stacks (`odds_ode_scenes --only stacks --ours --budgets 5,7`, 3 to 10 bricks) 6 fell,
+/// none with these. Test: LateManifold.ForgetsWhatHasGone.
+inline constexpr double late_gap = 5e-3;
+inline constexpr double late_slip = 5e-3;
 /// The same: late contacts of a short budget are those of bodies that are pressed together by this: what is about to
 /// touch while a question is being answered is among them. Test: ShortBudget.KnowsWhatIsAboutToTouch.
 inline constexpr double late_press = 1e-3;
@@ -151,13 +150,12 @@ inline constexpr double late_press = 1e-3;
 inline constexpr double late_still = 2e-4;
 /// The same: contacts nearer to each other are one. Test: LateManifold.ASuccessorGivesWhatItsPredecessorGave.
 inline constexpr double late_spacing = 0.05;
-/// Of the smaller body's size: of a late contact's depth so much is given at once.
-/// Test: ShortBudget.GivesTheWholeDepthInTheEnd.
+/// Of the smaller body's size: of a late contact's depth so much is given at once. Test: LateManifold.PushesGently.
 inline constexpr double late_least = 3e-5;
 /// The same, a run: how fast the rest is given, and so how fast at most it pushes bodies apart. What they lost when
-/// they sank in they win back then: the stacks above won 0.8 J less in the mean than with three times both.
-/// Tests: LateManifold.GivesADepthNoFasterThanItsRate, LateManifold.PushesApartNoFasterThanItsRate,
-/// ShortBudget.GivesTheWholeDepthInTheEnd.
+/// they sank in they win back then, and a stack that rocks wins more each time: with three times both 4 of 192 such
+/// stacks fell. Tests: LateManifold.PushesGently, LateManifold.GivesADepthNoFasterThanItsRate,
+/// LateManifold.PushesApartNoFasterThanItsRate.
 inline constexpr double late_rise = 6e-6;
 /// Cosine below which a surface is a wall, whose slope tells nothing of where an overlap gets deeper.
 inline constexpr double steep = 0.05;
