@@ -64,6 +64,16 @@ struct Tally {
   std::size_t half_us_at_p99 = 0;
   std::size_t one_us_at_p999 = 0;
 
+  void add(double p99_us, double p999_us) noexcept {
+    ++cases;
+    half_us_at_p99 += p99_us <= 0.5 ? 1U : 0U;
+    one_us_at_p999 += p999_us <= 1.0 ? 1U : 0U;
+  }
+  void add(const Tally& other) noexcept {
+    cases += other.cases;
+    half_us_at_p99 += other.half_us_at_p99;
+    one_us_at_p999 += other.one_us_at_p999;
+  }
   void print(const std::string& of) const {
     std::printf("  %s: p99 <= 0.5 us in %zu of %zu cases, p99.9 <= 1 us in %zu\n", of.c_str(), half_us_at_p99, cases,
                 one_us_at_p999);
@@ -112,7 +122,7 @@ double angle_between(const query::Answer& one, const query::Answer& other) {
 }
 
 void measure(const query::Shape& shape, query::Pair& pair, query::Pair* reference, const Course& course, int contacts,
-             double budget_us, const Settings& settings, Tally& tally, Tally& total) {
+             double budget_us, const Settings& settings, Tally& tally) {
   const std::size_t count = settings.count;
   pair.reset();
   if (reference != nullptr) reference->reset();
@@ -150,11 +160,7 @@ void measure(const query::Shape& shape, query::Pair& pair, query::Pair* referenc
   }
   const double p99 = quantile(net_us, 0.99);
   const double p999 = quantile(net_us, 0.999);
-  for (Tally* const each : {&tally, &total}) {
-    ++each->cases;
-    each->half_us_at_p99 += p99 <= 0.5 ? 1U : 0U;
-    each->one_us_at_p999 += p999 <= 1.0 ? 1U : 0U;
-  }
+  tally.add(p99, p999);
   const auto n = static_cast<double>(count);
   std::printf("  %-22s %8d %8g %8.2f %8.2f %8.2f %8.2f %9.2f %9.2f %8zu %8.2f %8.2f %8.1f %8.1f %8.1f %8.1f %8.1f\n",
               course.name, contacts, budget_us, quantile(net_us, 0.5), p99, p999, quantile(net_us, 1.0),
@@ -190,12 +196,12 @@ bool measure_all(const std::string& name, const std::shared_ptr<const mesh::Tria
     if (std::string(course.name).find(settings.only) == std::string::npos) continue;
     for (const int contacts : settings.contacts) {
       for (const double budget_us : settings.budgets_us) {
-        measure(*shape, pair, settings.quality ? &reference : nullptr, course, contacts, budget_us, settings, tally,
-                total);
+        measure(*shape, pair, settings.quality ? &reference : nullptr, course, contacts, budget_us, settings, tally);
       }
     }
   }
   tally.print(name + ", " + volume);
+  total.add(tally);
   return true;
 }
 

@@ -167,7 +167,7 @@ TEST(LateManifold, GivesWhatIsPressedInAgainstItAtOnce) {
 TEST(LateManifold, ASuccessorGivesWhatItsPredecessorGave) {
   LateManifold manifold;
   manifold.keep(std::vector{contact_at(0.0, 0.0, 1e-3)}, {}, {}, size, 12);
-  for (int i = 0; i < 30; ++i) {
+  for (int i = 0; i < 50; ++i) {
     manifold.age({}, size);
     static_cast<void>(written(manifold, {}));
   }
