@@ -57,12 +57,13 @@ std::string verdict(const RunInfo& info, const RunSummary& s) {
         duration(ns_at(s.tick, 50.0)), duration(ns_at(s.tick, 99.9)), duration(static_cast<double>(s.tick.max())));
   if (s.ticks_with_query > 0) {
     const auto of = static_cast<double>(s.ticks_with_query);
-    text += fmt::format(
-        "{} of the ticks with a query were proved; in the others the answer is the likelier one, with its "
-        "probability. Queries took {} at the 99.9th percentile, {}.",
-        percent(static_cast<double>(s.by_basis[0]) / of),
-        duration(ns_at(info.simulated_time ? s.query_gross : s.query_net, 99.9)),
-        info.simulated_time ? "with the machine's stalls" : "net of stalls");
+    text += fmt::format("{} of the ticks with a query were proved{}. Queries took {} at the 99.9th percentile, {}.",
+                        percent(static_cast<double>(s.by_basis[0]) / of),
+                        s.by_basis[0] < s.ticks_with_query
+                            ? "; in the others the answer is the likelier one, with its probability"
+                            : "",
+                        duration(ns_at(info.simulated_time ? s.query_gross : s.query_net, 99.9)),
+                        info.simulated_time ? "with the machine's stalls" : "net of stalls");
   }
   return fmt::format("<div class=\"verdict {}\"><strong>{}</strong><span>{}</span></div>\n", colour, words, text);
 }

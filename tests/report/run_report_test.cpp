@@ -326,6 +326,14 @@ TEST_F(RunReport, repeats_the_warnings_of_the_program) {
   EXPECT_EQ(json["warnings"], nlohmann::json(made.info.warnings));
 }
 
+TEST_F(RunReport, page_speaks_of_answers_without_proof_where_there_are_some) {
+  MadeRecording made = made_recording(10.0);
+  constexpr const char* others = "in the others the answer is the likelier one";
+  EXPECT_NE(text_of(write(made).page).find(others), std::string::npos);
+  for (haptics::TickRecord& tick : made.ticks) tick.basis = query::Basis::proved;
+  EXPECT_EQ(text_of(write(made).page).find(others), std::string::npos);
+}
+
 TEST(Texts, times_that_no_clock_shows_are_unknown) {
   EXPECT_EQ(utc_time(0.0), "1970-01-01 00:00:00 UTC");
   EXPECT_EQ(utc_time(1714564800.5), "2024-05-01 12:00:00 UTC");
