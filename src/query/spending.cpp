@@ -14,13 +14,13 @@ void Spending::keep_time_for_contacts() noexcept {
   search_deadline_ns_ = std::min({search_deadline_ns_, start_ns_ + share_ns, last_moment_ns_});
 }
 
-// Of poses that nothing led to the last piece and the answer take up to a microsecond, for caches know nothing of them.
+// Of poses that nothing led to the last piece and the answer take up to 1.5 us, for caches know nothing of them.
 std::int64_t Spending::most_search_ending_ns() const noexcept {
   constexpr std::int64_t long_piece_ns = 1'000;
-  constexpr std::int64_t unforeseen_ns = 850;
+  constexpr std::int64_t unforeseen_ns = 1'200;
   const std::int64_t ns = allowance_ns();
   return kept_.pieces_are_long ? std::max(std::min(long_piece_ns, ns), ns * 6 / 10)
-                               : std::max(most_ending_ns(), std::min(unforeseen_ns, ns * 45 / 100));
+                               : std::max(most_ending_ns(), std::min(unforeseen_ns, ns * 6 / 10));
 }
 
 std::int64_t Spending::search_kept_ns(bool cold) const noexcept {

@@ -72,17 +72,13 @@ class Spending {
   [[nodiscard]] bool may_go_on_after(std::uint32_t units) noexcept { return unpolled_units_ < units || may_go_on(); }
   /// Whether the last look at the clock found the search's end near: time to ask the caches for what the answer needs.
   [[nodiscard]] bool nears_end() const noexcept { return nears_end_; }
-  /// A search that changes its manner after a start has up to these shares (< 1) of time and work for it, and these
-  /// units.
-  void begin_start(double time_share, double work_share, std::uint64_t most_units) noexcept {
+  /// A search that changes its manner after a start has up to these shares (< 1) of time and work for it.
+  void begin_start(double time_share, double work_share) noexcept {
     const auto of_budget = static_cast<std::uint64_t>(work_share * static_cast<double>(units_left_));
-    start_units_end_ = units_left_ - std::min(std::min(of_budget, most_units), units_left_);
+    start_units_end_ = units_left_ - std::min(of_budget, units_left_);
     if (timed_) {
       start_deadline_ns_ = start_ns_ + static_cast<std::int64_t>(time_share * static_cast<double>(allowance_ns()));
     }
-  }
-  [[nodiscard]] std::uint64_t start_units_left() const noexcept {
-    return units_left_ - std::min(units_left_, start_units_end_);
   }
   [[nodiscard]] bool start_may_go_on_after(std::uint32_t units) noexcept {
     if (units_left_ <= start_units_end_) return false;

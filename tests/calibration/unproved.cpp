@@ -1,5 +1,6 @@
 #include "calibration/unproved.hpp"
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <type_traits>
@@ -108,6 +109,10 @@ Result<std::vector<std::vector<Unproved>>> unproved_answers(const Meeting& meeti
       query::Request request;
       request.estimator = asked.ways[way].estimator;
       request.method = asked.ways[way].method;
+      if (request.method == query::Method::time_critical) {  // as where pairs are counted, but no count ends it
+        request.p_min = 1.0 - 1e-9;
+        request.k_min = std::numeric_limits<std::uint32_t>::max();
+      }
       for (const std::uint64_t units : asked.units) {
         request.budget = query::Budget::work(units);
         const auto remains = search(*shapes[0], *shapes[1], pose, request, memory);

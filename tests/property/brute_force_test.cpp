@@ -1,6 +1,8 @@
 // Searches against every triangle with every triangle: other places, scales, orders of arguments and of triangles.
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "odds/query/pair.hpp"
 #include "support/all_kinds.hpp"
 #include "support/brute_force.hpp"
@@ -10,7 +12,11 @@
 namespace odds::query {
 namespace {
 
-constexpr Method methods[] = {Method::exact, Method::time_critical, Method::incremental};
+/// All orders of search. The last is that of searches that count likely pairs; here no count ends one.
+constexpr Request requests[] = {{.method = Method::exact},
+                                {.method = Method::time_critical},
+                                {.method = Method::incremental},
+                                {.p_min = 1.0 - 1e-9, .k_min = std::numeric_limits<std::uint32_t>::max()}};
 
 using Mesh = std::shared_ptr<const mesh::TriangleMesh>;
 
@@ -52,9 +58,9 @@ TEST_P(AgainstBruteForce, AgreesInEveryBandAndBothOrders) {
       const bool expected = testing::brute_force(*a_, *b_, pose);
       ++queries;
       hits += expected ? 1 : 0;
-      for (const Method method : methods) {
-        ASSERT_EQ(ab.run(pose, {.method = method}).verdict == Verdict::hit, expected) << i << " " << band;
-        ASSERT_EQ(ba.run(pose.inverse(), {.method = method}).verdict == Verdict::hit, expected) << i << " " << band;
+      for (const Request& request : requests) {
+        ASSERT_EQ(ab.run(pose, request).verdict == Verdict::hit, expected) << i << " " << band;
+        ASSERT_EQ(ba.run(pose.inverse(), request).verdict == Verdict::hit, expected) << i << " " << band;
       }
     }
   }
@@ -74,8 +80,8 @@ TEST_P(AgainstBruteForce, NothingChangesWithScaleOrOrderOfTriangles) {
         pose.translation += band * start.direction;
         const bool expected = testing::brute_force(*a_, *b_, pose);
         pose.translation *= scale;
-        for (const Method method : methods) {
-          ASSERT_EQ(pair.run(pose, {.method = method}).verdict == Verdict::hit, expected) << scale << " " << band;
+        for (const Request& request : requests) {
+          ASSERT_EQ(pair.run(pose, request).verdict == Verdict::hit, expected) << scale << " " << band;
         }
       }
     }
@@ -96,8 +102,8 @@ TEST_P(AgainstBruteForce, NoContactIsMissedFarFromTheOrigin) {
       pose.translation += band * start.direction;
       const bool expected = testing::brute_force(*a_, *b_, pose);
       pose.translation += offset_a - pose.rotation * offset_b;
-      for (const Method method : methods) {
-        ASSERT_EQ(pair.run(pose, {.method = method}).verdict == Verdict::hit, expected) << i << " " << band;
+      for (const Request& request : requests) {
+        ASSERT_EQ(pair.run(pose, request).verdict == Verdict::hit, expected) << i << " " << band;
       }
     }
   }

@@ -279,6 +279,27 @@ TEST(Pair, AnIncrementalRunWithoutTimeIsNotSureOfAnything) {
   }
 }
 
+// A queue proves less in the same time; it is for requests that count likely pairs.
+TEST(Pair, IsSearchedInExactsOrderWhereOnlyAProofEndsIt) {
+  const auto shape = Shape::build(testing::wavy_sphere(24)).value();
+  auto pair = std::move(Pair::make(shape, shape)).value();
+  const math::Pose overlapping{Mat3::Identity(), {1.2, 0.3, 0.1}};
+  int undecided = 0;
+  int in_another_order = 0;
+  for (const std::uint64_t units : {8, 16, 24, 32, 48, 64}) {
+    const Answer exact = pair.run(overlapping, {.method = Method::exact, .budget = Budget::work(units)});
+    const Answer usual = pair.run(overlapping, {.budget = Budget::work(units)});
+    EXPECT_EQ(usual.basis, exact.basis) << units << " units";
+    EXPECT_EQ(usual.probability, exact.probability) << units << " units";
+    EXPECT_EQ(usual.cell_pair.position, exact.cell_pair.position) << units << " units";
+    const Answer counting = pair.run(overlapping, {.budget = Budget::work(units), .p_min = 1.0 - 1e-9});
+    undecided += exact.basis == Basis::proved ? 0 : 1;
+    in_another_order += counting.cell_pair.position == exact.cell_pair.position ? 0 : 1;
+  }
+  EXPECT_GE(undecided, 3);
+  EXPECT_GE(in_another_order, 1);
+}
+
 TEST(Pair, SaysAQuickEstimatedHitOnlyIfAsked) {
   const auto shape = Shape::build(testing::wavy_sphere(24));
   auto pair = std::move(Pair::make(shape.value(), shape.value())).value();

@@ -7,7 +7,8 @@ namespace odds::query {
 namespace {
 
 struct Query {
-  explicit Query(double budget_us) : spending(budget(budget_us), {.search_ns = 600}) {}
+  explicit Query(double budget_us, std::int64_t search_ns = 600)
+      : spending(budget(budget_us), {.search_ns = search_ns}) {}
   Budget budget(double us) {
     Budget made = Budget::time(us);
     made.clock = clock.clock();
@@ -37,17 +38,33 @@ TEST(Spending, ContactsAreMadeInHasteBeforeTheyAreFinished) {
   EXPECT_FALSE(query.spending.may_finish_contacts());
 }
 
+TEST(Spending, ASearchLeavesToItsEndingWhatItNeedsOrAShareOfAShortTime) {
+  constexpr std::int64_t long_ending_ns = 5'000;
+  const auto searched_ns = [](double budget_us) {
+    Query query(budget_us, long_ending_ns);
+    std::int64_t ns = 0;
+    for (; query.spending.may_go_on(); ns += 50) query.clock.advance(50);
+    return ns;
+  };
+  EXPECT_EQ(searched_ns(1.0), 400);
+  EXPECT_EQ(searched_ns(1.5), 600);
+  EXPECT_EQ(searched_ns(2.0), 800);
+  EXPECT_EQ(searched_ns(3.0), 1'800);
+  EXPECT_EQ(searched_ns(10.0), 7'000);
+  EXPECT_EQ(searched_ns(100.0), 95'000);
+}
+
 TEST(Spending, AStartEndsNoLaterThanItsSearch) {
   // Of a microsecond the answer needs 0.6, which is less than the start's share leaves of it.
   Query query(1.0);
-  query.spending.begin_start(0.6, 0.6, 4096);
+  query.spending.begin_start(0.6, 0.6);
   query.clock.advance(300);
   EXPECT_TRUE(query.spending.start_may_go_on_after(0));
   query.clock.advance(150);
   EXPECT_FALSE(query.spending.start_may_go_on_after(0));
   EXPECT_FALSE(query.spending.may_go_on());
   Query longer(10.0);
-  longer.spending.begin_start(0.6, 0.6, 4096);
+  longer.spending.begin_start(0.6, 0.6);
   longer.clock.advance(5'900);
   EXPECT_TRUE(longer.spending.start_may_go_on_after(0));
   longer.clock.advance(200);

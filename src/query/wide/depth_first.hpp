@@ -15,16 +15,14 @@ namespace odds::query::wide {
 /// Where one hit is enough and no budget may end the search, six pairs are opened at a time, as they come. If
 /// `ordered`, where a budget may end it or several hits are kept, two, the deepest overlap first: it is where a hit is
 /// found soonest.
-///
-/// As the start of another search (`ranked`) it ends early, keeps the ranks of what is open, and leaves it to that.
-template <class L, bool ranked = false, bool ordered = true>
+template <class L, bool ordered = true>
 class DepthFirst {
  public:
   static void run(Task& task, Slot start_a, Slot start_b) noexcept {
     if (task.wanted > 1 || task.request.budget.is_limited()) {
       DepthFirst<L>(task).run(start_a, start_b);
     } else {
-      DepthFirst<L, false, false>(task).run(start_a, start_b);
+      DepthFirst<L, false>(task).run(start_a, start_b);
     }
   }
 
@@ -35,22 +33,15 @@ class DepthFirst {
         hits_(task.hits.size()),
         spreads_(task.wanted > 1 && task.request.budget.is_limited()) {}
 
-  [[nodiscard]] const OpenPairs& open() const noexcept { return open_; }
-  [[nodiscard]] const SlotPairs& leaf_pairs() const noexcept { return leaf_pairs_; }
-
   void run(Slot start_a, Slot start_b) noexcept {
     if (met_.are_leaves(start_a, start_b)) {
       leaf_pairs_.of[0][0] = start_a;
       leaf_pairs_.of[1][0] = start_b;
       leaf_pairs_.size = 1;
     } else {
-      if constexpr (ranked) open_.ranks[0] = 0.0F;
       open_.add(met_, {{start_a, start_b}});
     }
     while (open_.size != 0 || leaf_pairs_.size != 0) {
-      if constexpr (ranked) {
-        if (!task_.spending.start_may_go_on_after(units_between_polls)) return;
-      }
       if (leaf_pairs_.size != 0) {
         if (!visit_leaf_pairs()) return;
         if (spreads_) go_elsewhere();
@@ -64,14 +55,12 @@ class DepthFirst {
 
  private:
   void open_newest() noexcept {
-    std::uint64_t units = task_.spending.units_left();
-    if constexpr (ranked) units = std::min(units, task_.spending.start_units_left());
-    const std::size_t allowed = std::max<std::size_t>(1, units / wide_lanes);
+    const std::size_t allowed = std::max<std::size_t>(1, task_.spending.units_left() / wide_lanes);
     const std::size_t most = open_.size <= crowded ? std::min(at_once, allowed) : 1;
     const auto count = static_cast<std::uint32_t>(std::min(open_.size, most));
     open_.size -= count;
     task_.spending.spend_node_pairs(count * wide_lanes);
-    opener_.template run<ranked, ordered>(count, open_, leaf_pairs_);
+    opener_.template run<ordered>(count, open_, leaf_pairs_);
   }
 
   /// After a hit, to an open pair that follows no order. Not while crowded: what bounds the room is that then the
@@ -79,7 +68,7 @@ class DepthFirst {
   void go_elsewhere() noexcept {
     if (task_.hits.size() == hits_ || open_.size < 2 || open_.size > crowded) return;
     hits_ = task_.hits.size();
-    open_.bring_up<ranked>(elsewhere(hits_, open_.size - 1));
+    open_.bring_up(elsewhere(hits_, open_.size - 1));
   }
 
   bool visit_leaf_pairs() noexcept {
@@ -124,7 +113,7 @@ class DepthFirst {
     }
     for (std::size_t i = open_.size; i-- != 0 && open_.size - i <= most_ranked;) {
       const SlotPair pair = open_.pair(i);
-      leave_open<L>(task_, {pair.of[0], pair.of[1], ranked ? open_.ranks[i] : unranked});
+      leave_open<L>(task_, {pair.of[0], pair.of[1], unranked});
     }
     task_.result.open = open;
   }
@@ -143,8 +132,7 @@ class DepthFirst {
   bool spreads_;
   LaneAddress open_lanes_[2][capacity];
   Slot leaf_slots_[2][(at_once + 1) * wide_lanes];
-  float ranks_[ranked ? capacity : 1];
-  OpenPairs open_{open_lanes_[0], open_lanes_[1], ranks_};
+  OpenPairs open_{open_lanes_[0], open_lanes_[1]};
   SlotPairs leaf_pairs_{{leaf_slots_[0], leaf_slots_[1]}};
 };
 

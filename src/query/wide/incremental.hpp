@@ -76,7 +76,7 @@ class Incremental {
     if (count == 0) return true;
     constexpr double time_share = 0.375;  // of which contacts leave half to the search
     constexpr double work_share = 0.75;
-    task_.spending.begin_start(time_share, work_share, std::numeric_limits<std::uint64_t>::max());
+    task_.spending.begin_start(time_share, work_share);
     const auto step = static_cast<std::uint32_t>(spread_step(count));
     std::uint32_t i = front_.next_crossing() % count;
     for (std::uint32_t k = 0; k < count; ++k, i = (i + step) % count) {

@@ -44,12 +44,6 @@ struct WritesInOrder {
       *to++ = (counted >> lane & 1U) != 0 ? first + lane : other;
     }
   }
-  template <class Float>
-  ODDS_LANES_INLINE static void write_some(float* to, const Float& a, unsigned mask) noexcept {
-    alignas(32) float lanes[8];
-    L::store(lanes, a);
-    for (int i = 0; i < 8; ++i) to[i] = lanes[lane_order.of[mask][i]];
-  }
   ODDS_LANES_INLINE static void write_all(std::uint32_t* to, std::uint32_t value) noexcept {
     for (int i = 0; i < 8; ++i) to[i] = value;
   }
@@ -98,11 +92,6 @@ struct Avx2 {
     const __m256i all = _mm256_blendv_epi8(_mm256_set1_epi32(static_cast<int>(other)), counts, is_counted);
     const __m128i packed = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(lane_order.of[mask]));
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_permutevar8x32_epi32(all, _mm256_cvtepu8_epi32(packed)));
-  }
-  /// Writes the lanes of the mask, in order, to `to`, and anything to the rest of to[0 .. 8).
-  ODDS_LANES_INLINE static void write_some(float* to, Float a, unsigned mask) noexcept {
-    const __m128i packed = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(lane_order.of[mask]));
-    _mm256_storeu_ps(to, _mm256_permutevar8x32_ps(a.v, _mm256_cvtepu8_epi32(packed)));
   }
   ODDS_LANES_INLINE static void write_all(std::uint32_t* to, std::uint32_t value) noexcept {
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_set1_epi32(static_cast<int>(value)));

@@ -26,7 +26,6 @@ struct OpenPairs {
 
   LaneAddress* opened;  ///< the slot that is opened, and whose it is
   LaneAddress* other;   ///< what its node's lanes are compared with, of the other side
-  float* ranks;         ///< of each pair, if they are wanted
   std::size_t size = 0;
 
   [[nodiscard]] ODDS_LANES_INLINE SlotPair pair(std::size_t index) const noexcept {
@@ -44,11 +43,9 @@ struct OpenPairs {
     ++size;
   }
   /// Brings another pair to where the next one is taken from.
-  template <bool ranked>
   ODDS_LANES_INLINE void bring_up(std::size_t index) noexcept {
     std::swap(opened[index], opened[size - 1]);
     std::swap(other[index], other[size - 1]);
-    if constexpr (ranked) std::swap(ranks[index], ranks[size - 1]);
   }
 };
 
@@ -89,7 +86,7 @@ class Opener {
 
   /// Opens the `count` pairs, at most `most`, that were taken from the end of `open` last. If `ordered` the deepest
   /// overlap of each is added after its others; else as the lanes come, which is faster.
-  template <bool ranked, bool ordered>
+  template <bool ordered>
   ODDS_LANES_INLINE void run(std::uint32_t count, OpenPairs& open, SlotPairs& leaf_pairs) const noexcept {
     LaneAddress opened[most];
     LaneAddress other[most];
@@ -97,13 +94,13 @@ class Opener {
       opened[k] = open.opened[open.size + k];
       other[k] = open.other[open.size + k];
     }
-    for (std::uint32_t k = 0; k < count; ++k) run<ranked, ordered>({met_, opened[k], other[k]}, open, leaf_pairs);
+    for (std::uint32_t k = 0; k < count; ++k) run<ordered>({met_, opened[k], other[k]}, open, leaf_pairs);
   }
 
   static constexpr std::uint32_t most = 6;
 
  private:
-  template <bool ranked, bool ordered>
+  template <bool ordered>
   ODDS_LANES_INLINE void run(const Opened& opened, OpenPairs& open, SlotPairs& leaf_pairs) const noexcept {
     using One = OnePair<L, TurnLanes<L>>;
     using F = typename L::Float;
@@ -128,7 +125,6 @@ class Opener {
       L::write_either(open.opened + open.size, opened.first | mark, opened.other | (mark ^ OpenPairs::of_b), lanes,
                       opens_lane);
       L::write_either(open.other + open.size, opened.first, opened.other, lanes, ~opens_lane);
-      if constexpr (ranked) L::write_some(open.ranks + open.size, ranks<One>(node, box, gap), lanes);
       open.size += static_cast<std::size_t>(std::popcount(lanes));
     };
     const unsigned inner = overlapping & ~both_leaves;
@@ -153,7 +149,7 @@ class Opener<lanes::Avx512> {
     }
   }
 
-  template <bool ranked, bool ordered>
+  template <bool ordered>
   ODDS_LANES_INLINE void run(std::uint32_t count, OpenPairs& open, SlotPairs& leaf_pairs) const noexcept {
     LaneAddress opened[most];
     LaneAddress other[most];
@@ -164,8 +160,7 @@ class Opener<lanes::Avx512> {
     for (std::uint32_t k = 0; k < count; k += 2) {
       const std::uint32_t upper = k + 1 < count ? k + 1 : k;
       const unsigned in_use = k + 1 < count ? 0xFFFFU : 0xFFU;
-      run_two<ranked, ordered>({met_, opened[k], other[k]}, {met_, opened[upper], other[upper]}, in_use, open,
-                               leaf_pairs);
+      run_two<ordered>({met_, opened[k], other[k]}, {met_, opened[upper], other[upper]}, in_use, open, leaf_pairs);
     }
   }
 
@@ -175,7 +170,7 @@ class Opener<lanes::Avx512> {
   using Two = TwoPairs<lanes::Avx512>;
   using Lanes = lanes::Sixteen;
 
-  template <bool ranked, bool ordered>
+  template <bool ordered>
   ODDS_LANES_INLINE void run_two(const Opened& lower, const Opened& upper, unsigned in_use, OpenPairs& open,
                                  SlotPairs& leaf_pairs) const noexcept {
     const Two::Turned& turn = turns_[2 * lower.side + upper.side];
@@ -215,9 +210,6 @@ class Opener<lanes::Avx512> {
       const auto which = static_cast<__mmask16>(lanes_added);
       _mm512_storeu_si512(open.opened + open.size, _mm512_maskz_compress_epi32(which, opened));
       _mm512_storeu_si512(open.other + open.size, _mm512_maskz_compress_epi32(which, against));
-      if constexpr (ranked) {
-        _mm512_storeu_ps(open.ranks + open.size, _mm512_maskz_compress_ps(which, ranks<Two>(nodes, boxes, gap).v));
-      }
       open.size += static_cast<std::size_t>(std::popcount(lanes_added));
     };
     if constexpr (ordered) {

@@ -5,15 +5,22 @@
 
 namespace odds::query::wide {
 
-/// Likeliest pair first. Ends on proof, on k_min pairs with p >= p_min, or with the budget.
+/// Where pairs are counted by probability, or no polygons are left to prove anything with: likeliest pair first. Ends
+/// on proof, on k_min pairs with p >= p_min, or with the budget.
 ///
-/// It starts depth-first: most queries are proved that way before a queue has paid for itself (on cars of 60,000
-/// triangles near contact, a queue from the beginning costs 1.5 times as much and proves 81 % within 5 us instead of
-/// 90 %). What the start leaves open goes into the queue. Without a start if pairs are to be counted by probability.
+/// Where only a proof ends it before the budget does, it is the depth-first search, the deepest overlap first, which
+/// opens a pair in a quarter of the time: on cars of 60,000 triangles near contact it proves 88 % within 5 us. With a
+/// queue of what a depth-first start leaves open it was 81 % after a start of six tenths of the time, 71 % after three,
+/// with half as many wrong verdicts again.
 template <class L>
 class TimeCritical {
  public:
   static void run(Task& task) noexcept {
+    if (task.request.p_min >= 1.0 && !task.request.polygon_free) {
+      task.result.method = Method::exact;
+      DepthFirst<L>::run(task, tree::WideTree::root, tree::WideTree::root);
+      return;
+    }
     TimeCritical search(task);
     search.run();
   }
@@ -23,12 +30,7 @@ class TimeCritical {
 
   void run() noexcept {
     task_.queue.clear();
-    if (task_.request.p_min < 1.0 || task_.request.polygon_free) {
-      task_.queue.push(0, {tree::WideTree::root, tree::WideTree::root, 0.0F});
-    } else if (!start()) {
-      return;
-    }
-    if (!task_.spending.may_go_on()) finish(Progressed::spent);  // the queue took time to fill
+    task_.queue.push(0, {tree::WideTree::root, tree::WideTree::root, 0.0F});
     while (!task_.queue.empty() && !finished_) {
       if (!task_.spending.may_go_on_after(units_between_polls)) {
         finish(Progressed::spent);
@@ -47,28 +49,6 @@ class TimeCritical {
     const std::uint32_t open = result.open + task_.queue.size();
     task_.queue.show_first(Shortlist::capacity, [&](const NodePair& pair) { leave_open<L>(task_, pair); });
     result.open = open;
-  }
-
-  /// False: the search has ended.
-  bool start() noexcept {
-    constexpr double share = 0.6;
-    constexpr std::uint64_t most_units = 4096;
-    task_.spending.begin_start(share, share, most_units);
-    DepthFirst<L, true> search(task_);
-    search.run(tree::WideTree::root, tree::WideTree::root);
-    if (task_.result.ended != Progressed::finished) return false;
-    const OpenPairs& open = search.open();
-    for (std::size_t i = 0; i < open.size && !finished_; ++i) keep(open.pair(i), open.ranks[i]);
-    const SlotPairs& leaf_pairs = search.leaf_pairs();
-    for (std::size_t i = 0; i < leaf_pairs.size && !finished_; ++i) {
-      keep({{leaf_pairs.of[0][i], leaf_pairs.of[1][i]}}, unranked);
-    }
-    return !task_.queue.empty();
-  }
-
-  void keep(const SlotPair& slots, float rank) noexcept {
-    const NodePair pair{slots.of[0], slots.of[1], rank};
-    add(pair, log_cost.of[std::min<std::uint32_t>(levels_left(pair), log_cost.most)]);
   }
 
   void finish(Progressed how) noexcept {
