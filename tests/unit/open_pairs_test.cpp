@@ -25,12 +25,12 @@ TEST(OpenPairs, AddressesAreThoseOfTheNumbers) {
 TEST(OpenPairs, KnowWhoseSlotIsOpened) {
   LaneAddress opened[2] = {address_of(21), address_of(40) + OpenPairs::of_b};
   LaneAddress other[2] = {address_of(33), address_of(5)};
-  OpenPairs pairs{opened, other, nullptr, 2};
+  OpenPairs pairs{opened, other, 2};
   EXPECT_EQ(pairs.pair(0).of[0], 21U);
   EXPECT_EQ(pairs.pair(0).of[1], 33U);
   EXPECT_EQ(pairs.pair(1).of[0], 5U);
   EXPECT_EQ(pairs.pair(1).of[1], 40U);
-  pairs.bring_up<false>(0);
+  pairs.bring_up(0);
   EXPECT_EQ(pairs.pair(1).of[0], 21U);
   EXPECT_EQ(pairs.pair(0).of[1], 40U);
 }

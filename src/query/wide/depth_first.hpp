@@ -20,18 +20,15 @@ class DepthFirst {
  public:
   static void run(Task& task, Slot start_a, Slot start_b) noexcept {
     if (task.wanted > 1 || task.request.budget.is_limited()) {
-      DepthFirst<L>(task).run(start_a, start_b);
+      DepthFirst<L>(task, task.wanted > 1 && task.request.budget.is_limited()).run(start_a, start_b);
     } else {
       DepthFirst<L, false>(task).run(start_a, start_b);
     }
   }
 
-  explicit DepthFirst(Task& task) noexcept
-      : task_(task),
-        met_(task.encounter),
-        opener_(task.encounter),
-        hits_(task.hits.size()),
-        spreads_(task.wanted > 1 && task.request.budget.is_limited()) {}
+  /// `spreads`: it goes on elsewhere after a hit.
+  explicit DepthFirst(Task& task, bool spreads = false) noexcept
+      : task_(task), met_(task.encounter), opener_(task.encounter), hits_(task.hits.size()), spreads_(spreads) {}
 
   void run(Slot start_a, Slot start_b) noexcept {
     if (met_.are_leaves(start_a, start_b)) {

@@ -18,7 +18,8 @@ class TimeCritical {
   static void run(Task& task) noexcept {
     if (task.request.p_min >= 1.0 && !task.request.polygon_free) {
       task.result.method = Method::exact;
-      DepthFirst<L>::run(task, tree::WideTree::root, tree::WideTree::root);
+      // Without a budget, too, there may be more hits than are kept.
+      DepthFirst<L>(task, task.wanted > 1).run(tree::WideTree::root, tree::WideTree::root);
       return;
     }
     TimeCritical search(task);
