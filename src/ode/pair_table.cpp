@@ -13,8 +13,8 @@
 namespace odds::ode {
 namespace {
 
-// A short query in full overlap goes through the code and fills queue and hit lists as far as they go: a millisecond or
-// four, which a pair whose first query follows at once does better without.
+// A short query in full overlap goes through the code and fills the hit list, or queue, as far as it goes: a
+// millisecond or four, which a pair whose first query follows at once does better without.
 void warm(query::Pair& pair) noexcept {
   query::Request request;
   request.budget = query::Budget::work(2000);

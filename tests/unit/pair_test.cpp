@@ -180,7 +180,7 @@ TEST(Shape, KnowsAClosedMeshFromASheet) {
 }
 
 TEST(Pair, BothEstimatorsLeadToTheSameProofsByDifferentWays) {
-  // The wide engine starts depth-first, without an estimate.
+  // The wide engine is searched depth-first, without an estimate.
   const auto shape = Shape::build(testing::wavy_sphere(24), {.volume = volume::Kind::obb}).value();
   auto pair = std::move(Pair::make(shape, shape)).value();
   bool differ = false;

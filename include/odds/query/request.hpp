@@ -14,7 +14,7 @@ enum class Method : std::uint8_t {
   /// time_critical; also, for some runs, where a budget of more than 25 us and 500 work units was too short for it.
   incremental,
   /// Likeliest pair first (Algorithm 4.3). With the wide engine only where p_min < 1 or polygons are dropped: else it
-  /// is exact's order, the deepest overlap first, which proves more in the same time.
+  /// is a depth-first search, the deepest overlap first, which proves more in the same time, if not by the same work.
   time_critical,
 };
 

@@ -74,6 +74,7 @@ class DepthFirst {
         stop();
         return false;
       }
+      if (task_.spending.nears_end()) ask_for_statistics();
       const SlotPair pair = leaf_pairs_.take();
       if (visit_leaves<L>(task_, pair.of[0], pair.of[1])) continue;
       if (task_.result.ended == Progressed::spent) {
@@ -105,6 +106,8 @@ class DepthFirst {
   void leave_rest_open() noexcept {
     constexpr std::size_t most_ranked = 4;  // each costs as much as opening a pair
     const std::uint32_t open = task_.result.open + static_cast<std::uint32_t>(leaf_pairs_.size + open_.size);
+    task_.result.open = open;
+    if (!task_.hits.empty()) return;  // nobody asks where else
     for (std::size_t i = leaf_pairs_.size; i-- != 0 && leaf_pairs_.size - i <= most_ranked;) {
       leave_open<L>(task_, {leaf_pairs_.of[0][i], leaf_pairs_.of[1][i], unranked});
     }

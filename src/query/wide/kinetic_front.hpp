@@ -182,8 +182,8 @@ class KineticFront {
     std::swap(entries_[i], entries_[j]);
     std::swap(expiries_[i], expiries_[j]);
   }
-  /// Where most runs are ended by their budget, and what met does not meet for long, the likeliest pairs from the
-  /// roots tell more. Means over some 16 runs.
+  /// Where most runs are ended by their budget, and what met does not meet for long, a search from the roots tells
+  /// more. Means over some 16 runs.
   [[nodiscard]] bool is_no_use(const Outcome& outcome) noexcept {
     if (outcome.irreplaceable) return false;
     constexpr double weight = 1.0 / 16.0;

@@ -134,15 +134,7 @@ struct Sixteen {
     return {_mm512_mask_broadcastss_ps(_mm512_set1_ps(lower), 0xFF00, _mm_set_ss(upper))};
   }
   ODDS_LANES_INLINE static Float abs(Float a) noexcept { return {_mm512_abs_ps(a.v)}; }
-  ODDS_LANES_INLINE static Float divide(Float a, Float b) noexcept { return {_mm512_div_ps(a.v, b.v)}; }
   ODDS_LANES_INLINE static Float root(Float a) noexcept { return {_mm512_sqrt_ps(a.v)}; }
-  ODDS_LANES_INLINE static void split(Float a, Float& exponent, Float& fraction) noexcept {
-    const __m512i bits = _mm512_castps_si512(a.v);
-    exponent.v = _mm512_cvtepi32_ps(_mm512_sub_epi32(_mm512_srli_epi32(bits, 23), _mm512_set1_epi32(127)));
-    const __m512i mantissa = _mm512_and_si512(bits, _mm512_set1_epi32(0x007FFFFF));
-    const __m512i one = _mm512_set1_epi32(0x3F800000);
-    fraction.v = _mm512_sub_ps(_mm512_castsi512_ps(_mm512_or_si512(mantissa, one)), _mm512_set1_ps(1.0F));
-  }
   ODDS_LANES_INLINE static Float max(Float a, Float b) noexcept { return {_mm512_max_ps(a.v, b.v)}; }
 };
 ODDS_LANES_INLINE Sixteen::Float operator+(Sixteen::Float a, Sixteen::Float b) noexcept {
