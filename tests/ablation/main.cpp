@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -18,6 +17,7 @@
 #include "odds/report/accuracy/forecast.hpp"
 #include "odds/report/accuracy/poses.hpp"
 #include "query/shape_data.hpp"
+#include "support/likeliest_first.hpp"
 
 namespace odds::ablation {
 namespace {
@@ -97,11 +97,10 @@ struct Variant {
   bool own_odds = false;
 };
 
-constexpr std::array<Variant, 4> variants = {
-    {{"as it is"},
-     {"estimator: cells", EstimatorKind::cells},
-     {"order: likeliest first", EstimatorKind::kinematic, true},
-     {"recalibration: the pair's own odds", EstimatorKind::kinematic, false, true}}};
+constexpr std::array<Variant, 4> variants = {{{.name = "as it is"},
+                                              {.name = "estimator: cells", .estimator = EstimatorKind::cells},
+                                              {.name = "order: likeliest first", .likeliest_first = true},
+                                              {.name = "recalibration: the pair's own odds", .own_odds = true}}};
 
 void print_answers(const char* name, const Tally& tally) {
   const report::ForecastQuality all = report::judge_forecasts(tally.all);
@@ -121,10 +120,7 @@ std::optional<Error> table_of_answers(const SharedShape& wide, const std::vector
     if (!pair.ok()) return pair.error();
     query::Request request;
     request.estimator = variant.estimator;
-    if (variant.likeliest_first) {  // the order of searches that count pairs by probability, of which this ends none
-      request.p_min = 1.0 - 1e-9;
-      request.k_min = std::numeric_limits<std::uint32_t>::max();
-    }
+    if (variant.likeliest_first) request = testing::likeliest_first(request);
     request.budget = query::Budget::work(options.units);
     request.max_contacts = 0;
     Tally tally;

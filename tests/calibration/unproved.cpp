@@ -1,6 +1,5 @@
 #include "calibration/unproved.hpp"
 
-#include <limits>
 #include <memory>
 #include <optional>
 #include <type_traits>
@@ -11,6 +10,7 @@
 #include "query/bottom_slice.hpp"
 #include "query/shape_data.hpp"
 #include "query/wide/searches.hpp"
+#include "support/likeliest_first.hpp"
 
 namespace odds::calibration {
 namespace {
@@ -109,10 +109,7 @@ Result<std::vector<std::vector<Unproved>>> unproved_answers(const Meeting& meeti
       query::Request request;
       request.estimator = asked.ways[way].estimator;
       request.method = asked.ways[way].method;
-      if (request.method == query::Method::time_critical) {  // as where pairs are counted, but no count ends it
-        request.p_min = 1.0 - 1e-9;
-        request.k_min = std::numeric_limits<std::uint32_t>::max();
-      }
+      if (request.method == query::Method::time_critical) request = testing::likeliest_first(request);
       for (const std::uint64_t units : asked.units) {
         request.budget = query::Budget::work(units);
         const auto remains = search(*shapes[0], *shapes[1], pose, request, memory);

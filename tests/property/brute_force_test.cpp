@@ -1,22 +1,21 @@
 // Searches against every triangle with every triangle: other places, scales, orders of arguments and of triangles.
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "odds/query/pair.hpp"
 #include "support/all_kinds.hpp"
 #include "support/brute_force.hpp"
+#include "support/likeliest_first.hpp"
 #include "support/near_poses.hpp"
 #include "support/shapes.hpp"
 
 namespace odds::query {
 namespace {
 
-/// All orders of search. The last is that of searches that count likely pairs; here no count ends one.
+/// All orders of search.
 constexpr Request requests[] = {{.method = Method::exact},
                                 {.method = Method::time_critical},
                                 {.method = Method::incremental},
-                                {.p_min = 1.0 - 1e-9, .k_min = std::numeric_limits<std::uint32_t>::max()}};
+                                testing::likeliest_first()};
 
 using Mesh = std::shared_ptr<const mesh::TriangleMesh>;
 

@@ -8,13 +8,15 @@
 namespace odds::query {
 
 enum class Method : std::uint8_t {
-  exact,  ///< depth-first search (Algorithm 4.2), no estimates; obeys the budget too
+  /// Depth-first search (Algorithm 4.2), no estimates; obeys the budget too. With the wide engine after a start of up to
+  /// 48 pairs, the likeliest first.
+  exact,
   /// From the bottom slice of the previous run (Li and Chen 98), with the verdicts of exact: for poses that follow each
   /// other. With the wide engine a run that its budget ends is taken up by the next one. With p_min < 1 it is as
   /// time_critical; also, for some runs, where a budget of more than 25 us and 500 work units was too short for it.
   incremental,
-  /// Likeliest pair first (Algorithm 4.3). With the wide engine only where p_min < 1 or polygons are dropped: else it
-  /// is a depth-first search, the deepest overlap first, which proves more in the same time, if not by the same work.
+  /// Likeliest pair first (Algorithm 4.3). With the wide engine only where p_min < 1 or polygons are dropped: else as
+  /// exact.
   time_critical,
 };
 

@@ -47,6 +47,12 @@ struct WritesInOrder {
   ODDS_LANES_INLINE static void write_all(std::uint32_t* to, std::uint32_t value) noexcept {
     for (int i = 0; i < 8; ++i) to[i] = value;
   }
+  template <class Float>
+  ODDS_LANES_INLINE static void write_some(float* to, const Float& a, unsigned mask) noexcept {
+    alignas(64) float of[8];
+    L::store(of, a);
+    for (int i = 0; i < 8; ++i) to[i] = of[lane_order.of[mask][i]];
+  }
 };
 
 #if defined(__AVX2__)
@@ -56,6 +62,8 @@ struct Avx2 {
   };
   static constexpr const char* name = "avx2";
   ODDS_LANES_INLINE static Float load(const float* p) noexcept { return {_mm256_load_ps(p)}; }
+  /// From any address.
+  ODDS_LANES_INLINE static Float load_from(const float* p) noexcept { return {_mm256_loadu_ps(p)}; }
   ODDS_LANES_INLINE static void store(float* p, Float a) noexcept { _mm256_store_ps(p, a.v); }
   ODDS_LANES_INLINE static Float all(float x) noexcept { return {_mm256_set1_ps(x)}; }
   ODDS_LANES_INLINE static Float abs(Float a) noexcept { return {_mm256_andnot_ps(_mm256_set1_ps(-0.0F), a.v)}; }
@@ -73,6 +81,17 @@ struct Avx2 {
   ODDS_LANES_INLINE static Float max(Float a, Float b) noexcept { return {_mm256_max_ps(a.v, b.v)}; }
   ODDS_LANES_INLINE static unsigned less_equal(Float a, Float b) noexcept {
     return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(a.v, b.v, _CMP_LE_OQ)));
+  }
+  /// `a` in the lanes of the mask, `b` in the others.
+  ODDS_LANES_INLINE static Float choose(unsigned mask, Float a, Float b) noexcept {
+    const __m256i bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+    const __m256i chosen = _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(static_cast<int>(mask)), bits), bits);
+    return {_mm256_blendv_ps(b.v, a.v, _mm256_castsi256_ps(chosen))};
+  }
+  /// Writes the lanes of the mask, in order, to `to`, and anything to the rest of to[0 .. 8).
+  ODDS_LANES_INLINE static void write_some(float* to, Float a, unsigned mask) noexcept {
+    const __m128i packed = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(lane_order.of[mask]));
+    _mm256_storeu_ps(to, _mm256_permutevar8x32_ps(a.v, _mm256_cvtepu8_epi32(packed)));
   }
   /// Writes `first` + lane for every lane of the mask, in order, to `to`, and anything to the rest of to[0 .. 8).
   ODDS_LANES_INLINE static void write_lanes(std::uint32_t* to, std::uint32_t first, unsigned mask) noexcept {
@@ -100,13 +119,15 @@ struct Avx2 {
   ODDS_LANES_INLINE static unsigned highest_bits(const void* eight) noexcept {
     return static_cast<unsigned>(_mm256_movemask_ps(_mm256_load_ps(static_cast<const float*>(eight))));
   }
-  /// A lane with the least value.
+  /// The least value, and the first lane that has it.
+  ODDS_LANES_INLINE static float least_value(Float a) noexcept { return _mm256_cvtss_f32(least_in_all(a)); }
   ODDS_LANES_INLINE static unsigned least(Float a) noexcept {
+    return static_cast<unsigned>(__builtin_ctz(less_equal(a, {least_in_all(a)}) | 0x100U));
+  }
+  ODDS_LANES_INLINE static __m256 least_in_all(Float a) noexcept {
     __m256 m = _mm256_min_ps(a.v, _mm256_permute2f128_ps(a.v, a.v, 1));
     m = _mm256_min_ps(m, _mm256_shuffle_ps(m, m, 0x4E));
-    m = _mm256_min_ps(m, _mm256_shuffle_ps(m, m, 0xB1));
-    return static_cast<unsigned>(
-        __builtin_ctz(static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(a.v, m, _CMP_LE_OQ))) | 0x100U));
+    return _mm256_min_ps(m, _mm256_shuffle_ps(m, m, 0xB1));
   }
 };
 ODDS_LANES_INLINE Avx2::Float operator+(Avx2::Float a, Avx2::Float b) noexcept { return {_mm256_add_ps(a.v, b.v)}; }
@@ -155,6 +176,7 @@ struct Sse2 : WritesInOrder<Sse2> {
   };
   static constexpr const char* name = "sse2";
   ODDS_LANES_INLINE static Float load(const float* p) noexcept { return {_mm_load_ps(p), _mm_load_ps(p + 4)}; }
+  ODDS_LANES_INLINE static Float load_from(const float* p) noexcept { return {_mm_loadu_ps(p), _mm_loadu_ps(p + 4)}; }
   ODDS_LANES_INLINE static void store(float* p, Float a) noexcept {
     _mm_store_ps(p, a.lo);
     _mm_store_ps(p + 4, a.hi);
@@ -193,11 +215,24 @@ struct Sse2 : WritesInOrder<Sse2> {
     return static_cast<unsigned>(_mm_movemask_ps(_mm_load_ps(lanes))) |
            (static_cast<unsigned>(_mm_movemask_ps(_mm_load_ps(lanes + 4))) << 4U);
   }
+  ODDS_LANES_INLINE static Float choose(unsigned mask, Float a, Float b) noexcept {
+    return {choose_four(mask, a.lo, b.lo), choose_four(mask >> 4U, a.hi, b.hi)};
+  }
+  ODDS_LANES_INLINE static __m128 choose_four(unsigned mask, __m128 a, __m128 b) noexcept {
+    const __m128i bits = _mm_setr_epi32(1, 2, 4, 8);
+    const __m128 chosen =
+        _mm_castsi128_ps(_mm_cmpeq_epi32(_mm_and_si128(_mm_set1_epi32(static_cast<int>(mask)), bits), bits));
+    return _mm_or_ps(_mm_and_ps(chosen, a), _mm_andnot_ps(chosen, b));
+  }
+  ODDS_LANES_INLINE static float least_value(Float a) noexcept { return _mm_cvtss_f32(least_in_all(a)); }
   ODDS_LANES_INLINE static unsigned least(Float a) noexcept {
+    const __m128 m = least_in_all(a);
+    return static_cast<unsigned>(__builtin_ctz(less_equal(a, {m, m}) | 0x100U));
+  }
+  ODDS_LANES_INLINE static __m128 least_in_all(Float a) noexcept {
     __m128 m = _mm_min_ps(a.lo, a.hi);
     m = _mm_min_ps(m, _mm_shuffle_ps(m, m, 0x4E));
-    m = _mm_min_ps(m, _mm_shuffle_ps(m, m, 0xB1));
-    return static_cast<unsigned>(__builtin_ctz(less_equal(a, {m, m}) | 0x100U));
+    return _mm_min_ps(m, _mm_shuffle_ps(m, m, 0xB1));
   }
 };
 ODDS_LANES_INLINE Sse2::Float operator+(Sse2::Float a, Sse2::Float b) noexcept {
@@ -222,6 +257,7 @@ struct Portable : WritesInOrder<Portable> {
     for (int i = 0; i < 8; ++i) result.v[i] = p[i];
     return result;
   }
+  ODDS_LANES_INLINE static Float load_from(const float* p) noexcept { return load(p); }
   ODDS_LANES_INLINE static void store(float* p, const Float& a) noexcept {
     for (int i = 0; i < 8; ++i) p[i] = a.v[i];
   }
@@ -274,6 +310,12 @@ struct Portable : WritesInOrder<Portable> {
     for (unsigned i = 0; i < 8; ++i) mask |= (lanes[i] >> 31U) << i;
     return mask;
   }
+  ODDS_LANES_INLINE static Float choose(unsigned mask, const Float& a, const Float& b) noexcept {
+    Float result;
+    for (unsigned i = 0; i < 8; ++i) result.v[i] = (mask >> i & 1U) != 0 ? a.v[i] : b.v[i];
+    return result;
+  }
+  ODDS_LANES_INLINE static float least_value(const Float& a) noexcept { return a.v[least(a)]; }
   ODDS_LANES_INLINE static unsigned least(const Float& a) noexcept {
     unsigned lane = 0;
     for (unsigned i = 1; i < 8; ++i) lane = a.v[i] < a.v[lane] ? i : lane;

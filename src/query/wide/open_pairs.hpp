@@ -18,6 +18,8 @@ static_assert(tree::WideTree::most_nodes <= (1U << 31U) / floats_per_node, "the 
   return address / floats_per_node * wide_lanes + address % floats_per_node;
 }
 
+struct Opened;
+
 /// Open pairs, newest last. Of each, which of its slots is opened was decided when it was found, among all lanes at
 /// once.
 struct OpenPairs {
@@ -42,6 +44,9 @@ struct OpenPairs {
     other[size] = address_of(pair.of[1 - side]);
     ++size;
   }
+  /// Lanes of an opened pair; `opens_lane` as in FoundLanes.
+  template <class L>
+  ODDS_LANES_INLINE void add(const Opened& from, unsigned lanes, unsigned opens_lane) noexcept;
   /// Brings another pair to where the next one is taken from.
   ODDS_LANES_INLINE void bring_up(std::size_t index) noexcept {
     std::swap(opened[index], opened[size - 1]);
@@ -69,12 +74,52 @@ struct Opened {
   }
 };
 
+template <class L>
+ODDS_LANES_INLINE void OpenPairs::add(const Opened& from, unsigned lanes, unsigned opens_lane) noexcept {
+  const LaneAddress mark = from.side * of_b;
+  L::write_either(opened + size, from.first | mark, from.other | (mark ^ of_b), lanes, opens_lane);
+  L::write_either(other + size, from.first, from.other, lanes, ~opens_lane);
+  size += static_cast<std::size_t>(std::popcount(lanes));
+}
+
 /// Puts the lanes of a mask that are pairs of leaves where those are kept.
 template <class L>
 ODDS_LANES_INLINE void add_leaves(const Opened& opened, unsigned lanes, SlotPairs& leaf_pairs) noexcept {
   L::write_lanes(leaf_pairs.of[opened.side] + leaf_pairs.size, slot_at(opened.first), lanes);
   L::write_all(leaf_pairs.of[1 - opened.side] + leaf_pairs.size, slot_at(opened.other));
   leaf_pairs.size += static_cast<std::size_t>(std::popcount(lanes));
+}
+
+/// What opening a pair finds, by lanes.
+template <class L>
+struct FoundLanes {
+  typename L::Float gap;
+  typename L::Float thickness;  ///< of both surfaces
+  unsigned leaf_pairs;          ///< that overlap, both of them leaves
+  unsigned open;                ///< that overlap, not both of them leaves
+  unsigned opens_lane;          ///< of these, where the lane's own slot is opened next, not the other
+};
+
+template <class L, class Turned>
+[[nodiscard]] ODDS_LANES_INLINE FoundLanes<L> find_lanes(const Opened& opened, const Turned& turn,
+                                                         float margin) noexcept {
+  using One = OnePair<L, Turned>;
+  using F = typename L::Float;
+  const typename One::Boxes box{opened.box};
+  const typename One::Nodes node{*opened.node};
+  const Placed<One> placed(node, box, turn);
+  const F gap = gaps<One>(node, box, turn, placed);
+  const unsigned overlapping = L::less_equal(gap, L::all(margin));
+  const bool other_is_leaf = opened.box.child().is_leaf();
+  const unsigned leaves = L::highest_bits(opened.node->child);
+  const unsigned leaf_pairs = other_is_leaf ? overlapping & leaves : 0U;
+  // Which is opened next: the larger of both, or what is no leaf.
+  const F size = (placed.h[0] * placed.h[0] + placed.h[1] * placed.h[1]) + placed.h[2] * placed.h[2];
+  // Of two of a size A's.
+  const float box_size = other_is_leaf ? -1.0F : squared_radius(opened.box);
+  const float other_size = std::bit_cast<float>(std::bit_cast<std::uint32_t>(box_size) + opened.side);
+  const unsigned opens_lane = L::less_equal(L::all(other_size), size) & ~leaves;
+  return {gap, node.thickness() + box.thickness(), leaf_pairs, overlapping & ~leaf_pairs, opens_lane};
 }
 
 /// Opens pairs: what overlaps is added to `open`, or to `leaf_pairs` where both are leaves.
@@ -99,38 +144,19 @@ class Opener {
 
   static constexpr std::uint32_t most = 6;
 
+  /// What opening one pair finds.
+  [[nodiscard]] ODDS_LANES_INLINE FoundLanes<L> find(const Opened& opened) const noexcept {
+    return find_lanes<L>(opened, turns_[opened.side], met_.margin());
+  }
+
  private:
   template <bool ordered>
   ODDS_LANES_INLINE void run(const Opened& opened, OpenPairs& open, SlotPairs& leaf_pairs) const noexcept {
-    using One = OnePair<L, TurnLanes<L>>;
-    using F = typename L::Float;
-    const TurnLanes<L>& turn = turns_[opened.side];
-    const typename One::Boxes box{opened.box};
-    const typename One::Nodes node{*opened.node};
-    const Placed<One> placed(node, box, turn);
-    const F gap = gaps<One>(node, box, turn, placed);
-    const unsigned overlapping = L::less_equal(gap, L::all(met_.margin()));
-    const bool other_is_leaf = opened.box.child().is_leaf();
-    const unsigned leaves = L::highest_bits(opened.node->child);
-    const unsigned both_leaves = other_is_leaf ? overlapping & leaves : 0U;
-    if (both_leaves != 0) add_leaves<L>(opened, both_leaves, leaf_pairs);
-    // Which is opened next: the larger of both, or what is no leaf.
-    const F size = (placed.h[0] * placed.h[0] + placed.h[1] * placed.h[1]) + placed.h[2] * placed.h[2];
-    // Of two of a size A's.
-    const float box_size = other_is_leaf ? -1.0F : squared_radius(opened.box);
-    const float other_size = std::bit_cast<float>(std::bit_cast<std::uint32_t>(box_size) + opened.side);
-    const unsigned opens_lane = L::less_equal(L::all(other_size), size) & ~leaves;
-    const LaneAddress mark = opened.side * OpenPairs::of_b;
-    const auto add = [&](unsigned lanes) noexcept {
-      L::write_either(open.opened + open.size, opened.first | mark, opened.other | (mark ^ OpenPairs::of_b), lanes,
-                      opens_lane);
-      L::write_either(open.other + open.size, opened.first, opened.other, lanes, ~opens_lane);
-      open.size += static_cast<std::size_t>(std::popcount(lanes));
-    };
-    const unsigned inner = overlapping & ~both_leaves;
-    const unsigned last = ordered ? inner & 1U << L::least(gap) : 0U;
-    add(inner & ~last);
-    if constexpr (ordered) add(last);
+    const FoundLanes<L> found = find(opened);
+    if (found.leaf_pairs != 0) add_leaves<L>(opened, found.leaf_pairs, leaf_pairs);
+    const unsigned last = ordered ? found.open & 1U << L::least(found.gap) : 0U;
+    open.add<L>(opened, found.open & ~last, found.opens_lane);
+    if constexpr (ordered) open.add<L>(opened, last, found.opens_lane);
   }
 
   const Encounter& met_;
@@ -166,9 +192,24 @@ class Opener<lanes::Avx512> {
 
   static constexpr std::uint32_t most = 6;
 
+  [[nodiscard]] ODDS_LANES_INLINE FoundLanes<lanes::Avx512> find(const Opened& opened) const noexcept {
+    return find_lanes<lanes::Avx512>(opened, LowerHalf{turns_[3 * opened.side]}, met_.margin());
+  }
+
  private:
   using Two = TwoPairs<lanes::Avx512>;
-  using Lanes = lanes::Sixteen;
+
+  /// Where both pairs are turned into one tree, eight lanes do for one.
+  struct LowerHalf {
+    using F = lanes::Avx512::Float;
+    const Two::Turned& both;
+
+    [[nodiscard]] ODDS_LANES_INLINE F of(int j, int i) const noexcept { return lanes::Avx512::load(both.column[j][i]); }
+    [[nodiscard]] ODDS_LANES_INLINE F abs_of(int j, int i) const noexcept {
+      return lanes::Avx512::load(both.abs_column[j][i]);
+    }
+    [[nodiscard]] ODDS_LANES_INLINE F t(int i) const noexcept { return lanes::Avx512::load(both.translation[i]); }
+  };
 
   template <bool ordered>
   ODDS_LANES_INLINE void run_two(const Opened& lower, const Opened& upper, unsigned in_use, OpenPairs& open,

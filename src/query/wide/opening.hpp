@@ -137,9 +137,14 @@ float rank_of(const Encounter& met, Slot slot_a, Slot slot_b) noexcept {
   return rank[slot_a % wide_lanes];
 }
 
-/// Notes a pair that the search leaves undecided, with its rank.
+/// Notes a pair that the search leaves undecided, with its rank. Beside a hit it is only counted: nobody asks where
+/// else.
 template <class L>
 void leave_open(Task& task, NodePair pair) noexcept {
+  if (!task.hits.empty()) {
+    ++task.result.open;
+    return;
+  }
   const bool by_depth = pair.rank < unranked && task.request.estimator == EstimatorKind::kinematic;
   if (!by_depth && !task.result.shortlist.full()) pair.rank = rank_of<L>(task.encounter, pair.a, pair.b);
   consider(task.result, pair);

@@ -8,19 +8,15 @@ namespace odds::query::wide {
 /// Where pairs are counted by probability, or no polygons are left to prove anything with: likeliest pair first. Ends
 /// on proof, on k_min pairs with p >= p_min, or with the budget.
 ///
-/// Where only a proof ends it before the budget does, it is the depth-first search, the deepest overlap first, which
-/// opens a pair in a quarter of the time: on cars of 60,000 triangles near contact it proves 88 % within 5 us. With a
-/// queue of what a depth-first start leaves open it was 81 % after a start of six tenths of the time, 71 % after three,
-/// with half as many wrong verdicts again.
+/// Where only a proof ends it before the budget does, it is the exact search, which starts in the same order at a
+/// quarter of the price of a pair: nobody has to be asked how probable it is.
 template <class L>
 class TimeCritical {
  public:
   static void run(Task& task) noexcept {
     if (task.request.p_min >= 1.0 && !task.request.polygon_free) {
       task.result.method = Method::exact;
-      // Without a budget, too, there may be more hits than are kept.
-      DepthFirst<L>(task, task.wanted > 1).run(tree::WideTree::root, tree::WideTree::root);
-      return;
+      return DepthFirst<L>::run(task, tree::WideTree::root, tree::WideTree::root);
     }
     TimeCritical search(task);
     search.run();
@@ -43,7 +39,7 @@ class TimeCritical {
       }
       visit(task_.queue.pop());
     }
-    if (task_.result.ended != Progressed::finished && task_.hits.empty()) consider_queue();
+    if (task_.result.ended != Progressed::finished) consider_queue();
   }
 
   void consider_queue() noexcept {
