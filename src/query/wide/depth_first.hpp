@@ -20,6 +20,7 @@ class DepthFirst {
  public:
   static void run(Task& task, Slot start_a, Slot start_b) noexcept {
     Frontier<L> frontier(task, start_a, start_b);
+    task.result.method = task.wanted > 1 ? Method::exact : Method::time_critical;
     if (task.wanted > 1) return DepthFirst<L, true>(frontier).run();
     const bool is_limited = task.request.budget.is_limited();
     if (frontier.open.size != 0) {

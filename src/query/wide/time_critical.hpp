@@ -15,7 +15,6 @@ class TimeCritical {
  public:
   static void run(Task& task) noexcept {
     if (task.request.p_min >= 1.0 && !task.request.polygon_free) {
-      task.result.method = Method::exact;
       return DepthFirst<L>::run(task, tree::WideTree::root, tree::WideTree::root);
     }
     TimeCritical search(task);
