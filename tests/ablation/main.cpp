@@ -93,13 +93,15 @@ double mean(const std::vector<double>& values) {
 struct Variant {
   const char* name;
   EstimatorKind estimator = EstimatorKind::kinematic;
-  bool likeliest_first = false;
+  bool by_queue = false;
+  int most_contacts = 0;  ///< more than one: hits for a patch are looked for depth-first from the root
   bool own_odds = false;
 };
 
-constexpr std::array<Variant, 4> variants = {{{.name = "as it is"},
+constexpr std::array<Variant, 5> variants = {{{.name = "as it is"},
                                               {.name = "estimator: cells", .estimator = EstimatorKind::cells},
-                                              {.name = "order: likeliest first", .likeliest_first = true},
+                                              {.name = "order: by a queue", .by_queue = true},
+                                              {.name = "order: depth-first", .most_contacts = 2},
                                               {.name = "recalibration: the pair's own odds", .own_odds = true}}};
 
 void print_answers(const char* name, const Tally& tally) {
@@ -120,9 +122,9 @@ std::optional<Error> table_of_answers(const SharedShape& wide, const std::vector
     if (!pair.ok()) return pair.error();
     query::Request request;
     request.estimator = variant.estimator;
-    if (variant.likeliest_first) request = testing::likeliest_first(request);
+    if (variant.by_queue) request = testing::likeliest_first(request);
     request.budget = query::Budget::work(options.units);
-    request.max_contacts = 0;
+    request.max_contacts = variant.most_contacts;
     Tally tally;
     for (const Posed& posed : poses) {
       pair.value().reset();

@@ -44,7 +44,7 @@ class LikeliestFirst {
       if (task_.spending.nears_end()) ask_for_statistics(next);
       task_.spending.spend_node_pairs(wide_lanes);
       const Opened pair(at_.met, next.opened, next.other);
-      const Kept kept = likeliest_kept();
+      const Kept kept = likeliest_of(open.size);
       const FoundLanes<L> found = at_.opener.find(pair);
       if (found.leaf_pairs != 0) add_leaves<L>(pair, found.leaf_pairs, at_.leaf_pairs);
       const bool is_last = found.open == 0 && open.size == 0;
@@ -87,9 +87,10 @@ class LikeliestFirst {
     std::size_t index;
   };
 
-  /// The likeliest of the newest in the array, and of equals the newest. Meaningless if there are none.
-  [[nodiscard]] ODDS_LANES_INLINE Kept likeliest_kept() const noexcept {
-    const float* const newest = keys_ + at_.open.size;  // behind as many that are nothing
+  /// Of the first `size` in the array the likeliest of the newest, and of equals the newest. Meaningless if there are
+  /// none.
+  [[nodiscard]] ODDS_LANES_INLINE Kept likeliest_of(std::size_t size) const noexcept {
+    const float* const newest = keys_ + size;  // behind as many that are nothing
     F keys[window / wide_lanes];
     for (std::size_t i = 0; i < std::size(keys); ++i) keys[i] = L::load_from(newest + i * wide_lanes);
     const F least = L::min(L::min(keys[0], keys[1]), L::min(keys[2], keys[3]));
@@ -98,7 +99,7 @@ class LikeliestFirst {
     for (std::size_t i = 0; i < std::size(keys); ++i) {
       has_key |= L::less_equal(keys[i], L::all(key)) << (i * wide_lanes);
     }
-    return {key, at_.open.size - 1 - static_cast<std::size_t>(std::countl_zero(has_key))};
+    return {key, size - 1 - static_cast<std::size_t>(std::countl_zero(has_key))};
   }
 
   /// Keeps what a pair has brought but for the pair to be opened next.
@@ -143,16 +144,28 @@ class LikeliestFirst {
     keys_[window + index] = keys_[window + open.size];
   }
 
+  /// Of what is left open if the search ends soon: once of the likeliest, then of what became likelier.
   void ask_for_statistics(const Next& next) noexcept {
+    OpenPairs& open = at_.open;
+    if (!has_asked_) {
+      has_asked_ = true;
+      for (std::size_t size = open.size; size != 0 && open.size - size < Shortlist::capacity; --size) {
+        const std::size_t likeliest = likeliest_of(size).index;  // in this array any order will do
+        std::swap(open.opened[likeliest], open.opened[size - 1]);
+        std::swap(open.other[likeliest], open.other[size - 1]);
+        std::swap(keys_[window + likeliest], keys_[window + size - 1]);
+      }
+      at_.ask_for_statistics();
+    }
     put_back(next);
-    at_.ask_for_statistics();
-    --at_.open.size;
+    const SlotPair pair = open.pair(--open.size);
+    at_.met.prefetch({pair.of[0], pair.of[1], next.key});
   }
 
   void leave_likeliest() noexcept {
     const std::uint32_t all = task_.result.open + static_cast<std::uint32_t>(at_.open.size);
     while (at_.open.size != 0 && !task_.result.shortlist.full()) {
-      const Kept kept = likeliest_kept();
+      const Kept kept = likeliest_of(at_.open.size);
       const SlotPair pair = at_.open.pair(kept.index);
       leave_open<L>(task_, {pair.of[0], pair.of[1], rank_of_key(kept.key)});
       remove(kept.index);
@@ -166,6 +179,7 @@ class LikeliestFirst {
 
   Frontier<L>& at_;
   Task& task_;
+  bool has_asked_ = false;
   alignas(64) float keys_[window + Frontier<L>::capacity];
 };
 
