@@ -22,10 +22,10 @@ class DepthFirst {
     Frontier<L> frontier(task, start_a, start_b);
     task.result.method = task.wanted > 1 ? Method::exact : Method::time_critical;
     if (task.wanted > 1) return DepthFirst<L, true>(frontier).run();
-    const bool is_limited = task.request.budget.is_limited();
     if (frontier.open.size != 0) {
+      // A budget also wants to know where they may meet.
       LikeliestFirst<L> start(frontier);
-      if (!start.run(is_limited ? most_started_limited : most_started, is_limited)) return;
+      if (!start.run(most_started, task.request.budget.is_limited())) return;
     }
     DepthFirst<L>(frontier).run();
   }
@@ -76,9 +76,8 @@ class DepthFirst {
   static constexpr std::size_t at_once = ordered ? 2 : 6;
   static_assert(at_once <= Opener<L>::most);
   /// Pairs of the start. After them a proof that the bodies are apart is the likelier end, and that comes sooner by six
-  /// at a time. A budget also wants to know where they may meet.
+  /// at a time.
   static constexpr std::uint32_t most_started = 32;
-  static constexpr std::uint32_t most_started_limited = 48;
 
   Frontier<L>& at_;
   Task& task_;
