@@ -158,7 +158,7 @@ void search_exactly(const query::wide::Searches& searches, const query::Shape& s
     const query::wide::Encounter met(tree, tree, meshes, request.estimator);
     query::SearchResult result;
     query::wide::Task task{met, request, 1, queue, hits, spending, result};
-    if (!met.far_apart()) searches.depth_first(task, tree::WideTree::root, tree::WideTree::root);
+    if (!met.far_apart()) searches.depth_first(task);
     cost = spending.close();
     least = std::min(least, 1e-3 * static_cast<double>(clock() - begin));
   }

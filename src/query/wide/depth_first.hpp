@@ -18,9 +18,13 @@ namespace odds::query::wide {
 template <class L, bool ordered = false>
 class DepthFirst {
  public:
+  /// The search from the roots, whose result says which order it was.
+  static void run_from_roots(Task& task) noexcept {
+    task.result.method = task.wanted > 1 ? Method::exact : Method::time_critical;
+    run(task, tree::WideTree::root, tree::WideTree::root);
+  }
   static void run(Task& task, Slot start_a, Slot start_b) noexcept {
     Frontier<L> frontier(task, start_a, start_b);
-    task.result.method = task.wanted > 1 ? Method::exact : Method::time_critical;
     if (task.wanted > 1) return DepthFirst<L, true>(frontier).run();
     if (frontier.open.size != 0) {
       // A budget also wants to know where they may meet.

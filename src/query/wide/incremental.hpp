@@ -190,7 +190,7 @@ class Incremental {
 
   /// Notes what has expired and was not looked at, among the next of the `kept` ones.
   void leave_rest_open(std::uint32_t from, std::uint32_t kept) noexcept {
-    if (task_.result.ended != Progressed::spent) return;
+    if (task_.result.ended != Progressed::spent || !task_.hits.empty()) return;  // beside a hit nobody asks
     const std::uint32_t end = std::min(kept, from + entries_between_polls);
     for (std::uint32_t i = from; i < end && !task_.result.shortlist.full(); ++i) {
       if (front_.expired(i)) leave_open<L>(task_, {front_.entry(i).a, front_.entry(i).b, unranked});

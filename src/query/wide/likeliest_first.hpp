@@ -112,7 +112,9 @@ class LikeliestFirst {
       return next;
     }
     const F thickness = L::max(found.thickness, L::all(least_thickness));
-    const F keys = L::choose(found.open, L::divide(found.gap, thickness), L::all(nothing));
+    // Finite: of surfaces without any thickness, 1e9 m large, a gap that rounding may hide is not.
+    const F ratio = L::min(L::divide(found.gap, thickness), L::all(std::numeric_limits<float>::max()));
+    const F keys = L::choose(found.open, ratio, L::all(nothing));
     const auto lane = L::least(keys);
     const unsigned others = found.open & ~(1U << lane);
     L::write_some(keys_ + window + open.size, keys, others);
@@ -167,12 +169,12 @@ class LikeliestFirst {
     while (at_.open.size != 0 && !task_.result.shortlist.full()) {
       const Kept kept = likeliest_of(at_.open.size);
       const SlotPair pair = at_.open.pair(kept.index);
-      leave_open<L>(task_, {pair.of[0], pair.of[1], rank_of_key(kept.key)});
+      leave_open<L>(task_, {pair.of[0], pair.of[1], kept.key == -nothing ? unranked : rank_of_key(kept.key)});
       remove(kept.index);
     }
     task_.result.open = all;
   }
-  /// As `ranks` has it.
+  /// As `ranks` has it, of pairs that overlap.
   [[nodiscard]] static float rank_of_key(float key) noexcept {
     return math::rough_log2(static_cast<double>(std::clamp(-key, 1e-30F, 1e30F)));
   }

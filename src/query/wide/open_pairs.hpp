@@ -1,4 +1,4 @@
-// Pairs of slots that the depth-first search has yet to open, and how it opens the newest of them.
+// Pairs of slots that an exact search has yet to open, and how it opens them.
 #pragma once
 
 #include "query/wide/opening.hpp"

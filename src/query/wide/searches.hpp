@@ -61,7 +61,7 @@ struct RayTask {
 /// One instruction set's searches. Each of two trees starts from the pair of roots, which is known to overlap.
 struct Searches {
   const char* instruction_set;
-  void (*depth_first)(Task& task, Slot slot_a, Slot slot_b) noexcept;
+  void (*depth_first)(Task& task) noexcept;
   void (*time_critical)(Task& task) noexcept;
   /// From what the front knows; the front has been moved to the encounter's pose.
   void (*incremental)(Task& task, KineticFront& front) noexcept;

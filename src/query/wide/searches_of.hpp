@@ -11,8 +11,9 @@ namespace odds::query::wide {
 
 template <class L>
 constexpr Searches searches_of() noexcept {
-  return {L::name,          &DepthFirst<L>::run, &TimeCritical<L>::run, &Incremental<L>::run,
-          &Nearest<L>::run, &RayCast<L>::run};
+  return {
+      L::name,         &DepthFirst<L>::run_from_roots, &TimeCritical<L>::run, &Incremental<L>::run, &Nearest<L>::run,
+      &RayCast<L>::run};
 }
 
 }  // namespace odds::query::wide

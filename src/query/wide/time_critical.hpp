@@ -14,9 +14,7 @@ template <class L>
 class TimeCritical {
  public:
   static void run(Task& task) noexcept {
-    if (task.request.p_min >= 1.0 && !task.request.polygon_free) {
-      return DepthFirst<L>::run(task, tree::WideTree::root, tree::WideTree::root);
-    }
+    if (task.request.p_min >= 1.0 && !task.request.polygon_free) return DepthFirst<L>::run_from_roots(task);
     TimeCritical search(task);
     search.run();
   }
