@@ -20,6 +20,7 @@
 #include "calibration/unproved.hpp"
 #include "odds/report/accuracy/forecast.hpp"
 #include "query/answer_odds.hpp"
+#include "query/answer_odds_table.hpp"
 
 namespace odds::calibration {
 namespace {
@@ -155,10 +156,15 @@ void run(const Options& options) {
   for (const std::string_view word : volume::kind_names) {
     const volume::Kind volume = *volume::kind_from_name(word);
     if (!options.volume.empty() && options.volume != word) continue;
-    const Tables training = gather(training_meetings(), volume, options, options.seed);
     const Tables held_out = gather(held_out_meetings(options.held_out), volume, options, options.seed + 1);
+    const Tables training = options.standing ? Tables{} : gather(training_meetings(), volume, options, options.seed);
     for (std::size_t i = 0; i < training.size(); ++i) {
       const std::string name = fmt::format("{}, {}", word, names[i]);
+      if (options.standing) {
+        const std::size_t first = query::odds_index(volume, query::EstimatorKind::cells, query::Method::exact);
+        judge(held_out[i], query::answer_odds[first + i], (name + ": held out, as it stands").c_str());
+        continue;
+      }
       const query::AnswerOdds odds = fit(training[i]);
       print(odds, name);
       judge(training[i], odds, (name + ": fitted on").c_str());
@@ -178,7 +184,7 @@ int main(int argc, char** argv) {
   app.add_option("--held-out", options.held_out, "more meshes to judge by, each with its copy");
   app.add_option("--bv", options.volume, "tables of this volume alone; default: of all");
   app.add_flag("--nodes", options.nodes, "the odds of pairs of nodes, not of answers");
-  app.add_flag("--standing", options.standing, "fits nothing: judges what stands in the library; with --nodes");
+  app.add_flag("--standing", options.standing, "fits nothing: judges what stands in the library");
   CLI11_PARSE(app, argc, argv);
   if (options.nodes) {
     odds::calibration::calibrate_nodes(options.volume, options.poses, options.seed, options.held_out, options.standing);
