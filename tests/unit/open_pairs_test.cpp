@@ -1,8 +1,10 @@
-// How the wide engine's depth-first search notes its open pairs.
+// How the wide engine's searches note their open pairs, and the lanes that they write them from.
 #include "query/wide/open_pairs.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <iterator>
 #include <vector>
 
 #include "odds/math/random.hpp"
@@ -56,6 +58,32 @@ TYPED_TEST(Lanes, AreWrittenInOrderCountedOrNot) {
       if ((mask >> lane & 1U) == 0) continue;
       ASSERT_EQ(written[at++], (counted >> lane & 1U) != 0 ? 1000 + lane : 7U);
     }
+  }
+}
+
+TYPED_TEST(Lanes, AreChosenAndTheLeastFound) {
+  math::Random random(4);
+  alignas(64) float numbers[2][wide_lanes + 1];
+  for (int i = 0; i < 2000; ++i) {
+    for (auto& eight : numbers) {
+      for (float& number : eight) number = static_cast<float>(random.below(20)) - 10.0F;
+    }
+    const auto mask = static_cast<unsigned>(random.below(256));
+    const auto chosen = TypeParam::choose(mask, TypeParam::load(numbers[0]), TypeParam::load_from(numbers[1] + 1));
+    alignas(64) float kept[wide_lanes];
+    TypeParam::store(kept, chosen);
+    float written[wide_lanes];
+    TypeParam::write_some(written, chosen, mask);
+    std::size_t at = 0;
+    for (unsigned lane = 0; lane < wide_lanes; ++lane) {
+      const bool is_first = (mask >> lane & 1U) != 0;
+      ASSERT_EQ(kept[lane], is_first ? numbers[0][lane] : numbers[1][lane + 1]);
+      if (!is_first) continue;
+      ASSERT_EQ(written[at++], kept[lane]);
+    }
+    const float least = *std::min_element(std::begin(kept), std::end(kept));
+    ASSERT_EQ(TypeParam::least_value(chosen), least);
+    ASSERT_EQ(kept[TypeParam::least(chosen)], least);
   }
 }
 
