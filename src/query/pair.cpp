@@ -93,7 +93,7 @@ SearchResult search(const wide::Encounter& encounter, const PosedMeshes& meshes,
   wide::Task task{encounter, request, wanted, queue, pair.hits, spending, result};
   const Method order = order_of(request);
   if (order == Method::exact) {
-    pair.wide->depth_first(task);
+    pair.wide->exact(task);
     return result;
   }
   if (order == Method::time_critical) {

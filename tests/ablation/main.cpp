@@ -17,7 +17,7 @@
 #include "odds/report/accuracy/forecast.hpp"
 #include "odds/report/accuracy/poses.hpp"
 #include "query/shape_data.hpp"
-#include "support/likeliest_first.hpp"
+#include "support/by_queue.hpp"
 
 namespace odds::ablation {
 namespace {
@@ -122,7 +122,7 @@ std::optional<Error> table_of_answers(const SharedShape& wide, const std::vector
     if (!pair.ok()) return pair.error();
     query::Request request;
     request.estimator = variant.estimator;
-    if (variant.by_queue) request = testing::likeliest_first(request);
+    if (variant.by_queue) request = testing::by_queue(request);
     request.budget = query::Budget::work(options.units);
     request.max_contacts = variant.most_contacts;
     Tally tally;
@@ -158,7 +158,7 @@ void search_exactly(const query::wide::Searches& searches, const query::Shape& s
     const query::wide::Encounter met(tree, tree, meshes, request.estimator);
     query::SearchResult result;
     query::wide::Task task{met, request, 1, queue, hits, spending, result};
-    if (!met.far_apart()) searches.depth_first(task);
+    if (!met.far_apart()) searches.exact(task);
     cost = spending.close();
     least = std::min(least, 1e-3 * static_cast<double>(clock() - begin));
   }

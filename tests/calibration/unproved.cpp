@@ -47,7 +47,7 @@ std::optional<query::Remains> search(const Tree& a, const Tree& b, const query::
     const std::uint32_t wanted = request.method == query::Method::exact ? 2 : 1;
     query::wide::Task task{met, request, wanted, memory.queue, memory.hits, spending, result};
     if (request.method == query::Method::time_critical) searches.time_critical(task);
-    if (request.method == query::Method::exact) searches.depth_first(task);
+    if (request.method == query::Method::exact) searches.exact(task);
     if (request.method == query::Method::incremental) {
       memory.front.reset();
       memory.front.move_to(meshes.pose(), b.reach());

@@ -4,7 +4,7 @@
 #include "odds/query/pair.hpp"
 #include "support/all_kinds.hpp"
 #include "support/brute_force.hpp"
-#include "support/likeliest_first.hpp"
+#include "support/by_queue.hpp"
 #include "support/near_poses.hpp"
 #include "support/shapes.hpp"
 
@@ -12,10 +12,8 @@ namespace odds::query {
 namespace {
 
 /// All orders of search.
-constexpr Request requests[] = {{.method = Method::exact},
-                                {.method = Method::time_critical},
-                                {.method = Method::incremental},
-                                testing::likeliest_first()};
+constexpr Request requests[] = {
+    {.method = Method::exact}, {.method = Method::time_critical}, {.method = Method::incremental}, testing::by_queue()};
 
 using Mesh = std::shared_ptr<const mesh::TriangleMesh>;
 

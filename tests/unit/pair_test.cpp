@@ -10,7 +10,7 @@
 
 #include "odds/mesh/made/by_name.hpp"
 #include "support/all_kinds.hpp"
-#include "support/likeliest_first.hpp"
+#include "support/by_queue.hpp"
 #include "support/shapes.hpp"
 
 namespace odds::query {
@@ -293,7 +293,7 @@ TEST(Pair, OnlyRequestsThatCountLikelyPairsAreSearchedInAnotherOrderThanExact) {
     EXPECT_EQ(usual.basis, exact.basis) << units << " units";
     EXPECT_EQ(usual.probability, exact.probability) << units << " units";
     EXPECT_EQ(usual.cell_pair.position, exact.cell_pair.position) << units << " units";
-    const Answer counting = pair.run(overlapping, testing::likeliest_first({.budget = Budget::work(units)}));
+    const Answer counting = pair.run(overlapping, testing::by_queue({.budget = Budget::work(units)}));
     undecided += exact.basis == Basis::proved ? 0 : 1;
     in_another_order += counting.cell_pair.position == exact.cell_pair.position ? 0 : 1;
   }

@@ -5,12 +5,26 @@
 
 namespace odds::query::wide {
 
-/// Shared by the two parts of an exact search, one after the other: LikeliestFirst and DepthFirst.
+/// Shared by the parts of an exact search, one after the other. It starts with one pair, open or of leaves.
 template <class L>
 class Frontier {
  public:
+  /// With more than these open the newest is opened, one at a time, and then seven more a level are all there can be.
+  static constexpr std::size_t crowded = wide_stack_capacity / 2;
+
+ private:
+  LaneAddress open_lanes_[2][crowded + (Opener<L>::most + 2) * wide_lanes + wide_stack_capacity];
+  Slot leaf_slots_[2][(Opener<L>::most + 1) * wide_lanes];
+
+ public:
+  Task& task;
+  const Encounter& met;
+  const Opener<L> opener;
+  OpenPairs open{open_lanes_[0], open_lanes_[1]};
+  SlotPairs leaf_pairs{{leaf_slots_[0], leaf_slots_[1]}};
+
   Frontier(Task& given, Slot start_a, Slot start_b) noexcept
-      : task(given), met(given.encounter), opener(given.encounter), hits_(given.hits.size()) {
+      : task(given), met(given.encounter), opener(given.encounter) {
     if (met.are_leaves(start_a, start_b)) {
       leaf_pairs.of[0][0] = start_a;
       leaf_pairs.of[1][0] = start_b;
@@ -26,10 +40,6 @@ class Frontier {
   [[nodiscard]] bool may_open() noexcept {
     return task.spending.may_go_on_after(units_between_polls) && task.spending.allows(wide_lanes);
   }
-
-  /// Hits that the search has not yet reacted to.
-  [[nodiscard]] bool has_new_hits() const noexcept { return task.hits.size() != hits_; }
-  void note_hits() noexcept { hits_ = task.hits.size(); }
 
   /// False: the search has ended. If for the budget, the pairs of leaves are left open.
   bool visit_leaf_pairs() noexcept {
@@ -72,10 +82,6 @@ class Frontier {
     task.result.open = all;
   }
 
-  /// With more than these open the newest is opened, one at a time, and then seven more a level are all there can be.
-  static constexpr std::size_t crowded = wide_stack_capacity / 2;
-  static constexpr std::size_t capacity = crowded + (Opener<L>::most + 2) * wide_lanes + wide_stack_capacity;
-
  private:
   static constexpr std::size_t most_ranked = 4;  // each costs as much as opening a pair
 
@@ -86,19 +92,6 @@ class Frontier {
     }
     task.result.open = all;
   }
-
-  LaneAddress open_lanes_[2][capacity];
-  Slot leaf_slots_[2][(Opener<L>::most + 1) * wide_lanes];
-
- public:
-  Task& task;
-  const Encounter& met;
-  const Opener<L> opener;
-  OpenPairs open{open_lanes_[0], open_lanes_[1]};
-  SlotPairs leaf_pairs{{leaf_slots_[0], leaf_slots_[1]}};
-
- private:
-  std::size_t hits_;
 };
 
 }  // namespace odds::query::wide

@@ -25,16 +25,15 @@ class LikeliestFirst {
     for (std::size_t i = 0; i < window; i += wide_lanes) L::store(keys_ + i, L::all(nothing));
   }
 
-  /// Goes on until a hit, through at most `most_opened` pairs and, unless `stubborn`, only while there is one
-  /// that may well meet: where none is, bodies are mostly apart, and for a proof of that any order will do. False: the
-  /// search has ended. Preconditions: one pair is open, and nothing else; one hit is wanted.
-  bool run(std::uint32_t most_opened, bool stubborn) noexcept {
+  /// Goes on until a hit, through at most `most_opened` pairs and, where no budget wants to know where they may meet,
+  /// only while one may well do so: where none may, bodies are mostly apart, and for a proof of that any order will do.
+  /// False: the search has ended. Preconditions: one pair is open, and nothing else; one hit is wanted.
+  bool run() noexcept {
     OpenPairs& open = at_.open;
-    const float least_likely = stubborn ? nothing : -likely;
+    const float least_likely = task_.request.budget.is_limited() ? nothing : -likely;
     Next next{open.opened[0], open.other[0], -nothing};
     open.size = 0;
-    for (std::uint32_t opened = 0;; ++opened) {
-      if (next.key > least_likely || opened == most_opened || open.size > Frontier<L>::crowded) break;
+    for (std::uint32_t opened = 0; opened < most_opened && next.key <= least_likely; ++opened) {
       if (!at_.may_open()) {
         put_back(next);
         task_.result.ended = Progressed::spent;
@@ -68,6 +67,10 @@ class LikeliestFirst {
  private:
   using F = typename L::Float;
 
+  /// After so many a proof that the bodies are apart is the likelier end, and that comes sooner by several at a time.
+  static constexpr std::uint32_t most_opened = 32;
+  static constexpr std::size_t most_open = most_opened * (wide_lanes - 1) + 1;
+  static_assert(most_open <= Frontier<L>::crowded);
   static constexpr std::size_t window = 32;
   static_assert(window == 4 * wide_lanes);
   /// A key that no pair has. Keys are gaps for the thickness of both surfaces: the least is the likeliest.
@@ -182,7 +185,7 @@ class LikeliestFirst {
   Frontier<L>& at_;
   Task& task_;
   bool has_asked_ = false;
-  alignas(64) float keys_[window + Frontier<L>::capacity];
+  alignas(64) float keys_[window + most_open + wide_lanes];  // lanes are written eight at a time
 };
 
 }  // namespace odds::query::wide

@@ -1,5 +1,5 @@
-// The searches of the wide engine: depth-first, time-critical, incremental, nearest points and
-// rays, compiled once for each instruction set.
+// The searches of the wide engine: exact, time-critical, incremental, nearest points and rays, compiled once for each
+// instruction set.
 #pragma once
 
 #include <optional>
@@ -61,7 +61,7 @@ struct RayTask {
 /// One instruction set's searches. Each of two trees starts from the pair of roots, which is known to overlap.
 struct Searches {
   const char* instruction_set;
-  void (*depth_first)(Task& task) noexcept;
+  void (*exact)(Task& task) noexcept;
   void (*time_critical)(Task& task) noexcept;
   /// From what the front knows; the front has been moved to the encounter's pose.
   void (*incremental)(Task& task, KineticFront& front) noexcept;

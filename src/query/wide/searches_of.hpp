@@ -1,7 +1,7 @@
 // All searches for one instruction set, for the files that compile them; nobody else includes this.
 #pragma once
 
-#include "query/wide/depth_first.hpp"
+#include "query/wide/exact.hpp"
 #include "query/wide/incremental.hpp"
 #include "query/wide/nearest.hpp"
 #include "query/wide/ray_cast.hpp"
@@ -11,9 +11,8 @@ namespace odds::query::wide {
 
 template <class L>
 constexpr Searches searches_of() noexcept {
-  return {
-      L::name,         &DepthFirst<L>::run_from_roots, &TimeCritical<L>::run, &Incremental<L>::run, &Nearest<L>::run,
-      &RayCast<L>::run};
+  return {L::name,          &Exact<L>::run_from_roots, &TimeCritical<L>::run, &Incremental<L>::run,
+          &Nearest<L>::run, &RayCast<L>::run};
 }
 
 }  // namespace odds::query::wide

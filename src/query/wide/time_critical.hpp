@@ -1,7 +1,7 @@
 // The time-critical search: Algorithm 4.3 on the wide tree.
 #pragma once
 
-#include "query/wide/depth_first.hpp"
+#include "query/wide/exact.hpp"
 
 namespace odds::query::wide {
 
@@ -14,7 +14,7 @@ template <class L>
 class TimeCritical {
  public:
   static void run(Task& task) noexcept {
-    if (task.request.p_min >= 1.0 && !task.request.polygon_free) return DepthFirst<L>::run_from_roots(task);
+    if (task.request.p_min >= 1.0 && !task.request.polygon_free) return Exact<L>::run_from_roots(task);
     TimeCritical search(task);
     search.run();
   }
@@ -147,7 +147,7 @@ class TimeCritical {
       leave_open<L>(task_, pair);
       return;
     }
-    DepthFirst<L>::run(task_, pair.a, pair.b);
+    Exact<L>::run(task_, pair.a, pair.b);
     if (task_.result.ended != Progressed::finished) finished_ = true;
   }
 
