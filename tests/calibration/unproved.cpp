@@ -43,9 +43,7 @@ std::optional<query::Remains> search(const Tree& a, const Tree& b, const query::
     const query::wide::Encounter met(a, b, meshes, request.estimator);
     if (met.far_apart()) return std::nullopt;
     const query::wide::Searches& searches = *query::wide::searches_for(query::InstructionSet::best);
-    // Of exact searches only those for several hits are depth-first from the beginning.
-    const std::uint32_t wanted = request.method == query::Method::exact ? 2 : 1;
-    query::wide::Task task{met, request, wanted, memory.queue, memory.hits, spending, result};
+    query::wide::Task task{met, request, 1, memory.queue, memory.hits, spending, result};
     if (request.method == query::Method::time_critical) searches.time_critical(task);
     if (request.method == query::Method::exact) searches.exact(task);
     if (request.method == query::Method::incremental) {
@@ -110,6 +108,8 @@ Result<std::vector<std::vector<Unproved>>> unproved_answers(const Meeting& meeti
       query::Request request;
       request.estimator = asked.ways[way].estimator;
       request.method = asked.ways[way].method;
+      // The wide engine is depth-first from the beginning where it looks for several contacts.
+      if (request.method == query::Method::exact) request.max_contacts = 2;
       for (const std::uint64_t units : asked.units) {
         request.budget = query::Budget::work(units);
         const auto remains = search(*shapes[0], *shapes[1], pose, request, memory);

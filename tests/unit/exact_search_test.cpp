@@ -46,7 +46,7 @@ TEST_F(ExactSearch, RanksThePairOfRootsIfItEndsThere) {
 TEST_F(ExactSearch, CountsWhatItLeavesOpenHoweverFarItCame) {
   for (const int wanted : {1, 8}) {
     for (std::uint64_t units = 8; units < 1000; units += 8) {
-      const Request request{.budget = Budget::work(units)};
+      const Request request{.budget = Budget::work(units), .max_contacts = wanted};
       BucketQueue queue(16);
       Spending spending(request.budget);
       SearchResult result;

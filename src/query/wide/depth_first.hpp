@@ -9,9 +9,9 @@ namespace odds::query::wide {
 /// the other would wait for the end of every sum, and for its numbers from memory. What remains is kept without
 /// branches that nobody could predict. It is six at a time, as they come.
 ///
-/// For `several` hits it is two, the deepest overlap first. And it does not go on beside a hit but somewhere else: hits
-/// that are found until a budget ends it, or until no more are kept, come from all over the rim, and contacts made of
-/// them hold a body on all sides.
+/// For `several` contacts it is two, the deepest overlap first. And it does not go on beside a hit but somewhere else:
+/// hits that are found until a budget ends it, or until no more are kept, come from all over the rim, and contacts made
+/// of them hold a body on all sides.
 template <class L, bool several>
 class DepthFirst {
  public:

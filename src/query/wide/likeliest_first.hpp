@@ -27,7 +27,7 @@ class LikeliestFirst {
 
   /// Goes on until a hit, through at most `most_opened` pairs and, where no budget wants to know where they may meet,
   /// only while one may well do so: where none may, bodies are mostly apart, and for a proof of that any order will do.
-  /// False: the search has ended. Preconditions: one pair is open, and nothing else; one hit is wanted.
+  /// False: the search has ended. Preconditions: one pair is open, and nothing else; a hit ends the search.
   bool run() noexcept {
     OpenPairs& open = at_.open;
     const float least_likely = task_.request.budget.is_limited() ? nothing : -likely;
