@@ -13,7 +13,7 @@
 namespace odds::query::wide {
 
 /// Where surfaces meet, volumes overlap deeply for how thick the surfaces are (see `ranks`): the order of Algorithm 4.3
-/// leads to a hit with half of the pairs that a depth-first search opens, or fewer.
+/// leads to a hit with half to three quarters of the pairs that a depth-first search opens.
 ///
 /// A queue would cost more than that saves. Here what is open stands in one array, and the likeliest of the newest
 /// `window` is found by comparing them all, while the kernel is busy with a pair; of what that pair brings the
