@@ -41,7 +41,8 @@ struct EightTriangles {
   F lower[3];
   F upper[3];
   F normal[3];
-  F tolerance;  // of a product with the normal
+  F tolerance;          // of a product with the normal
+  F outline_tolerance;  // of the side of a point to a side of the triangle, in a projection
 
   ODDS_LANES_INLINE void scale(float factor) noexcept {
     for (auto& point : corner) {
@@ -70,6 +71,10 @@ struct EightTriangles {
     // A normal's component errs by 9 delta E, a difference of points by 2 delta and is at most 2 span long: the sum of
     // three products errs by less than 32 delta E (2 span + E), their own rounding included.
     tolerance = L::all(32.0F * delta) * longest * (L::all(2.0F * span) + longest) + L::all(least_product);
+    // A side is at most 2 E long and errs by 2 delta, as does what it is multiplied with: twice such a product errs by
+    // less than 8 delta (span + E) and its rounding by 2 delta E, the area, which says where the inside is, by 9 delta
+    // E.
+    outline_tolerance = L::all(16.0F * delta) * (L::all(span) + (longest + longest)) + L::all(least_product);
   }
   [[nodiscard]] ODDS_LANES_INLINE F lengths_of_normals() const noexcept {
     return L::root((normal[0] * normal[0] + normal[1] * normal[1]) + normal[2] * normal[2]);
@@ -85,6 +90,7 @@ struct Rows {
   alignas(64) float upper[3][wide_lanes];
   alignas(64) float normal[3][wide_lanes];
   alignas(64) float tolerance[wide_lanes];
+  alignas(64) float outline_tolerance[wide_lanes];
 
   /// `slack`: error of a difference of coordinates.
   ODDS_LANES_INLINE void keep_boxes(const EightTriangles<L>& b, float slack) noexcept {
@@ -99,6 +105,7 @@ struct Rows {
       L::store(normal[i], b.normal[i]);
     }
     L::store(tolerance, b.tolerance);
+    L::store(outline_tolerance, b.outline_tolerance);
   }
   ODDS_LANES_INLINE void spread_corner(unsigned row, int k, F (&point)[3]) const noexcept {
     for (int i = 0; i < 3; ++i) point[i] = L::all(corner[k][i][row]);
@@ -170,6 +177,61 @@ ODDS_LANES_INLINE unsigned planes_meet(const EightTriangles<L>& a, const Rows<L>
          L::less_equal(plane_gap_of_a<L>(a, b, row), a.tolerance);
 }
 
+/// On which side of a line points lie, times the length of what was given of it.
+template <class L>
+class LineGap {
+ public:
+  using F = typename L::Float;
+  ODDS_LANES_INLINE LineGap(const F& from_x, const F& from_y, const F& to_x, const F& to_y) noexcept
+      : x_(from_x), y_(from_y), along_x_(to_x - from_x), along_y_(to_y - from_y) {}
+  ODDS_LANES_INLINE F of(const F& x, const F& y) const noexcept { return along_x_ * (y - y_) - along_y_ * (x - x_); }
+
+ private:
+  F x_;
+  F y_;
+  F along_x_;
+  F along_y_;
+};
+
+/// The outlines of one triangle and of eight as seen along the axis that is nearest to the one's normal: false lanes
+/// are certainly apart, for a side of one has all of the other on its outside. Most pairs of triangles that share a
+/// plane, as those of flush faces do, are apart in it, which would take the exact test its longest arithmetic to see.
+template <class L>
+ODDS_LANES_INLINE unsigned outlines_meet(const EightTriangles<L>& a, const Rows<L>& b, unsigned row) noexcept {
+  using F = typename L::Float;
+  const float n[3] = {std::abs(b.normal[0][row]), std::abs(b.normal[1][row]), std::abs(b.normal[2][row])};
+  const int k = n[0] >= n[1] ? (n[0] >= n[2] ? 0 : 2) : (n[1] >= n[2] ? 1 : 2);
+  const int i = k == 2 ? 0 : k + 1;
+  const int j = k == 0 ? 2 : k - 1;
+  F x[3];
+  F y[3];
+  for (int c = 0; c < 3; ++c) {
+    x[c] = L::all(b.corner[c][i][row]);
+    y[c] = L::all(b.corner[c][j][row]);
+  }
+  const F zero = L::all(0.0F);
+  const F inside_a = L::choose(L::less_equal(zero, a.normal[k]), L::all(1.0F), L::all(-1.0F));
+  const F inside_b = L::all(b.normal[k][row] >= 0.0F ? 1.0F : -1.0F);
+  const F outside_a = zero - a.outline_tolerance;
+  const F outside_b = L::all(-b.outline_tolerance[row]);
+  unsigned apart = 0;
+  for (int c = 0; c < 3; ++c) {
+    const int d = c == 2 ? 0 : c + 1;
+    const LineGap<L> side(a.corner[c][i], a.corner[c][j], a.corner[d][i], a.corner[d][j]);
+    const F nearest =
+        L::max(L::max(inside_a * side.of(x[0], y[0]), inside_a * side.of(x[1], y[1])), inside_a * side.of(x[2], y[2]));
+    apart |= L::less_equal(nearest, outside_a);
+  }
+  for (int c = 0; c < 3; ++c) {
+    const int d = c == 2 ? 0 : c + 1;
+    const LineGap<L> side(x[c], y[c], x[d], y[d]);
+    F nearest = inside_b * side.of(a.corner[0][i], a.corner[0][j]);
+    for (int p = 1; p < 3; ++p) nearest = L::max(nearest, inside_b * side.of(a.corner[p][i], a.corner[p][j]));
+    apart |= L::less_equal(nearest, outside_b);
+  }
+  return ~apart & 0xFFU;
+}
+
 /// Two leaves in A's frame, about the centre of A's lane, times `scale`.
 template <class L>
 struct TwoLeaves {
@@ -237,8 +299,8 @@ struct TwoLeaves {
   }
 };
 
-/// Pairs of triangles of two leaves that no box, no plane separates. `shift`: where B's leaf centre stands from A's, in
-/// A's frame; `margin`: that of the encounter.
+/// Pairs of triangles of two leaves that no box, no plane and no side of an outline separates. `shift`: where B's leaf
+/// centre stands from A's, in A's frame; `margin`: that of the encounter.
 template <class L>
 ODDS_LANES_INLINE LeafPairs leaf_pairs(const PlacedLeaf& in_a, const PlacedLeaf& in_b, const Turn& turn,
                                        const float shift[3], float margin) noexcept {
@@ -268,7 +330,8 @@ ODDS_LANES_INLINE LeafPairs leaf_pairs(const PlacedLeaf& in_a, const PlacedLeaf&
   b.keep_planes(leaves.b);
   for (unsigned left = rows; left != 0; left &= left - 1U) {
     const auto row = static_cast<unsigned>(__builtin_ctz(left));
-    const unsigned met = found.lanes_a[row] & planes_meet<L>(leaves.a, b, row);
+    unsigned met = found.lanes_a[row] & planes_meet<L>(leaves.a, b, row);
+    if (met != 0) met &= outlines_meet<L>(leaves.a, b, row);
     found.lanes_a[row] = static_cast<std::uint8_t>(met);
     rows &= met != 0 ? ~0U : ~(1U << row);
   }

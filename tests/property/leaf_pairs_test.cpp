@@ -1,0 +1,147 @@
+// What leaves leave to the exact test: every pair of triangles that meets, and few of those that lie side by side.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "odds/math/random.hpp"
+#include "query/wide/encounter.hpp"
+#include "query/wide/lanes.hpp"
+
+namespace odds::query::wide {
+namespace {
+
+constexpr std::uint32_t triangles = 8;  // in one leaf or two
+
+mesh::TriangleMesh mesh_of(std::vector<Vec3> corners) {
+  std::vector<mesh::Triangle> indices;
+  for (std::uint32_t i = 0; i + 2 < corners.size(); i += 3) indices.push_back({i, i + 1, i + 2});
+  return std::move(mesh::TriangleMesh::make(std::move(corners), std::move(indices), "leaf")).value();
+}
+
+struct Leaf {
+  explicit Leaf(std::vector<Vec3> corners) : mesh(mesh_of(std::move(corners))), tree(tree::WideTree::build(mesh, {})) {}
+  mesh::TriangleMesh mesh;
+  tree::WideTree tree;
+};
+
+struct Counts {
+  int asked = 0;
+  int met = 0;
+};
+
+/// The leaves' slots.
+std::vector<Slot> leaves_of(const tree::WideTree& tree) {
+  std::vector<Slot> slots;
+  for (Slot slot = 0; slot < tree.node_count() * wide_lanes; ++slot) {
+    if (tree.nodes()[slot / wide_lanes].child[slot % wide_lanes].is_leaf()) slots.push_back(slot);
+  }
+  return slots;
+}
+
+/// How many pairs are left to the exact test, and how many meet; fails if one that meets is not left to it.
+template <class L>
+Counts compare(const Leaf& a, const Leaf& b, const math::Pose& pose) {
+  const PosedMeshes meshes(a.mesh, b.mesh, a.tree.origin(), b.tree.origin(), pose);
+  const Encounter met(a.tree, b.tree, meshes, EstimatorKind::kinematic);
+  Counts counts;
+  for (const Slot slot_a : leaves_of(a.tree)) {
+    for (const Slot slot_b : leaves_of(b.tree)) {
+      float shift[3];
+      met.shift(slot_a, slot_b, shift);
+      const PlacedLeaf leaf_a = met.leaf(0, slot_a);
+      const PlacedLeaf leaf_b = met.leaf(1, slot_b);
+      const LeafPairs pairs = leaf_pairs<L>(leaf_a, leaf_b, met.turn_into(0), shift, met.margin());
+      for (std::uint32_t row = 0; row < leaf_b.count(); ++row) {
+        for (std::uint32_t lane = 0; lane < leaf_a.count(); ++lane) {
+          const bool asked = (pairs.rows >> row & 1U) != 0 && (pairs.lanes_a[row] >> lane & 1U) != 0;
+          const bool meet = met.triangles_meet(leaf_a.leaf.triangle[lane], leaf_b.leaf.triangle[row]);
+          EXPECT_TRUE(asked || !meet) << "lane " << lane << ", row " << row;
+          counts.asked += asked ? 1 : 0;
+          counts.met += meet ? 1 : 0;
+        }
+      }
+    }
+  }
+  return counts;
+}
+
+template <class L>
+class LeafPairsOn : public ::testing::Test {};
+using BuiltHere = ::testing::Types<
+#if defined(__SSE2__)
+    lanes::Sse2,
+#endif
+    lanes::Portable>;
+TYPED_TEST_SUITE(LeafPairsOn, BuiltHere);
+
+/// Corners on a grid of so few points that triangles share corners, sides and planes all the time, some without area;
+/// slivers where one axis is short.
+std::vector<Vec3> on_a_grid(math::Random& random, const Vec3& scale, bool flat) {
+  std::vector<Vec3> corners;
+  while (corners.size() < std::size_t{3} * triangles) {
+    const auto at = [&random] { return static_cast<double>(random.below(4)); };
+    corners.push_back(scale.cwiseProduct(Vec3(at(), at(), flat ? 0.0 : at())));
+  }
+  return corners;
+}
+
+TYPED_TEST(LeafPairsOn, MissNothingThatMeets) {
+  math::Random random(21);
+  Counts all;
+  for (int i = 0; i < 4000; ++i) {
+    const double size = std::exp2(static_cast<double>(random.below(60)) - 30.0);
+    const Vec3 scale = size * Vec3(1.0, 1.0, random.below(2) == 0 ? 1.0 : 1e-3);
+    const bool flat = random.below(2) == 0;
+    const Leaf a(on_a_grid(random, scale, flat));
+    const Leaf b(on_a_grid(random, scale, flat));
+    // Turned by a quarter or not at all, and moved along the grid, much lies in one plane; else next to it.
+    math::Pose pose;
+    if (random.below(2) == 0) pose.rotation << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+    pose.translation = scale.cwiseProduct(
+        Vec3(static_cast<double>(random.below(5)) - 2.0, static_cast<double>(random.below(5)) - 2.0, 0.0));
+    if (random.below(3) == 0) pose.translation += 1e-7 * size * random.direction();
+    const Quat turn = random.rotation();
+    // Turned both, nothing is along an axis any more: B stands in A as before, A's corners are others.
+    if (random.below(2) == 0) {
+      std::vector<Vec3> turned(a.mesh.vertices().begin(), a.mesh.vertices().end());
+      for (Vec3& corner : turned) corner = turn * corner;
+      pose = math::Pose{turn.toRotationMatrix(), Vec3::Zero()} * pose;
+      const Counts counts = compare<TypeParam>(Leaf(std::move(turned)), b, pose);
+      all.asked += counts.asked;
+      all.met += counts.met;
+    } else {
+      const Counts counts = compare<TypeParam>(a, b, pose);
+      all.asked += counts.asked;
+      all.met += counts.met;
+    }
+    ASSERT_FALSE(this->HasFailure()) << i;
+  }
+  EXPECT_GT(all.met, 20000);
+  EXPECT_GT(all.asked, all.met);
+}
+
+TYPED_TEST(LeafPairsOn, SeeWhatLiesSideBySideInAPlane) {
+  math::Random random(22);
+  // A fan of eight slivers, and the same beside it, a hundredth of its size away.
+  std::vector<Vec3> fan;
+  for (int i = 0; i < static_cast<int>(triangles); ++i) {
+    const auto rim = [](int k) { return Vec3(std::cos(0.05 * k), std::sin(0.05 * k), 0.0); };
+    fan.insert(fan.end(), {Vec3::Zero(), rim(i), rim(i + 1)});
+  }
+  int asked = 0;
+  for (int i = 0; i < 500; ++i) {
+    const Mat3 turn = random.rotation().toRotationMatrix();
+    std::vector<Vec3> turned;
+    for (const Vec3& corner : fan) turned.emplace_back(turn * corner);
+    // Both fans' boxes overlap nearly everywhere: B is turned in the common plane by more than a fan is wide.
+    const Mat3 aside = Eigen::AngleAxisd(0.42, Vec3::UnitZ()).toRotationMatrix();
+    const math::Pose pose{turn * aside, turn * Vec3(0.0, 0.01, 0.0)};
+    asked += compare<TypeParam>(Leaf(std::move(turned)), Leaf(fan), pose).asked;
+  }
+  EXPECT_LT(asked, 500);  // of 32,000
+}
+
+}  // namespace
+}  // namespace odds::query::wide
