@@ -100,16 +100,28 @@ SearchResult search(const wide::Encounter& encounter, const PosedMeshes& meshes,
     pair.wide->time_critical(task);
     return result;
   }
-  if (request.budget.is_limited() && wide::is_enough_from_roots(request.budget) && pair.front.pauses()) {
+  const bool may_choose = wide::is_enough_from_roots(request.budget);
+  if (may_choose && request.budget.is_limited() && pair.front.pauses()) {
     pair.wide->time_critical(task);
     remember_witness(pair);
     return result;
   }
+  const Cost before = spending.so_far();
+  if (may_choose && pair.front_worth.prefers_roots(meshes.pose(), encounter.b().reach())) {
+    pair.wide->exact(task);
+    pair.front_worth.note_roots(wide::Work::between(before, spending.so_far()), result.ended != Progressed::spent);
+    remember_witness(pair);
+    return result;
+  }
   result.method = Method::incremental;
+  if (pair.front_worth.is_stale()) pair.front.restart();
   pair.front.move_to(meshes.pose(), encounter.b().reach());
   task.sample = wanted;
   if (wanted > 1) task.wanted = no_feature;
+  const bool fresh = pair.front.is_fresh();
   pair.wide->incremental(task, pair.front);
+  pair.front_worth.note_front(wide::Work::between(before, spending.so_far()), pair.front.size(), fresh,
+                              result.ended != Progressed::spent);
   remember_witness(pair);
   return result;
 }
@@ -383,6 +395,7 @@ void Pair::reset() noexcept {
   implementation_->answer = {};
   implementation_->slice.reset();
   implementation_->front.reset();
+  implementation_->front_worth.reset();
   implementation_->previous_normal.setZero();
   implementation_->came.setZero();
   implementation_->apart_at.reset();

@@ -20,6 +20,7 @@
 #include "query/recalibration.hpp"
 #include "query/scratch_pool.hpp"
 #include "query/shape_data.hpp"
+#include "query/wide/front_worth.hpp"
 #include "query/wide/searches.hpp"
 #include "query/within.hpp"
 
@@ -65,6 +66,7 @@ struct Pair::Implementation {
   HitList hits;
   BottomSlice slice;         ///< of the incremental method with volumes of the generic framework
   wide::KineticFront front;  ///< of the same with the wide engine
+  wide::FrontWorth front_worth;
   bool has_witness = false;
   TrianglePair witness;  ///< the pair of triangles that proved the last incremental hit
   const wide::Searches* wide;

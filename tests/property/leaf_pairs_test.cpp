@@ -1,4 +1,5 @@
-// What leaves leave to the exact test: every pair of triangles that meets, and few of those that lie side by side.
+// What leaves leave to the exact test: every pair of triangles that meets, and few of those that lie side by side. And
+// how far apart they say that the others are.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -6,6 +7,7 @@
 #include <vector>
 
 #include "odds/math/random.hpp"
+#include "odds/primitive/triangle_distance.hpp"
 #include "query/wide/encounter.hpp"
 #include "query/wide/lanes.hpp"
 
@@ -29,6 +31,7 @@ struct Leaf {
 struct Counts {
   int asked = 0;
   int met = 0;
+  int with_gap = 0;  ///< pairs that are known to be apart by something
 };
 
 /// The leaves' slots.
@@ -53,11 +56,21 @@ Counts compare(const Leaf& a, const Leaf& b, const math::Pose& pose) {
       const PlacedLeaf leaf_a = met.leaf(0, slot_a);
       const PlacedLeaf leaf_b = met.leaf(1, slot_b);
       const LeafPairs pairs = leaf_pairs<L>(leaf_a, leaf_b, met.turn_into(0), shift, met.margin());
+      alignas(64) float gaps[wide_lanes][wide_lanes];
+      triangle_gaps<L>(leaf_a, leaf_b, met.turn_into(0), shift, met.margin(), gaps);
       for (std::uint32_t row = 0; row < leaf_b.count(); ++row) {
         for (std::uint32_t lane = 0; lane < leaf_a.count(); ++lane) {
           const bool asked = (pairs.rows >> row & 1U) != 0 && (pairs.lanes_a[row] >> lane & 1U) != 0;
-          const bool meet = met.triangles_meet(leaf_a.leaf.triangle[lane], leaf_b.leaf.triangle[row]);
+          const std::uint32_t triangle_a = leaf_a.leaf.triangle[lane];
+          const std::uint32_t triangle_b = leaf_b.leaf.triangle[row];
+          const bool meet = met.triangles_meet(triangle_a, triangle_b);
           EXPECT_TRUE(asked || !meet) << "lane " << lane << ", row " << row;
+          if (gaps[row][lane] > 0.0F) {
+            const auto nearest =
+                primitive::closest_points(meshes.corners_a(triangle_a).data(), meshes.corners_b(triangle_b).data());
+            EXPECT_LE(static_cast<double>(gaps[row][lane]), (nearest.on_b - nearest.on_a).norm());
+            ++counts.with_gap;
+          }
           counts.asked += asked ? 1 : 0;
           counts.met += meet ? 1 : 0;
         }
@@ -111,15 +124,18 @@ TYPED_TEST(LeafPairsOn, MissNothingThatMeets) {
       const Counts counts = compare<TypeParam>(Leaf(std::move(turned)), b, pose);
       all.asked += counts.asked;
       all.met += counts.met;
+      all.with_gap += counts.with_gap;
     } else {
       const Counts counts = compare<TypeParam>(a, b, pose);
       all.asked += counts.asked;
       all.met += counts.met;
+      all.with_gap += counts.with_gap;
     }
     ASSERT_FALSE(this->HasFailure()) << i;
   }
   EXPECT_GT(all.met, 20000);
   EXPECT_GT(all.asked, all.met);
+  EXPECT_GT(all.with_gap, 20000);
 }
 
 TYPED_TEST(LeafPairsOn, SeeWhatLiesSideBySideInAPlane) {
@@ -130,7 +146,7 @@ TYPED_TEST(LeafPairsOn, SeeWhatLiesSideBySideInAPlane) {
     const auto rim = [](int k) { return Vec3(std::cos(0.05 * k), std::sin(0.05 * k), 0.0); };
     fan.insert(fan.end(), {Vec3::Zero(), rim(i), rim(i + 1)});
   }
-  int asked = 0;
+  Counts all;
   for (int i = 0; i < 500; ++i) {
     const Mat3 turn = random.rotation().toRotationMatrix();
     std::vector<Vec3> turned;
@@ -138,9 +154,12 @@ TYPED_TEST(LeafPairsOn, SeeWhatLiesSideBySideInAPlane) {
     // Both fans' boxes overlap nearly everywhere: B is turned in the common plane by more than a fan is wide.
     const Mat3 aside = Eigen::AngleAxisd(0.42, Vec3::UnitZ()).toRotationMatrix();
     const math::Pose pose{turn * aside, turn * Vec3(0.0, 0.01, 0.0)};
-    asked += compare<TypeParam>(Leaf(std::move(turned)), Leaf(fan), pose).asked;
+    const Counts counts = compare<TypeParam>(Leaf(std::move(turned)), Leaf(fan), pose);
+    all.asked += counts.asked;
+    all.with_gap += counts.with_gap;
   }
-  EXPECT_LT(asked, 500);  // of 32,000
+  EXPECT_LT(all.asked, 500);  // of 32,000
+  EXPECT_GT(all.with_gap, 31500);
 }
 
 }  // namespace

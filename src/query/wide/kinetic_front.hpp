@@ -33,6 +33,8 @@ class KineticFront {
 
   explicit KineticFront(std::uint32_t capacity) : entries_(capacity), expiries_(capacity), changed_(capacity) {}
 
+  /// The next search begins from the roots.
+  void restart() noexcept { clear(); }
   /// As if it were new.
   void reset() noexcept {
     clear();

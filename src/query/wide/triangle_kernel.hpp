@@ -177,27 +177,33 @@ ODDS_LANES_INLINE unsigned planes_meet(const EightTriangles<L>& a, const Rows<L>
          L::less_equal(plane_gap_of_a<L>(a, b, row), a.tolerance);
 }
 
-/// On which side of a line points lie, times the length of what was given of it.
+/// A side of a triangle in a projection, directed.
 template <class L>
-class LineGap {
- public:
+struct OutlineSide {
   using F = typename L::Float;
-  ODDS_LANES_INLINE LineGap(const F& from_x, const F& from_y, const F& to_x, const F& to_y) noexcept
-      : x_(from_x), y_(from_y), along_x_(to_x - from_x), along_y_(to_y - from_y) {}
-  ODDS_LANES_INLINE F of(const F& x, const F& y) const noexcept { return along_x_ * (y - y_) - along_y_ * (x - x_); }
+  F x;
+  F y;
+  F along_x;
+  F along_y;
 
- private:
-  F x_;
-  F y_;
-  F along_x_;
-  F along_y_;
+  ODDS_LANES_INLINE OutlineSide(const F& from_x, const F& from_y, const F& to_x, const F& to_y) noexcept
+      : x(from_x), y(from_y), along_x(to_x - from_x), along_y(to_y - from_y) {}
+  /// How far a point lies to the left, times the side's length.
+  [[nodiscard]] ODDS_LANES_INLINE F left(const F& point_x, const F& point_y) const noexcept {
+    return along_x * (point_y - y) - along_y * (point_x - x);
+  }
+  [[nodiscard]] ODDS_LANES_INLINE F length() const noexcept { return L::root(along_x * along_x + along_y * along_y); }
 };
 
-/// The outlines of one triangle and of eight as seen along the axis that is nearest to the one's normal: false lanes
-/// are certainly apart, for a side of one has all of the other on its outside. Most pairs of triangles that share a
-/// plane, as those of flush faces do, are apart in it, which would take the exact test its longest arithmetic to see.
-template <class L>
-ODDS_LANES_INLINE unsigned outlines_meet(const EightTriangles<L>& a, const Rows<L>& b, unsigned row) noexcept {
+/// One triangle's outline and eight others' as seen along the axis that is nearest to the one's normal: how far a side
+/// of one has all of the other on its outside, the most of all sides; 0 or less says nothing. Times the side's length
+/// or, `in_metres`, over at least that: then it is a distance. `slack`: error of a length.
+///
+/// Triangles that share a plane, as those of flush faces do, are mostly apart in it. No box, no plane sees that, and
+/// the exact test takes its longest arithmetic to.
+template <class L, bool in_metres>
+ODDS_LANES_INLINE typename L::Float outline_gap(const EightTriangles<L>& a, const Rows<L>& b, unsigned row,
+                                                float slack) noexcept {
   using F = typename L::Float;
   const float n[3] = {std::abs(b.normal[0][row]), std::abs(b.normal[1][row]), std::abs(b.normal[2][row])};
   const int k = n[0] >= n[1] ? (n[0] >= n[2] ? 0 : 2) : (n[1] >= n[2] ? 1 : 2);
@@ -210,26 +216,33 @@ ODDS_LANES_INLINE unsigned outlines_meet(const EightTriangles<L>& a, const Rows<
     y[c] = L::all(b.corner[c][j][row]);
   }
   const F zero = L::all(0.0F);
-  const F inside_a = L::choose(L::less_equal(zero, a.normal[k]), L::all(1.0F), L::all(-1.0F));
-  const F inside_b = L::all(b.normal[k][row] >= 0.0F ? 1.0F : -1.0F);
-  const F outside_a = zero - a.outline_tolerance;
-  const F outside_b = L::all(-b.outline_tolerance[row]);
-  unsigned apart = 0;
+  const F inwards_a = L::choose(L::less_equal(zero, a.normal[k]), L::all(1.0F), L::all(-1.0F));
+  const F inwards_b = L::all(b.normal[k][row] >= 0.0F ? 1.0F : -1.0F);
+  const F tolerance_b = L::all(b.outline_tolerance[row]);
+  F gap = L::all(-1.0F);
   for (int c = 0; c < 3; ++c) {
     const int d = c == 2 ? 0 : c + 1;
-    const LineGap<L> side(a.corner[c][i], a.corner[c][j], a.corner[d][i], a.corner[d][j]);
-    const F nearest =
-        L::max(L::max(inside_a * side.of(x[0], y[0]), inside_a * side.of(x[1], y[1])), inside_a * side.of(x[2], y[2]));
-    apart |= L::less_equal(nearest, outside_a);
+    const OutlineSide<L> side(a.corner[c][i], a.corner[c][j], a.corner[d][i], a.corner[d][j]);
+    const F inmost = L::max(L::max(inwards_a * side.left(x[0], y[0]), inwards_a * side.left(x[1], y[1])),
+                            inwards_a * side.left(x[2], y[2]));
+    const F outside = (zero - inmost) - a.outline_tolerance;
+    gap = L::max(gap, in_metres ? L::divide(outside, side.length() + L::all(slack)) : outside);
   }
   for (int c = 0; c < 3; ++c) {
     const int d = c == 2 ? 0 : c + 1;
-    const LineGap<L> side(x[c], y[c], x[d], y[d]);
-    F nearest = inside_b * side.of(a.corner[0][i], a.corner[0][j]);
-    for (int p = 1; p < 3; ++p) nearest = L::max(nearest, inside_b * side.of(a.corner[p][i], a.corner[p][j]));
-    apart |= L::less_equal(nearest, outside_b);
+    const OutlineSide<L> side(x[c], y[c], x[d], y[d]);
+    F inmost = inwards_b * side.left(a.corner[0][i], a.corner[0][j]);
+    for (int p = 1; p < 3; ++p) inmost = L::max(inmost, inwards_b * side.left(a.corner[p][i], a.corner[p][j]));
+    const F outside = (zero - inmost) - tolerance_b;
+    gap = L::max(gap, in_metres ? L::divide(outside, side.length() + L::all(slack)) : outside);
   }
-  return ~apart & 0xFFU;
+  return gap;
+}
+
+/// Outlines of one triangle and of eight: false lanes are certainly apart.
+template <class L>
+ODDS_LANES_INLINE unsigned outlines_meet(const EightTriangles<L>& a, const Rows<L>& b, unsigned row) noexcept {
+  return ~L::less_equal(L::all(0.0F), outline_gap<L, false>(a, b, row, 0.0F)) & 0xFFU;
 }
 
 /// Two leaves in A's frame, about the centre of A's lane, times `scale`.
@@ -339,8 +352,9 @@ ODDS_LANES_INLINE LeafPairs leaf_pairs(const PlacedLeaf& in_a, const PlacedLeaf&
   return found;
 }
 
-/// For each of B's triangles (rows) and A's (lanes) a lower bound of their distance, from boxes and planes; 0 or less
-/// says nothing. Metres. Lanes and rows beyond the leaves' counts say nothing.
+/// For each of B's triangles (rows) and A's (lanes) a lower bound of their distance, from boxes and planes and, where
+/// those say nothing, from outlines; 0 or less says nothing. Metres. Lanes and rows beyond the leaves' counts say
+/// nothing.
 template <class L>
 ODDS_LANES_INLINE void triangle_gaps(const PlacedLeaf& in_a, const PlacedLeaf& in_b, const Turn& turn,
                                      const float shift[3], float margin,
@@ -375,6 +389,9 @@ ODDS_LANES_INLINE void triangle_gaps(const PlacedLeaf& in_a, const PlacedLeaf& i
     }
     const F planes_a = plane_gap_of_a<L>(a, b, row) - a.tolerance;
     gap = L::max(gap, planes_a * inverse_a);
+    if ((L::less_equal(gap, L::all(0.0F)) & leaves.lanes_a) != 0) {
+      gap = L::max(gap, outline_gap<L, true>(a, b, row, 6.0F * leaves.delta) * L::all(below));
+    }
     L::store(gaps[row], gap * unscale);
   }
 }
