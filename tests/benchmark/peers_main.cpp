@@ -32,6 +32,7 @@ struct Settings {
   std::vector<std::string> classes;
   std::size_t poses = 200;
   std::size_t steps = 2000;
+  double step = 3e-5;  // of A's size
   std::size_t repeat = 5;
   int builds = 3;
   int core = -1;
@@ -171,9 +172,9 @@ void compare(const Settings& settings, const Workload& workload, Ratios& ratios,
     const auto pose_class = static_cast<PoseClass>(at - pose_class_names.begin());
     if ((pose_class == PoseClass::nested) != workload.nested) continue;
     const std::vector<math::Pose> poses =
-        settings.trajectory
-            ? make_trajectory(workload.meshes, pose_class, settings.steps, 3e-5 * size, settings.seed, collides)
-            : make_poses(workload.meshes, pose_class, settings.poses, settings.seed, collides);
+        settings.trajectory ? make_trajectory(workload.meshes, pose_class, settings.steps, settings.step * size,
+                                              settings.seed, collides)
+                            : make_poses(workload.meshes, pose_class, settings.poses, settings.seed, collides);
     std::vector<char> truth;
     for (const math::Pose& pose : poses) truth.push_back(fcl->collide(pose) ? 1 : 0);
     std::vector<PeerRun> runs = run_peers(settings, peers, poses);
@@ -241,7 +242,10 @@ void add_options(CLI::App& app, Settings& settings) {
                "time of the thread instead of wall time: for a machine that does other work");
   app.add_flag("--untested-leaves", settings.untested_leaves,
                "each volume of ours but wide also without a test of volumes between leaves");
-  app.add_flag("--trajectory", settings.trajectory, "sliding motion, each step 3e-5 of A's size");
+  app.add_flag("--trajectory", settings.trajectory, "sliding motion");
+  app.add_option("--step", settings.step, "way of each step along a trajectory, as a part of A's size")
+      ->check(CLI::Range(1e-9, 0.1))
+      ->capture_default_str();
 }
 
 void complete(Settings& settings) {
