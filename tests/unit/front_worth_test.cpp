@@ -70,6 +70,19 @@ TEST(FrontWorth, WhatIsOfBeforeARestIsStale) {
   EXPECT_FALSE(worth.is_stale());
 }
 
+TEST(FrontWorth, BodiesThatJumpNowAndThenDoNotHurry) {
+  FrontWorth worth;
+  double x = 0.0;
+  worth.note_front(much, 10, true, true);
+  for (int place = 0; place < 100; ++place) {
+    EXPECT_EQ(runs_from_roots(worth, 20, 1e-5, little, much, x), 0) << place;
+    ASSERT_FALSE(worth.is_stale());
+    EXPECT_FALSE(worth.prefers_roots(at(x += 1.0), 1.0)) << place;
+    ASSERT_TRUE(worth.is_stale());
+    worth.note_front({20 * much.node_pairs, 20 * much.triangle_pairs}, 10, true, true);
+  }
+}
+
 TEST(FrontWorth, AWrongGuessOfTheRootsIsCorrected) {
   FrontWorth worth;
   double x = 0.0;

@@ -13,7 +13,8 @@ enum class Method : std::uint8_t {
   exact,
   /// From the bottom slice of the previous run (Li and Chen 98), with the verdicts of exact: for poses that follow each
   /// other. With the wide engine a run that its budget ends is taken up by the next one. With p_min < 1 it is as
-  /// time_critical; also, for some runs, where a budget of more than 25 us and 500 work units was too short for it.
+  /// time_critical; within budgets of more than 25 us and 500 work units, or none, also from the roots: for some runs
+  /// where a budget was too short for it, and as long as that takes less work, as of bodies that hurry.
   incremental,
   /// Likeliest pair first (Algorithm 4.3). With the wide engine only where p_min < 1 or polygons are dropped: else as
   /// exact.

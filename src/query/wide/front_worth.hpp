@@ -36,14 +36,19 @@ class FrontWorth {
   /// A search is about to begin, with B at `pose`; `reach` bounds the distance of B's surface from its tree's origin.
   /// Whether it had better be from the roots.
   [[nodiscard]] bool prefers_roots(const math::Pose& pose, double reach) noexcept {
-    if (known_pose_) motion_.add(math::motion_bound(pose_, pose, reach));
+    const double motion = known_pose_ ? math::motion_bound(pose_, pose, reach) : 0.0;
     pose_ = pose;
+    if (motion_.count >= trial && motion > std::max(jump * motion_.mean, far * reach)) {
+      is_stale_ = true;  // little of what the front knows is left, and nothing is learnt from that
+    } else if (known_pose_) {
+      motion_.add(motion);
+    }
     known_pose_ = true;
     if (rests_ && (rest_ == 0 || motion_.mean < slower * rested_at_)) end_rest();
     if (rests_) --rest_;
     return rests_;
   }
-  /// Whether what the front knows is of before a rest.
+  /// Whether what the front knows is of before a rest, or of another place.
   [[nodiscard]] bool is_stale() const noexcept { return is_stale_; }
 
   /// What a search from the roots took; `finished`: no budget ended it.
@@ -85,6 +90,9 @@ class FrontWorth {
  private:
   static constexpr double dearer = 1.1;
   static constexpr double slower = 0.5;
+  /// Times the motion before, and of the reach: so much at once is to another place.
+  static constexpr double jump = 16.0;
+  static constexpr double far = 0.05;
 
   /// Of the last ones most.
   struct Mean {
