@@ -8,8 +8,8 @@
 namespace odds::query {
 
 enum class Method : std::uint8_t {
-  /// Depth-first search (Algorithm 4.2), no estimates; obeys the budget too. With the wide engine after a start of up to
-  /// 32 pairs, the likeliest first, if one hit is enough.
+  /// Depth-first search (Algorithm 4.2), no estimates; obeys the budget too. With the wide engine after a start of up
+  /// to 32 pairs, the likeliest first, if one hit is enough.
   exact,
   /// From the bottom slice of the previous run (Li and Chen 98), with the verdicts of exact: for poses that follow each
   /// other. With the wide engine a run that its budget ends is taken up by the next one. With p_min < 1 it is as
