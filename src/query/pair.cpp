@@ -100,6 +100,7 @@ SearchResult search(const wide::Encounter& encounter, const PosedMeshes& meshes,
     pair.wide->time_critical(task);
     return result;
   }
+  // Shorter budgets find next to nothing from the roots.
   const bool may_choose = wide::is_enough_from_roots(request.budget);
   if (may_choose && request.budget.is_limited() && pair.front.pauses()) {
     pair.wide->time_critical(task);
@@ -107,21 +108,23 @@ SearchResult search(const wide::Encounter& encounter, const PosedMeshes& meshes,
     return result;
   }
   const Cost before = spending.so_far();
+  const auto work = [&] { return wide::Work::between(before, spending.so_far()); };
   if (may_choose && pair.front_worth.prefers_roots(meshes.pose(), encounter.b().reach())) {
     pair.wide->exact(task);
-    pair.front_worth.note_roots(wide::Work::between(before, spending.so_far()), result.ended != Progressed::spent);
+    pair.front_worth.note_roots(work(), result.ended != Progressed::spent);
     remember_witness(pair);
     return result;
   }
   result.method = Method::incremental;
-  if (pair.front_worth.is_stale()) pair.front.restart();
+  if (may_choose && pair.front_worth.is_stale()) pair.front.restart();
   pair.front.move_to(meshes.pose(), encounter.b().reach());
   task.sample = wanted;
   if (wanted > 1) task.wanted = no_feature;
-  const bool fresh = pair.front.is_fresh();
+  const bool is_new = pair.front.size() == 1;
   pair.wide->incremental(task, pair.front);
-  pair.front_worth.note_front(wide::Work::between(before, spending.so_far()), pair.front.size(), fresh,
-                              result.ended != Progressed::spent);
+  if (may_choose) {
+    pair.front_worth.note_front(work(), pair.front.size(), is_new, result.ended != Progressed::spent);
+  }
   remember_witness(pair);
   return result;
 }

@@ -307,11 +307,13 @@ Vec3 least_overlap(const PatchView& view, const Vec3& area, Watch& watch) noexce
   // The area of a rim of which pieces are missing is one candidate of many: where it is small, so may be what is left.
   offer(area, is_part_of_a_rim(view) ? 1.0 : tolerances::area_preferred);
   Directions faces;
+  const bool in_part = view.input.believed_depth > 0.0;
   for (std::size_t i = 0; i < view.pieces.size() && !watch.late(i); ++i) {
     const RimPiece& piece = view.rim.pieces[view.pieces[i]];
     const PlacedPair& placed = view.rim.pairs[piece.pair];
-    // Solids on the same side of a wall that both have do not part across it, however little the walls overlap.
-    if (solid && placed.normal_a.dot(placed.normal_b) > tolerances::same_face) continue;
+    // Solids on the same side of a wall that both have do not part across it, however little the walls overlap in what
+    // a search without time has left of the rim.
+    if (solid && in_part && placed.normal_a.dot(placed.normal_b) > tolerances::same_face) continue;
     const double weight = piece.along().norm();
     faces.add(placed.normal_b, weight);
     faces.add(-placed.normal_a, weight);
@@ -322,7 +324,7 @@ Vec3 least_overlap(const PatchView& view, const Vec3& area, Watch& watch) noexce
   offer(view.sums.normals_b - view.sums.normals_a, 1.0);
   if (view.input.previous_normal != nullptr) search.offer(*view.input.previous_normal, 1.0);
   const bool walls_only = is_part_of_a_rim(view) || view.sums.length == 0.0;
-  if (walls_only && !watch.late() && (faces.count == 0 || search.is_a_long_way())) {
+  if (walls_only && !watch.late() && ((in_part && faces.count == 0) || search.is_a_long_way())) {
     const Directions ways = ways_along_walls(view, watch);
     for (std::size_t i = 0; i < ways.count; ++i) search.offer_both(ways.ones[i].first, 1.0);
   }

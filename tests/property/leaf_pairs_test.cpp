@@ -55,7 +55,7 @@ Counts compare(const Leaf& a, const Leaf& b, const math::Pose& pose) {
       met.shift(slot_a, slot_b, shift);
       const PlacedLeaf leaf_a = met.leaf(0, slot_a);
       const PlacedLeaf leaf_b = met.leaf(1, slot_b);
-      const LeafPairs pairs = leaf_pairs<L>(leaf_a, leaf_b, met.turn_into(0), shift, met.margin());
+      const LeafPairs pairs = leaf_pairs<L>(leaf_a, leaf_b, met.turn_into(0), shift, met.margin(), true);
       alignas(64) float gaps[wide_lanes][wide_lanes];
       triangle_gaps<L>(leaf_a, leaf_b, met.turn_into(0), shift, met.margin(), gaps);
       for (std::uint32_t row = 0; row < leaf_b.count(); ++row) {

@@ -25,10 +25,10 @@ struct Work {
 /// it is looked at one pair after the other and noted down. Of bodies that move by a thousandth of their size between
 /// two runs, as in a hand that hurries, more has expired than has not.
 ///
-/// So what searches cost is kept account of, of each kind as it is used, and the other kind is tried when there is
-/// reason to: searches from the front first; where they cost more than from the roots, those, until the bodies move
-/// half as fast, or after a rest that is longer each time. By counted work, so that the same runs choose the same on
-/// every machine. No allocation.
+/// So what searches cost is kept account of, of each kind as it is used. While the front is, a search from the roots is
+/// made now and then, and as soon as the bodies move twice as fast as at the last one. Where the front costs more, it
+/// rests: until the bodies move half as fast, or for a rest that is longer each time. By counted work, so that the same
+/// runs choose the same on every machine. No allocation.
 class FrontWorth {
  public:
   void reset() noexcept { *this = {}; }
@@ -44,33 +44,53 @@ class FrontWorth {
       motion_.add(motion);
     }
     known_pose_ = true;
-    if (rests_ && (rest_ == 0 || motion_.mean < slower * rested_at_)) end_rest();
-    if (rests_) --rest_;
-    return rests_;
+    if (rests_) {
+      if (rest_ == 0 || motion_.mean < slower * rested_at_) end_rest();
+      if (rests_) --rest_;
+      return rests_;
+    }
+    if (front_.count < trial || is_stale_) return false;
+    ++since_roots_;
+    return since_roots_ > seldom || (since_roots_ > trial && motion_.mean > faster * roots_at_);
   }
   /// Whether what the front knows is of before a rest, or of another place.
   [[nodiscard]] bool is_stale() const noexcept { return is_stale_; }
 
   /// What a search from the roots took; `finished`: no budget ended it.
   void note_roots(const Work& spent, bool finished) noexcept {
-    if (!finished) return end_rest();           // what the next search takes up is worth more than what it costs
-    if (++seen_in_rest_ == trial) roots_ = {};  // they were guessed, or are of long ago
-    roots_.add(cost_from_roots(spent));
+    const double cost = cost_from_roots(spent);
+    const bool other_motion = motion_.mean > faster * roots_at_ || motion_.mean < slower * roots_at_;
+    since_roots_ = 0;
+    roots_at_ = motion_.mean;
+    if (!finished) {  // what the next search would take up is worth more than what this one cost
+      roots_ = {};
+      roots_.add(of_no_answer * cost);
+      if (rests_) end_rest();
+      return;
+    }
+    if (!rests_) {
+      if (cost < 0.5 * roots_.mean) since_roots_ = seldom - trial;  // soon again: it may be so from here on
+      roots_.mean = roots_.count == 0 || other_motion ? cost : 0.5 * (roots_.mean + cost);
+      roots_.count = std::max(roots_.count, 1U);
+      return consider();
+    }
+    if (++seen_in_rest_ == trial) roots_ = {};  // they were of other motion
+    roots_.add(cost);
     if (seen_in_rest_ > 2 * trial && roots_.mean > dearer * front_.mean) end_rest();
   }
-  /// What a search from the front took, which has `size` entries; `fresh`: it was made anew in it.
-  void note_front(const Work& spent, std::uint32_t size, bool fresh, bool finished) noexcept {
+  /// What a search from the front took, which has `size` entries; `is_new`: it had to be made.
+  void note_front(const Work& spent, std::uint32_t size, bool is_new, bool finished) noexcept {
     const bool is_first = is_stale_ || !has_front_;
     is_stale_ = false;
     has_front_ = true;
     if (!finished) return;
-    // It opens as many pairs as one from the roots, of which nothing else may be known yet.
-    if (fresh && roots_.count == 0) roots_.add(cost_from_roots(spent));
-    if (fresh && is_first) return;  // it is made once, and kept as long as it is of use
+    if (is_new && roots_.count == 0) {  // as many pairs as from the roots
+      roots_.add(cost_from_roots(spent));
+      roots_at_ = motion_.mean;
+    }
+    if (is_new && is_first) return;  // it is made once, and kept as long as it is of use
     front_.add(cost_from_front(spent, size));
-    if (front_.count < trial || roots_.count == 0) return;
-    if (front_.mean <= roots_.mean) next_rest_ = first_rest;
-    if (front_.mean > dearer * roots_.mean) begin_rest();
+    consider();
   }
 
   /// Nanoseconds of a 3 GHz processor, about: by least squares over 22,800 searches of four meshes, armadillo to gear,
@@ -90,6 +110,10 @@ class FrontWorth {
  private:
   static constexpr double dearer = 1.1;
   static constexpr double slower = 0.5;
+  static constexpr double faster = 2.0;
+  static constexpr std::uint32_t seldom = 256;  ///< searches
+  /// A search that ends without an answer costs more than its time.
+  static constexpr double of_no_answer = 4.0;
   /// Times the motion before, and of the reach: so much at once is to another place.
   static constexpr double jump = 16.0;
   static constexpr double far = 0.05;
@@ -106,6 +130,11 @@ class FrontWorth {
     }
   };
 
+  void consider() noexcept {
+    if (front_.count < trial || roots_.count == 0) return;
+    if (front_.mean <= roots_.mean) next_rest_ = first_rest;
+    if (front_.mean > dearer * roots_.mean) begin_rest();
+  }
   void begin_rest() noexcept {
     rests_ = true;
     is_stale_ = true;
@@ -117,6 +146,7 @@ class FrontWorth {
   void end_rest() noexcept {
     rests_ = false;
     front_ = {};
+    since_roots_ = 0;
   }
 
   Mean front_;
@@ -130,7 +160,9 @@ class FrontWorth {
   std::uint32_t rest_ = 0;  ///< searches
   std::uint32_t next_rest_ = first_rest;
   std::uint32_t seen_in_rest_ = 0;
-  double rested_at_ = 0.0;  ///< motion, metres
+  std::uint32_t since_roots_ = 0;  ///< searches
+  double roots_at_ = 0.0;          ///< motion when they were searched last, metres
+  double rested_at_ = 0.0;         ///< motion, metres
 };
 
 }  // namespace odds::query::wide

@@ -33,6 +33,7 @@ struct Task {
   /// Of the incremental search: as many hits of what met before stand for all of it, and half as much work again goes
   /// to what may have begun to meet.
   std::uint32_t sample = no_feature;
+  std::uint32_t apart = 0;  ///< exact tests so far of triangles that do not meet
 };
 
 /// The same for the distance.

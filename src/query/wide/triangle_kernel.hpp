@@ -43,6 +43,7 @@ struct EightTriangles {
   F normal[3];
   F tolerance;          // of a product with the normal
   F outline_tolerance;  // of the side of a point to a side of the triangle, in a projection
+  F longest;            // bounds half of each coordinate of a side
 
   ODDS_LANES_INLINE void scale(float factor) noexcept {
     for (auto& point : corner) {
@@ -59,7 +60,7 @@ struct EightTriangles {
   ODDS_LANES_INLINE void find_planes(float delta, float span) noexcept {
     F u[3];
     F v[3];
-    F longest = L::all(0.0F);
+    longest = L::all(0.0F);
     for (int i = 0; i < 3; ++i) {
       u[i] = corner[1][i] - corner[0][i];
       v[i] = corner[2][i] - corner[0][i];
@@ -72,7 +73,7 @@ struct EightTriangles {
     // three products errs by less than 32 delta E (2 span + E), their own rounding included.
     tolerance = L::all(32.0F * delta) * longest * (L::all(2.0F * span) + longest) + L::all(least_product);
     // A side is at most 2 E long and errs by 2 delta, as does what it is multiplied with: twice such a product errs by
-    // less than 8 delta (span + E) and its rounding by 2 delta E, the area, which says where the inside is, by 9 delta
+    // less than 8 delta (span + E) and its rounding by 3 delta E, the area, which says where the inside is, by 10 delta
     // E.
     outline_tolerance = L::all(16.0F * delta) * (L::all(span) + (longest + longest)) + L::all(least_product);
   }
@@ -91,6 +92,7 @@ struct Rows {
   alignas(64) float normal[3][wide_lanes];
   alignas(64) float tolerance[wide_lanes];
   alignas(64) float outline_tolerance[wide_lanes];
+  alignas(64) float longest[wide_lanes];
 
   /// `slack`: error of a difference of coordinates.
   ODDS_LANES_INLINE void keep_boxes(const EightTriangles<L>& b, float slack) noexcept {
@@ -106,6 +108,7 @@ struct Rows {
     }
     L::store(tolerance, b.tolerance);
     L::store(outline_tolerance, b.outline_tolerance);
+    L::store(longest, b.longest);
   }
   ODDS_LANES_INLINE void spread_corner(unsigned row, int k, F (&point)[3]) const noexcept {
     for (int i = 0; i < 3; ++i) point[i] = L::all(corner[k][i][row]);
@@ -245,6 +248,55 @@ ODDS_LANES_INLINE unsigned outlines_meet(const EightTriangles<L>& a, const Rows<
   return ~L::less_equal(L::all(0.0F), outline_gap<L, false>(a, b, row, 0.0F)) & 0xFFU;
 }
 
+/// One triangle and eight along the nine directions across a side of each: false lanes are certainly apart. With both
+/// planes these are all that can part triangles that do not share one.
+///
+/// With sides s and t, m = s x t, n the normals: along m A's triangle reaches from its side by -n_A . t, B's by n_B .
+/// s.
+template <class L>
+ODDS_LANES_INLINE unsigned sides_meet(const EightTriangles<L>& a, const Rows<L>& b, unsigned row, float delta,
+                                      float span) noexcept {
+  using F = typename L::Float;
+  const F zero = L::all(0.0F);
+  // With E the longest of each: a component of m is at most 8 E_A E_B and errs by 8 delta (E_A + E_B), its product with
+  // a difference of points by 48 delta span (E_A + E_B) + 64 delta E_A E_B; the reaches by 54 delta E_A E_B + 12 delta
+  // E^2 each.
+  const F longest_b = L::all(b.longest[row]);
+  const F tolerance = L::all(96.0F * delta * span) * (a.longest + longest_b) +
+                      L::all(224.0F * delta) * (a.longest * longest_b) + L::all(least_product);
+  F s[3][3];
+  F t[3][3];
+  F corner_b[3][3];
+  F reach_a[3];
+  F reach_b[3];
+  for (int c = 0; c < 3; ++c) b.spread_corner(row, c, corner_b[c]);
+  F normal_b[3];
+  b.spread_normal(row, normal_b);
+  for (int c = 0; c < 3; ++c) {
+    const int d = c == 2 ? 0 : c + 1;
+    for (int i = 0; i < 3; ++i) {
+      s[c][i] = a.corner[d][i] - a.corner[c][i];
+      t[c][i] = corner_b[d][i] - corner_b[c][i];
+    }
+    reach_a[c] = zero - ((a.normal[0] * t[c][0] + a.normal[1] * t[c][1]) + a.normal[2] * t[c][2]);
+    reach_b[c] = (normal_b[0] * s[c][0] + normal_b[1] * s[c][1]) + normal_b[2] * s[c][2];
+  }
+  unsigned apart = 0;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      const F m[3] = {s[i][1] * t[j][2] - s[i][2] * t[j][1], s[i][2] * t[j][0] - s[i][0] * t[j][2],
+                      s[i][0] * t[j][1] - s[i][1] * t[j][0]};
+      const F from = (m[0] * (corner_b[j][0] - a.corner[i][0]) + m[1] * (corner_b[j][1] - a.corner[i][1])) +
+                     m[2] * (corner_b[j][2] - a.corner[i][2]);
+      const F to = from + reach_b[i];
+      const F above = L::min(from, to) - L::max(zero, reach_a[j]);
+      const F below = L::min(zero, reach_a[j]) - L::max(from, to);
+      apart |= L::less_equal(tolerance, L::max(above, below));
+    }
+  }
+  return ~apart & 0xFFU;
+}
+
 /// Two leaves in A's frame, about the centre of A's lane, times `scale`.
 template <class L>
 struct TwoLeaves {
@@ -312,11 +364,23 @@ struct TwoLeaves {
   }
 };
 
-/// Pairs of triangles of two leaves that no box, no plane and no side of an outline separates. `shift`: where B's leaf
-/// centre stands from A's, in A's frame; `margin`: that of the encounter.
+/// Takes away what outlines or directions across sides part. Not inlined: where a hit is near it is in the way.
+template <class L>
+[[gnu::noinline]] void part_finely(const TwoLeaves<L>& leaves, const Rows<L>& b, LeafPairs& found) noexcept {
+  for (unsigned left = found.rows; left != 0; left &= left - 1U) {
+    const auto row = static_cast<unsigned>(__builtin_ctz(left));
+    unsigned met = found.lanes_a[row] & outlines_meet<L>(leaves.a, b, row);
+    if (met != 0) met &= sides_meet<L>(leaves.a, b, row, leaves.delta, leaves.span);
+    found.lanes_a[row] = static_cast<std::uint8_t>(met);
+    found.rows &= met != 0 ? ~0U : ~(1U << row);
+  }
+}
+
+/// Pairs of triangles of two leaves that no box and no plane separates and, `finely`, no side of theirs. `shift`: where
+/// B's leaf centre stands from A's, in A's frame; `margin`: that of the encounter.
 template <class L>
 ODDS_LANES_INLINE LeafPairs leaf_pairs(const PlacedLeaf& in_a, const PlacedLeaf& in_b, const Turn& turn,
-                                       const float shift[3], float margin) noexcept {
+                                       const float shift[3], float margin, bool finely) noexcept {
   LeafPairs found;
   TwoLeaves<L> leaves;
   leaves.measure(in_a, in_b, turn, shift, margin);
@@ -343,12 +407,12 @@ ODDS_LANES_INLINE LeafPairs leaf_pairs(const PlacedLeaf& in_a, const PlacedLeaf&
   b.keep_planes(leaves.b);
   for (unsigned left = rows; left != 0; left &= left - 1U) {
     const auto row = static_cast<unsigned>(__builtin_ctz(left));
-    unsigned met = found.lanes_a[row] & planes_meet<L>(leaves.a, b, row);
-    if (met != 0) met &= outlines_meet<L>(leaves.a, b, row);
+    const unsigned met = found.lanes_a[row] & planes_meet<L>(leaves.a, b, row);
     found.lanes_a[row] = static_cast<std::uint8_t>(met);
     rows &= met != 0 ? ~0U : ~(1U << row);
   }
   found.rows = rows;
+  if (finely && rows != 0) part_finely<L>(leaves, b, found);
   return found;
 }
 
