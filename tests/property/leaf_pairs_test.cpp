@@ -162,5 +162,30 @@ TYPED_TEST(LeafPairsOn, SeeWhatLiesSideBySideInAPlane) {
   EXPECT_GT(all.with_gap, 31500);
 }
 
+/// Long ones, a hundredth as wide, every way: their boxes are large and their planes cross each other, but they are
+/// mostly apart.
+std::vector<Vec3> slivers(math::Random& random) {
+  std::vector<Vec3> corners;
+  for (std::uint32_t i = 0; i < triangles; ++i) {
+    const Vec3 from = 0.5 * random.direction();
+    const Vec3 along = random.direction();
+    corners.insert(corners.end(), {from - along, from + along, from + 0.02 * random.direction()});
+  }
+  return corners;
+}
+
+TYPED_TEST(LeafPairsOn, SeeThatSliversPassEachOther) {
+  math::Random random(23);
+  Counts all;
+  for (int i = 0; i < 2000; ++i) {
+    const math::Pose pose{random.rotation().toRotationMatrix(), 0.3 * random.direction()};
+    const Counts counts = compare<TypeParam>(Leaf(slivers(random)), Leaf(slivers(random)), pose);
+    all.asked += counts.asked;
+    all.met += counts.met;
+  }
+  EXPECT_GT(all.met, 500);
+  EXPECT_LT(all.asked, 1.3 * all.met);  // by boxes, planes and outlines alone it is 36 times
+}
+
 }  // namespace
 }  // namespace odds::query::wide
