@@ -120,10 +120,16 @@ TEST(TriangleTriangleProperty, SegmentLiesOnBothTriangles) {
   }));
 }
 
+/// Whether the planes of two triangles are all but parallel: which of their points are nearest is a matter of rounding.
+bool nearly_parallel(const Corners& a, const Corners& b) {
+  const auto normal = [](const Corners& t) -> Vec3 { return (t[1] - t[0]).cross(t[2] - t[0]).stableNormalized(); };
+  return normal(a).cross(normal(b)).norm() < 1e-6;
+}
+
 // Two convex sets: p, q are closest if and only if no corner of a lies beyond p towards q, nor of b beyond q towards p.
 bool certified(const Corners& a, const Corners& b, const ClosestPoints& c, double size) {
   const Vec3 gap = c.on_b - c.on_a;
-  const double room = 1e-13 * size * (gap.norm() + 0.1 * size);
+  const double room = (nearly_parallel(a, b) ? 1e-11 : 1e-13) * size * (gap.norm() + 0.1 * size);
   bool good = std::fabs(gap.norm() - std::sqrt(c.squared_distance)) <= 1e-14 * size;
   for (const Vec3& p : a) good = good && (p - c.on_a).dot(gap) <= room;
   for (const Vec3& p : b) good = good && (c.on_b - p).dot(gap) <= room;
@@ -152,6 +158,20 @@ TEST(TriangleDistanceProperty, PointsAreClosestAndZeroMeansMeeting) {
       RC_ASSERT(c.squared_distance <= s.squared_distance * (1.0 + 1e-9) + 1e-28);
     }
   }));
+}
+
+// Found at random: planes parallel to within 3e-10, 2 apart, and another corner is nearer by 1.4e-12.
+TEST(TriangleDistanceProperty, OfNearlyParallelTrianglesIsRightToTwelveDigits) {
+  const Corners a = {Vec3{0x1.b6f45fb44d998p-3, 0x1.da2246ebe0edap-1, -0x1.6158fa8966c52p-34},
+                     Vec3{0x1.1e855156cd04p-3, -0x1.c03d5fa98b0cp-4, 0x1.7fc58311138b9p-39},
+                     Vec3{-0x1.7d697e9755c02p-1, 0x1.78fdb6035c4p-5, -0x1.7d2e3b36a45p-36}};
+  const Corners b = {Vec3{0x1.634a8c00a60fp-4, -0x1.99d358f60b228p-4, -0x1.ffffffffd1858p+0},
+                     Vec3{-0x1.3ca73f74fb04p-4, 0x1.b277f121f682p-2, -0x1.000000002a54cp+1},
+                     Vec3{0x1.c11dcaebecd8p-6, -0x1.0696fb3f26a1p-1, -0x1.ffffffffac03ap+0}};
+  const ClosestPoints points = closest_points(a.data(), b.data());
+  ASSERT_TRUE(nearly_parallel(a, b));
+  EXPECT_TRUE(certified(a, b, points, size_of(a, b)));
+  EXPECT_NEAR(std::sqrt(points.squared_distance), 2.0, 1e-9);
 }
 
 TEST(TriangleDistanceProperty, HoldsAtExtremeSizesWithoutNaN) {

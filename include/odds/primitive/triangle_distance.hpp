@@ -13,8 +13,8 @@ struct ClosestPoints {
 };
 
 /// All functions: any corners up to 1e300 in size, degenerate triangles and segments included; never NaN. Distances are
-/// right to some 1e-15 of the largest distance between corners. Squares beyond the range of doubles become 0 or
-/// infinite, the points stay right. No allocation; thread-safe.
+/// right to some 1e-15 of the largest distance between corners, of triangles parallel to within 1e-6 to some 1e-12.
+/// Squares beyond the range of doubles become 0 or infinite, the points stay right. No allocation; thread-safe.
 
 /// The point of a closed triangle next to `point`.
 [[nodiscard]] Vec3 closest_point_on_triangle(const Vec3& point, const Vec3 triangle[3]) noexcept;
