@@ -85,6 +85,30 @@ SearchResult search(const Encounter<V>& encounter, const PosedMeshes&, const Req
   return TimeCriticalSearch<V>(encounter, request, wanted, queue, pair.hits, spending).run({0, 0, 0.0F});
 }
 
+/// The incremental search of the wide engine, or one from the roots where that is better.
+void search_from_front(wide::Task& task, const math::Pose& pose, Pair::Implementation& pair) noexcept {
+  const Spending& spending = task.spending;
+  const double reach = task.encounter.b().reach();
+  // Shorter budgets find next to nothing from the roots.
+  const bool may_choose = wide::is_enough_from_roots(task.request.budget);
+  if (may_choose && task.request.budget.is_limited() && pair.front.pauses()) return pair.wide->exact(task);
+  const Cost before = spending.so_far();
+  const auto work = [&] { return wide::Work::between(before, spending.so_far()); };
+  const auto is_finished = [&task] { return task.result.ended != Progressed::spent; };
+  if (may_choose && pair.front_worth.prefers_roots(pose, reach)) {
+    pair.wide->exact(task);
+    return pair.front_worth.note_roots(work(), is_finished());
+  }
+  task.result.method = Method::incremental;
+  if (may_choose && pair.front_worth.is_stale()) pair.front.restart();
+  pair.front.move_to(pose, reach);
+  task.sample = task.wanted;
+  if (task.wanted > 1) task.wanted = no_feature;
+  const bool is_new = pair.front.size() == 1;
+  pair.wide->incremental(task, pair.front);
+  if (may_choose) pair.front_worth.note_front(work(), pair.front.size(), is_new, is_finished());
+}
+
 SearchResult search(const wide::Encounter& encounter, const PosedMeshes& meshes, const Request& request,
                     BucketQueue& queue, Pair::Implementation& pair, Spending& spending) noexcept {
   SearchResult result;
@@ -100,31 +124,7 @@ SearchResult search(const wide::Encounter& encounter, const PosedMeshes& meshes,
     pair.wide->time_critical(task);
     return result;
   }
-  // Shorter budgets find next to nothing from the roots.
-  const bool may_choose = wide::is_enough_from_roots(request.budget);
-  if (may_choose && request.budget.is_limited() && pair.front.pauses()) {
-    pair.wide->time_critical(task);
-    remember_witness(pair);
-    return result;
-  }
-  const Cost before = spending.so_far();
-  const auto work = [&] { return wide::Work::between(before, spending.so_far()); };
-  if (may_choose && pair.front_worth.prefers_roots(meshes.pose(), encounter.b().reach())) {
-    pair.wide->exact(task);
-    pair.front_worth.note_roots(work(), result.ended != Progressed::spent);
-    remember_witness(pair);
-    return result;
-  }
-  result.method = Method::incremental;
-  if (may_choose && pair.front_worth.is_stale()) pair.front.restart();
-  pair.front.move_to(meshes.pose(), encounter.b().reach());
-  task.sample = wanted;
-  if (wanted > 1) task.wanted = no_feature;
-  const bool is_new = pair.front.size() == 1;
-  pair.wide->incremental(task, pair.front);
-  if (may_choose) {
-    pair.front_worth.note_front(work(), pair.front.size(), is_new, result.ended != Progressed::spent);
-  }
+  search_from_front(task, meshes.pose(), pair);
   remember_witness(pair);
   return result;
 }

@@ -27,6 +27,7 @@ struct LeafPairs {
   std::uint8_t lanes_a[wide_lanes];
   std::uint32_t rows = 0;    ///< bits of B's triangles with any
   std::uint32_t tested = 0;  ///< of B's triangles compared with all of A's at once
+  std::uint32_t parted = 0;  ///< of these finely, too
 };
 
 /// Products of three lengths between these bounds neither overflow nor lose more to underflow than `least_product`.
@@ -367,6 +368,7 @@ struct TwoLeaves {
 /// Takes away what outlines or directions across sides part. Not inlined: where a hit is near it is in the way.
 template <class L>
 [[gnu::noinline]] void part_finely(const TwoLeaves<L>& leaves, const Rows<L>& b, LeafPairs& found) noexcept {
+  found.parted = static_cast<std::uint32_t>(std::popcount(found.rows));
   for (unsigned left = found.rows; left != 0; left &= left - 1U) {
     const auto row = static_cast<unsigned>(__builtin_ctz(left));
     unsigned met = found.lanes_a[row] & outlines_meet<L>(leaves.a, b, row);
