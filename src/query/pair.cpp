@@ -91,13 +91,11 @@ void search_from_front(wide::Task& task, const math::Pose& pose, Pair::Implement
   const double reach = task.encounter.b().reach();
   // Shorter budgets find next to nothing from the roots.
   const bool may_choose = wide::is_enough_from_roots(task.request.budget);
-  if (may_choose && task.request.budget.is_limited() && pair.front.pauses()) return pair.wide->exact(task);
   const Cost before = spending.so_far();
   const auto work = [&] { return wide::Work::between(before, spending.so_far()); };
-  const auto is_finished = [&task] { return task.result.ended != Progressed::spent; };
-  if (may_choose && pair.front_worth.prefers_roots(pose, reach)) {
+  if (may_choose && pair.front_worth.prefers_roots(pose, reach, task.request.budget.is_limited())) {
     pair.wide->exact(task);
-    return pair.front_worth.note_roots(work(), is_finished());
+    return pair.front_worth.note_roots(work(), task.result.ended != Progressed::spent);
   }
   task.result.method = Method::incremental;
   if (may_choose && pair.front_worth.is_stale()) pair.front.restart();
@@ -106,7 +104,7 @@ void search_from_front(wide::Task& task, const math::Pose& pose, Pair::Implement
   if (task.wanted > 1) task.wanted = no_feature;
   const bool is_new = pair.front.size() == 1;
   pair.wide->incremental(task, pair.front);
-  if (may_choose) pair.front_worth.note_front(work(), pair.front.size(), is_new, is_finished());
+  if (may_choose) pair.front_worth.note_front(work(), pair.front.size(), is_new, pair.front.last());
 }
 
 SearchResult search(const wide::Encounter& encounter, const PosedMeshes& meshes, const Request& request,

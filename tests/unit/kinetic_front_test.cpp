@@ -1,4 +1,4 @@
-// What a kinetic front keeps between runs: the pairs that met stand first, and a front that does not help rests.
+// What a kinetic front keeps between runs: the pairs that met stand first.
 #include "query/wide/kinetic_front.hpp"
 
 #include <gtest/gtest.h>
@@ -99,65 +99,17 @@ TEST(KineticFront, IsNotApartWhileAnythingMeets) {
   EXPECT_FALSE(front.is_apart({}, reach));
 }
 
-TEST(KineticFront, RestsWhereItNeitherEndsNorLasts) {
-  KineticFront front = filled(100);
-  int runs = 0;
-  while (!front.pauses() && runs < 1000) {
-    front.move_to({}, reach);
-    front.note_end({.starved = true, .looked_at = 10, .still_met = 7});
-    ++runs;
-  }
-  EXPECT_GT(runs, 5) << "one bad run is no reason";
-  EXPECT_LT(runs, 50);
-  EXPECT_EQ(front.size(), 0U) << "what it knew is old when it comes back";
-  int rest = 1;
-  while (front.pauses()) ++rest;
-  for (int again = 0; again < runs; ++again) {
-    front.move_to({}, reach);
-    front.note_end({.starved = true, .looked_at = 10, .still_met = 7});
-  }
-  int longer = 0;
-  while (front.pauses()) ++longer;
-  EXPECT_GT(longer, rest);
-}
-
-TEST(KineticFront, HitsThatEndARunAreNoReasonToRest) {
-  KineticFront front = filled(100);
-  for (int run = 0; run < 200; ++run) {
-    front.move_to({}, reach);
-    front.note_end({.looked_at = 2, .still_met = 1});
-    ASSERT_FALSE(front.pauses()) << run;
-  }
-}
-
-TEST(KineticFront, IsAsNewAfterAReset) {
-  KineticFront front = filled(100);
-  for (int run = 0; run < 60 && front.size() > 0; ++run) {
-    front.move_to({}, reach);
-    front.note_end({.starved = true, .looked_at = 10, .still_met = 7});
-  }
-  ASSERT_EQ(front.size(), 0U);
-  front.reset();
-  EXPECT_FALSE(front.pauses());
-}
-
-TEST(KineticFront, StaysWhereWhatMetGoesOnMeeting) {
-  KineticFront front = filled(100);
-  for (int run = 0; run < 200; ++run) {
-    front.move_to({}, reach);
-    front.note_end({.starved = true, .looked_at = 40, .still_met = 40});
-    ASSERT_FALSE(front.pauses()) << run;
-  }
-}
-
-TEST(KineticFront, IsKeptWhereNothingReplacesIt) {
-  KineticFront front = filled(100);
-  for (int run = 0; run < 200; ++run) {
-    front.move_to({}, reach);
-    front.note_end({.starved = true, .irreplaceable = true, .work = 25, .looked_at = 10, .still_met = 1});
-    ASSERT_FALSE(front.pauses()) << run;
-  }
-  EXPECT_EQ(front.size(), 100U);
+TEST(KineticFront, KnowsHowTheLastSearchWentUntilItStartsOver) {
+  KineticFront front = filled(20);
+  front.move_to({}, reach);
+  front.note_end({.left_at = 7, .resume_at = 5, .starved = true, .looked_at = 3});
+  EXPECT_TRUE(front.last().starved);
+  EXPECT_EQ(front.left_at(), 7U);
+  EXPECT_EQ(front.resume_at(), 5U);
+  front.restart();
+  EXPECT_EQ(front.size(), 0U);
+  EXPECT_FALSE(front.last().starved);
+  EXPECT_EQ(front.left_at(), 0U);
 }
 
 /// In how many of 40 runs, each farther along, a front of 100 entries starts from the roots.
@@ -182,7 +134,7 @@ TEST(KineticFront, StartsOverWhereAllOfItIsStale) {
   EXPECT_EQ(starts_over(lost, 1e-3), 0) << "it has hardly moved";
   EXPECT_EQ(starts_over({.irreplaceable = true}, 0.02), 0) << "it had time to look at all";
   EXPECT_EQ(starts_over({.starved = true, .irreplaceable = true, .work = 25, .looked_at = 1, .still_met = 1}, 0.02), 0);
-  EXPECT_EQ(starts_over({.starved = true}, 0.02), 0) << "a larger budget pauses instead";
+  EXPECT_EQ(starts_over({.starved = true}, 0.02), 0) << "a larger budget rests instead";
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Whether a kinetic front is worth its keep: searches from it against searches from the roots, by what they cost.
+// Whether a kinetic front is worth its keep: searches from it against searches from the roots, by what they cost and
+// by how often a budget ends them.
 #pragma once
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include "odds/math/motion.hpp"
 #include "odds/math/pose.hpp"
 #include "odds/query/answer.hpp"
+#include "query/wide/kinetic_front.hpp"
 
 namespace odds::query::wide {
 
@@ -27,15 +29,16 @@ struct Work {
 ///
 /// So what searches cost is kept account of, of each kind as it is used. While the front is, a search from the roots is
 /// made now and then, and as soon as the bodies move twice as fast as at the last one. Where the front costs more, it
-/// rests: until the bodies move half as fast, or for a rest that is longer each time. By counted work, so that the same
-/// runs choose the same on every machine. No allocation.
+/// rests: until the bodies move half as fast, or for a rest that is longer each time. It also rests where budgets end
+/// most searches from it, and what met does not meet for long: those from the roots tell more then. By counted work, so
+/// that the same runs choose the same on every machine. No allocation.
 class FrontWorth {
  public:
   void reset() noexcept { *this = {}; }
 
   /// A search is about to begin, with B at `pose`; `reach` bounds the distance of B's surface from its tree's origin.
-  /// Whether it had better be from the roots.
-  [[nodiscard]] bool prefers_roots(const math::Pose& pose, double reach) noexcept {
+  /// Whether it had better be from the roots. `limited`: a budget may end it.
+  [[nodiscard]] bool prefers_roots(const math::Pose& pose, double reach, bool limited) noexcept {
     const double motion = known_pose_ ? math::motion_bound(pose_, pose, reach) : 0.0;
     pose_ = pose;
     if (motion_.count >= trial && motion > std::max(jump * motion_.mean, far * reach)) {
@@ -44,6 +47,11 @@ class FrontWorth {
       motion_.add(motion);
     }
     known_pose_ = true;
+    pauses_ = limited && pause_ > 0;
+    if (pauses_) {
+      --pause_;
+      return true;
+    }
     if (rests_) {
       if (rest_ == 0 || motion_.mean < slower * rested_at_) end_rest();
       if (rests_) --rest_;
@@ -58,6 +66,7 @@ class FrontWorth {
 
   /// What a search from the roots took; `finished`: no budget ended it.
   void note_roots(const Work& spent, bool finished) noexcept {
+    if (pauses_) return;  // of searches that budgets end nothing is learnt
     const double cost = cost_from_roots(spent);
     const bool other_motion = motion_.mean > faster * roots_at_ || motion_.mean < slower * roots_at_;
     since_roots_ = 0;
@@ -78,12 +87,13 @@ class FrontWorth {
     roots_.add(cost);
     if (seen_in_rest_ > 2 * trial && roots_.mean > dearer * front_.mean) end_rest();
   }
-  /// What a search from the front took, which has `size` entries; `is_new`: it had to be made.
-  void note_front(const Work& spent, std::uint32_t size, bool is_new, bool finished) noexcept {
+  /// What a search from the front took, which has `size` entries, and how it went; `is_new`: it had to be made.
+  void note_front(const Work& spent, std::uint32_t size, bool is_new, const KineticFront::Outcome& outcome) noexcept {
     const bool is_first = is_stale_ || !has_front_;
     is_stale_ = false;
     has_front_ = true;
-    if (!finished) return;
+    if (is_no_use(outcome)) return begin_pause();
+    if (outcome.starved) return;
     if (is_new && roots_.count == 0) {  // as many pairs as from the roots
       roots_.add(cost_from_roots(spent));
       roots_at_ = motion_.mean;
@@ -105,7 +115,7 @@ class FrontWorth {
 
   static constexpr std::uint32_t trial = 4;  ///< searches before a kind is judged
   static constexpr std::uint32_t first_rest = 64;
-  static constexpr std::uint32_t longest_rest = 4096;
+  static constexpr std::uint32_t longest_rest = 8192;
 
  private:
   static constexpr double dearer = 1.1;
@@ -130,6 +140,25 @@ class FrontWorth {
     }
   };
 
+  /// Where most runs are ended by their budget, and what met does not meet for long. Means over some 16 runs.
+  [[nodiscard]] bool is_no_use(const KineticFront::Outcome& outcome) noexcept {
+    constexpr double weight = 1.0 / 16.0;
+    starved_ += weight * ((outcome.starved ? 1.0 : 0.0) - starved_);
+    if (outcome.looked_at > 0) {
+      const double still = static_cast<double>(outcome.still_met) / static_cast<double>(outcome.looked_at);
+      still_met_ += weight * (still - still_met_);
+    }
+    if (starved_ < 0.1) next_pause_ = first_rest;
+    return starved_ > 0.5 && still_met_ < 0.95;
+  }
+  /// Longer each time, until it is of use again.
+  void begin_pause() noexcept {
+    is_stale_ = true;
+    starved_ = 0.25;  // on trial: soon given up again, or trusted
+    still_met_ = 1.0;
+    pause_ = next_pause_;
+    next_pause_ = std::min(2 * next_pause_, longest_rest);
+  }
   void consider() noexcept {
     if (front_.count < trial || roots_.count == 0) return;
     if (front_.mean <= roots_.mean) next_rest_ = first_rest;
@@ -157,8 +186,13 @@ class FrontWorth {
   bool rests_ = false;
   bool is_stale_ = false;
   bool has_front_ = false;
-  std::uint32_t rest_ = 0;  ///< searches
+  bool pauses_ = false;      ///< in this search
+  std::uint32_t rest_ = 0;   ///< searches that are cheaper from the roots
+  std::uint32_t pause_ = 0;  ///< searches with a budget that ended most from the front
   std::uint32_t next_rest_ = first_rest;
+  std::uint32_t next_pause_ = first_rest;
+  double starved_ = 0.0;    ///< share of searches from the front
+  double still_met_ = 1.0;  ///< share of entries that met, one search later
   std::uint32_t seen_in_rest_ = 0;
   std::uint32_t since_roots_ = 0;  ///< searches
   double roots_at_ = 0.0;          ///< motion when they were searched last, metres

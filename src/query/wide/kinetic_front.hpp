@@ -40,18 +40,6 @@ class KineticFront {
     clear();
     last_met_ = {};
     lost_work_ = 0;
-    irreplaceable_ = false;
-    starved_ = 0.0;
-    still_met_ = 1.0;
-    pause_ = 0;
-    next_pause_ = first_pause;
-  }
-
-  /// Whether it is better left alone in this run, within a limit: it was given up a while ago.
-  [[nodiscard]] bool pauses() noexcept {
-    if (pause_ == 0) return false;
-    --pause_;
-    return true;
   }
 
   /// Whether nothing can have expired since a search that found all apart: it would find all apart again.
@@ -61,7 +49,7 @@ class KineticFront {
   /// Notes where B stands now; `reach` bounds the distance of B's surface from its tree's origin. Starts from the roots
   /// if there is nothing yet, if the last search found no room, or if much of what is kept is of no use any more.
   void move_to(const math::Pose& pose, double reach) noexcept {
-    const bool lost = irreplaceable_ && lost_work_ >= patience && travelled_ > lost_after * reach;
+    const bool lost = last_.irreplaceable && lost_work_ >= patience && travelled_ > lost_after * reach;
     if (size_ == 0 || overflowed_ || lost || (!fresh_ && size_ > 2 * fresh_size_ + least_size)) {
       lost_work_ = 0;
       clear();
@@ -91,26 +79,24 @@ class KineticFront {
   void note_end(const Outcome& outcome) noexcept {
     if (fresh_) fresh_size_ = size_;
     fresh_ = fresh_ && !outcome.explored;
-    irreplaceable_ = outcome.irreplaceable;
     // Also where neighbours of what met last were found: they do not need this front.
     lost_work_ = outcome.starved && outcome.looked_at == 0 ? lost_work_ + outcome.work : 0;
-    if (is_no_use(outcome)) return give_up();
     move_changed();
     const bool may_miss = !outcome.explored || fresh_ || overflowed_ || crossing_ > 0;
     next_expiry_ = may_miss ? at_once : earliest_;
-    resume_at_ = outcome.resume_at;
-    left_at_ = outcome.left_at;
-    next_crossing_ = outcome.next_crossing;
+    last_ = outcome;
   }
+  /// How the last search went; nothing of it where the front has started over since.
+  [[nodiscard]] const Outcome& last() const noexcept { return last_; }
 
   /// Whether no search has finished since the last one from the roots: there may be more that meets.
   [[nodiscard]] bool is_fresh() const noexcept { return fresh_; }
   [[nodiscard]] std::uint32_t size() const noexcept { return size_; }
   /// How many entries, from the first on, met in the last search.
   [[nodiscard]] std::uint32_t crossing() const noexcept { return crossing_; }
-  [[nodiscard]] std::uint32_t left_at() const noexcept { return left_at_; }
-  [[nodiscard]] std::uint32_t resume_at() const noexcept { return resume_at_; }
-  [[nodiscard]] std::uint32_t next_crossing() const noexcept { return next_crossing_; }
+  [[nodiscard]] std::uint32_t left_at() const noexcept { return last_.left_at; }
+  [[nodiscard]] std::uint32_t resume_at() const noexcept { return last_.resume_at; }
+  [[nodiscard]] std::uint32_t next_crossing() const noexcept { return last_.next_crossing; }
   /// Whether the two leaves of an entry have triangles that meet.
   void set_met(std::uint32_t index, bool met) noexcept {
     if (met != entries_[index].met) changed_[changed_count_++] = index;
@@ -165,15 +151,11 @@ class KineticFront {
   /// it has moved since the front was new, after which all of it is stale: what opening it took is not worth keeping.
   static constexpr std::uint64_t patience = 200;
   static constexpr double lost_after = 0.1;
-  static constexpr std::uint32_t first_pause = 64;
-  static constexpr std::uint32_t longest_pause = 8192;
 
   void clear() noexcept {
     size_ = 0;
     crossing_ = 0;
-    resume_at_ = 0;
-    left_at_ = 0;
-    next_crossing_ = 0;
+    last_ = {};
     changed_count_ = 0;
     last_met_.is_entry = false;
     overflowed_ = false;
@@ -183,27 +165,6 @@ class KineticFront {
   void swap(std::uint32_t i, std::uint32_t j) noexcept {
     std::swap(entries_[i], entries_[j]);
     std::swap(expiries_[i], expiries_[j]);
-  }
-  /// Where most runs are ended by their budget, and what met does not meet for long, a search from the roots tells
-  /// more. Means over some 16 runs.
-  [[nodiscard]] bool is_no_use(const Outcome& outcome) noexcept {
-    if (outcome.irreplaceable) return false;
-    constexpr double weight = 1.0 / 16.0;
-    starved_ += weight * ((outcome.starved ? 1.0 : 0.0) - starved_);
-    if (outcome.looked_at > 0) {
-      const double still = static_cast<double>(outcome.still_met) / static_cast<double>(outcome.looked_at);
-      still_met_ += weight * (still - still_met_);
-    }
-    if (starved_ < 0.1) next_pause_ = first_pause;
-    return starved_ > 0.5 && still_met_ < 0.95;
-  }
-  /// Longer each time, until it is of use again.
-  void give_up() noexcept {
-    clear();
-    starved_ = 0.25;  // on trial: soon given up again, or trusted
-    still_met_ = 1.0;
-    pause_ = next_pause_;
-    next_pause_ = std::min(2 * next_pause_, longest_pause);
   }
   /// Puts what meets now in front and what does no more behind, in any order and in time proportional to their number:
   /// a place is filled again only when it is its own entry's turn.
@@ -227,18 +188,11 @@ class KineticFront {
   std::uint32_t size_ = 0;
   std::uint32_t fresh_size_ = 0;
   std::uint32_t crossing_ = 0;
-  std::uint32_t resume_at_ = 0;
-  std::uint32_t left_at_ = 0;
-  std::uint32_t next_crossing_ = 0;
+  Outcome last_;
   std::uint64_t lost_work_ = 0;
-  bool irreplaceable_ = false;
   double next_expiry_ = at_once;
   double earliest_ = at_once;  ///< expiry of what the search that is under way has passed over
   std::uint32_t changed_count_ = 0;
-  double starved_ = 0.0;     ///< share of runs
-  double still_met_ = 1.0;   ///< share of entries that met, one run later
-  std::uint32_t pause_ = 0;  ///< runs
-  std::uint32_t next_pause_ = first_pause;
   bool fresh_ = false;
   bool overflowed_ = false;
   double travelled_ = 0.0;
