@@ -41,10 +41,6 @@ Vec3 span_centre(const patch::Rim& rim, std::span<const std::uint32_t> indices, 
   return middle + sum / weight;
 }
 
-double spacing(double depth, double lever) noexcept {
-  return std::max(tolerances::spacing_by_depth * depth, tolerances::spacing_by_lever * lever);
-}
-
 }  // namespace
 
 void PatchBuilder::Scratch::place_pairs(const PatchInput& input, Watch& watch) noexcept {
@@ -268,7 +264,7 @@ Patch PatchBuilder::Scratch::patch_along(const Vec3& normal, const PatchInput& i
   made.centre = centre;
   const double lever = (input.reference_a - centre).norm();
   made.depth = deepest.depth;
-  made.chosen = patch::choose(extremes.all(), frame, most_contacts, spacing(made.depth, lever));
+  made.chosen = patch::choose(extremes.all(), frame, most_contacts, patch::spacing(made.depth, lever));
   Measured measured;
   std::size_t count = made.chosen.count;
   if (input.probe_a && input.probe_b && sums.length > 0.0 && !watch.late()) {
@@ -279,7 +275,7 @@ Patch PatchBuilder::Scratch::patch_along(const Vec3& normal, const PatchInput& i
   } else {
     for (std::size_t i = 0; i < count; ++i) measured[i] = patch::pulled_in(made.chosen.witnesses[i], deepest);
   }
-  made.chosen = patch::choose({measured.data(), count}, frame, most_contacts, spacing(made.depth, lever));
+  made.chosen = patch::choose({measured.data(), count}, frame, most_contacts, patch::spacing(made.depth, lever));
   made.low = std::numeric_limits<double>::infinity();
   made.high = -made.low;
   for (std::size_t i = 0; i < indices.size(); ++i) {

@@ -69,6 +69,8 @@ std::span<const TrianglePair> LateContacts::hits() const noexcept {
   return is_at_work() ? worker_->hits.pairs() : std::span<const TrianglePair>();
 }
 
+std::span<const Contact> LateContacts::contacts() const noexcept { return worker_->answer.contacts; }
+
 void LateContacts::keep_guess(std::span<const Contact> contacts, const math::Pose& pose_b_in_a) noexcept {
   guesses_ = true;
   guessed_ = std::min(contacts.size(), guess_.size());

@@ -66,6 +66,8 @@ class LateContacts {
 
   /// Pairs of triangles that the work has found to meet so far, at the pose that it is about; more than a run finds.
   [[nodiscard]] std::span<const TrianglePair> hits() const noexcept;
+  /// After work() was true: the contacts that it has made, at the pose that it was asked about.
+  [[nodiscard]] std::span<const Contact> contacts() const noexcept;
   /// Whether this run takes over the last guess, which has left no time for the work.
   [[nodiscard]] bool shares_guess() const noexcept { return owed_ > 0 && guessed_ > 0; }
   /// Contacts that this run has guessed.

@@ -219,6 +219,7 @@ void forget_if_elsewhere(const PosedMeshes& meshes, Pair::Implementation& pair) 
       pair.came.setZero();
       pair.previous_normal.setZero();
       pair.haste.forget();
+      pair.flush.forget();
       if (!pair.apart_last) pair.apart_at.reset();
     }
   }
@@ -330,6 +331,10 @@ Result<Pair> Pair::make(std::shared_ptr<const Shape> a, std::shared_ptr<const Sh
   const bool may_be_late = options.late_contacts && a->has_polygons() && b->has_polygons();
   auto late = may_be_late ? std::make_unique<LateContacts>(a, b, options) : nullptr;
   Pair pair(std::make_unique<Implementation>(std::move(a), std::move(b), options));
+  if (late) {
+    pair.implementation_->flush =
+        FlushContacts(pair.implementation_->a->data().flat_faces(), pair.implementation_->b->data().flat_faces());
+  }
   pair.implementation_->late = std::move(late);
   // Once through what a query ends with, so that the first real one does not wait for pages of code.
   Request first;
@@ -380,6 +385,8 @@ void Pair::note_apart(const math::Pose& pose_b_in_a) noexcept {
         note_clear(meshes, pose_b_in_a, {.solids = true}, pair);
         pair.near.forget();
         pair.haste.forget();
+        pair.flush.forget();
+        pair.flush.forget();
         if (pair.late) pair.late->forget();
         pair.within_is_of_front = false;
       },
@@ -408,6 +415,7 @@ void Pair::reset() noexcept {
   implementation_->near.forget();
   implementation_->has_witness = false;
   implementation_->haste.forget();
+  implementation_->flush.forget();
   implementation_->hasty_runs = 0;
   if (implementation_->late) implementation_->late->forget();
   implementation_->within = Within::neither;

@@ -12,6 +12,7 @@
 #include "query/bottom_slice.hpp"
 #include "query/carried_contacts.hpp"
 #include "query/ending_reserve.hpp"
+#include "query/flush_contacts.hpp"
 #include "query/hasty_memory.hpp"
 #include "query/known_depth.hpp"
 #include "query/known_direction.hpp"
@@ -76,6 +77,7 @@ struct Pair::Implementation {
   Recalibration recalibration;            ///< of stated probabilities
   Vec3 previous_normal = Vec3::Zero();    ///< of the last run's first contact, in A's frame; zero: none
   Vec3 previous_position = Vec3::Zero();  ///< of that contact
+  FlushContacts flush;                    ///< of flat faces that lie on each other
   HastyMemory haste;                      ///< of contacts that are guessed
   std::uint32_t hasty_runs = 0;           ///< that guessed or might have
   Vec3 came = Vec3::Zero();  ///< how B came to where it met A since they were apart, unit, A's frame; zero: unknown

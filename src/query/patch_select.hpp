@@ -1,10 +1,12 @@
 // From many witnesses to a few: the deepest, then those that span the largest area.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <span>
 
+#include "odds/math/tolerances.hpp"
 #include "query/patch_overlap.hpp"
 
 namespace odds::query::patch {
@@ -44,6 +46,12 @@ struct Chosen {
   std::array<Witness, most_contacts> witnesses;
   std::size_t count = 0;
 };
+
+/// Of contacts nearer to each other one is enough: by the depth of the overlap, and by how far from it the body's
+/// weight is, or how wide it is; metres.
+[[nodiscard]] inline double spacing(double depth, double lever) noexcept {
+  return std::max(tolerances::spacing_by_depth * depth, tolerances::spacing_by_lever * lever);
+}
 
 /// Orders at most `most` of the witnesses: the deepest (of those equally deep to 2 %, one far out), the farthest from
 /// it, the one that adds the largest triangle, and so on while the area grows. Leaves out shallow ones and ones nearer

@@ -3,9 +3,12 @@
 
 #include <cstddef>
 #include <memory>
+#include <mutex>
 #include <type_traits>
 #include <variant>
+#include <vector>
 
+#include "mesh/flat_faces.hpp"
 #include "odds/query/shape.hpp"
 #include "odds/tree/hierarchy.hpp"
 #include "odds/tree/wide_tree.hpp"
@@ -44,6 +47,16 @@ struct Shape::Data {
   bool solid = false;    ///< closed, oriented outwards
   bool polygons = true;  ///< false: the mesh is a box, and leaves hold no triangles
   AnyTree tree;
+
+  /// The large flat faces of a solid, found when they are asked for first; of another body none. Thread-safe.
+  [[nodiscard]] const std::vector<mesh::FlatFace>& flat_faces() const {
+    std::call_once(looked_for_faces, [this] {
+      if (solid && polygons) faces = mesh::find_flat_faces(*mesh);
+    });
+    return faces;
+  }
+  mutable std::once_flag looked_for_faces;
+  mutable std::vector<mesh::FlatFace> faces;
 };
 
 }  // namespace odds::query

@@ -181,6 +181,41 @@ void write_late(const math::Pose& pose_b_in_a, const Request& request, Pair::Imp
   pair.answer.contact_pairs = manifold.made_from();
 }
 
+/// The contacts of faces that lie on each other.
+void write_flush(const PosedMeshes& meshes, const Request& request, Pair::Implementation& pair) noexcept {
+  const std::span<Contact> room = room_for_contacts(request, pair);
+  pair.answer.contacts = room.first(pair.flush.write(room));
+  pair.answer.contact_pairs = static_cast<std::uint32_t>(pair.answer.contacts.size());
+  double deepest = 0.0;
+  for (const Contact& contact : pair.answer.contacts) deepest = std::max(deepest, contact.depth);
+  pair.known_depth.note(meshes.pose(), deepest);
+}
+
+/// Whether the pair's hits are where faces lie on each other; some of them are looked at, from all over their list.
+bool see_flush(const PosedMeshes& meshes, Pair::Implementation& pair, Spending& spending) noexcept {
+  constexpr std::size_t most_seen = 3;
+  if (!pair.flush.may_be()) return false;
+  const std::span<const TrianglePair> hits = pair.hits.pairs();
+  const std::size_t seen = std::min(hits.size(), most_seen);
+  for (std::size_t i = 0; i < seen && (i == 0 || spending.may_make_contacts()); ++i) {
+    const Vec3 place = Crossing::of(meshes, hits[i * hits.size() / seen]).middle() + meshes.origin_a();
+    const bool explained = pair.flush.explains(place);
+    pair.flush.note(explained, false);
+    if (!explained) return false;
+  }
+  return pair.flush.serves();
+}
+
+/// Whether the contacts that the work has made are all where faces lie on each other.
+bool is_all_flush(Pair::Implementation& pair) noexcept {
+  if (!pair.flush.may_be()) return false;
+  const std::span<const Contact> made = pair.late->contacts();
+  const bool explained = std::all_of(made.begin(), made.end(),
+                                     [&pair](const Contact& contact) { return pair.flush.explains(contact.position); });
+  pair.flush.note(explained, true);
+  return pair.flush.serves();
+}
+
 /// For what time is left.
 void work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair,
           Spending& spending) noexcept {
@@ -190,7 +225,8 @@ void work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implement
   }
   spending.reserve_for_contacts(pair.endings.late);
   const double press = request.budget.microseconds < short_us ? tolerances::late_press * smaller_size(pair) : 0.0;
-  if (pair.late->work(pose_b_in_a, request, pair, spending, press) && serves_late(pose_b_in_a, pair)) {
+  if (pair.late->work(pose_b_in_a, request, pair, spending, press) && !is_all_flush(pair) &&
+      serves_late(pose_b_in_a, pair)) {
     write_late(pose_b_in_a, request, pair);
   }
 }
@@ -220,11 +256,18 @@ std::uint32_t hits_of_a_guess(const Request& request, const Pair::Implementation
 
 bool carry_late_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request,
                          Pair::Implementation& pair, Spending& spending) noexcept {
-  if (!is_short(request, pair) || !serves_late(pose_b_in_a, pair)) return false;
+  if (!is_short(request, pair)) return false;
+  pair.flush.move_to(pose_b_in_a, smaller_size(pair));
+  const bool is_flush = pair.flush.serves();
+  if (!is_flush && !serves_late(pose_b_in_a, pair)) return false;
   if (!prove_carried(meshes, pair, spending)) return false;
   begin_haste(pose_b_in_a, pair);
   pair.answer.contacts_complete = false;
-  write_late(pose_b_in_a, request, pair);
+  if (is_flush) {
+    write_flush(meshes, request, pair);
+  } else {
+    write_late(pose_b_in_a, request, pair);
+  }
   work(pose_b_in_a, request, pair, spending);
   return true;
 }
@@ -246,7 +289,10 @@ void make_contacts_over_runs(const PosedMeshes& meshes, const math::Pose& pose_b
   pair.answer.contacts_complete = false;
   ++pair.hasty_runs;
   begin_haste(pose_b_in_a, pair);
-  if (serves_late(pose_b_in_a, pair)) {
+  if (see_flush(meshes, pair, spending)) {
+    write_flush(meshes, request, pair);
+    pair.carried.keep_proofs(pair.hits.pairs());
+  } else if (serves_late(pose_b_in_a, pair)) {
     write_late(pose_b_in_a, request, pair);
   } else if (!share_guess(pose_b_in_a, request, pair)) {
     spending.reserve_for_contacts(pair.endings.rough);

@@ -157,6 +157,14 @@ inline constexpr double late_least = 3e-5;
 /// stacks fell. Tests: LateManifold.PushesGently, LateManifold.GivesADepthNoFasterThanItsRate,
 /// LateManifold.PushesApartNoFasterThanItsRate.
 inline constexpr double late_rise = 6e-6;
+/// Of a mesh's size: corners so near to a plane lie in it, whatever single precision made of them.
+/// Test: FlatFaces.OfABoxAreSixHoweverItIsCut.
+inline constexpr double flat_face = 1e-6;
+/// Cosine (2.6 degrees) from which two flat faces lie on each other, and how deep at most, as a part of the smaller
+/// body's size: what is deeper came in elsewhere. Tests: FlushContacts.EndWhereTheFacesTilt,
+/// FlushContacts.OfFacesOnFarSidesAreNone.
+inline constexpr double flush_faces = 0.999;
+inline constexpr double flush_depth = 0.02;  ///< see flush_faces
 /// Cosine below which a surface is a wall, whose slope tells nothing of where an overlap gets deeper.
 inline constexpr double steep = 0.05;
 /// An overlap that changes by less than this part of itself across the patch is level.

@@ -1,0 +1,38 @@
+// The large flat faces of a mesh, each as one polygon however many triangles it is cut into.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "odds/mesh/triangle_mesh.hpp"
+
+namespace odds::mesh {
+
+/// A convex polygon in the surface of a mesh, metres, in the mesh's frame.
+struct FlatFace {
+  static constexpr std::size_t most_corners = 16;
+
+  Vec3 normal = Vec3::UnitZ();  ///< unit, to the side that the triangles' winding says is outside
+  double offset = 0.0;          ///< normal . x of its points
+  Vec3 centre = Vec3::Zero();
+  double radius = 0.0;  ///< of its corners about the centre
+  std::array<Vec3, most_corners> corner;
+  std::size_t corner_count = 0;  ///< 3 or more; counter-clockwise, seen from outside
+  std::uint32_t triangle = 0;    ///< the largest of those that it is made of
+
+  [[nodiscard]] std::span<const Vec3> corners() const noexcept { return std::span(corner).first(corner_count); }
+};
+
+/// Faces of two triangles or more that are flat, convex, and no less than `least_share` of the surface each; the
+/// largest `most_faces`, largest first. A face with more than `most_corners` corners, as the end of a cylinder, is
+/// given as the largest polygon of so many of them that leaving out one after the other finds: it lies within the face.
+/// Takes some 0.2 us a triangle.
+[[nodiscard]] std::vector<FlatFace> find_flat_faces(const TriangleMesh& mesh);
+
+inline constexpr std::size_t most_faces = 64;
+inline constexpr double least_share = 5e-4;
+
+}  // namespace odds::mesh
