@@ -22,7 +22,8 @@ std::span<const query::Contact> HeldContacts::best_of(const query::Answer& answe
   }
   const std::span<const query::Contact> still_held =
       at(b_in_a, size, answer.contacts.empty() ? most_slip_undecided : most_slip);
-  const bool rough = !answer.contacts_late && answer.contact_pairs < enough_pairs;
+  const bool measured = answer.contacts_late || answer.contacts_flush;
+  const bool rough = !measured && answer.contact_pairs < enough_pairs;
   if (answer.contacts.empty() || (rough && better_than_rough() && !still_held.empty())) return still_held;
   if (rough && !still_held.empty()) {
     add(answer.contacts, b_in_a, size);

@@ -122,6 +122,7 @@ bool FlushContacts::place(Entry& entry) const noexcept {
 void FlushContacts::move_to(const math::Pose& pose, double size) noexcept {
   pose_ = pose;
   size_ = size;
+  is_placed_ = true;
   std::size_t left = 0;
   for (std::size_t i = 0; i < count_; ++i) {
     Entry& entry = entries_[i];

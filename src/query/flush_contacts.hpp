@@ -32,13 +32,16 @@ class FlushContacts {
 
   /// Whether there are faces that might lie on each other.
   [[nodiscard]] bool may_be() const noexcept { return !faces_a_.empty() && !faces_b_.empty() && !too_many_; }
-  /// A run begins, with B's mesh frame at `pose`: what no longer lies on each other is forgotten.
+  /// A run begins.
+  void begin() noexcept { is_placed_ = false; }
+  /// It is one that has no time for a patch, with B's mesh frame at `pose`: what no longer lies on each other is
+  /// forgotten.
   void move_to(const math::Pose& pose, double size) noexcept;
   /// Whether the surfaces cross at `place` because of a pair of faces that is known, or is found now.
   [[nodiscard]] bool explains(const Vec3& place) noexcept;
 
   /// Whether all that was seen of the bodies' contact was explained, and some of it overlaps now.
-  [[nodiscard]] bool serves() const noexcept { return explains_all_ && overlaps(); }
+  [[nodiscard]] bool serves() const noexcept { return is_placed_ && explains_all_ && overlaps(); }
   /// What a run saw: whether all of it was explained. `all`: it saw all that there is; until such a one has, a run that
   /// saw something else is believed.
   void note(bool explained, bool all) noexcept {
@@ -76,6 +79,7 @@ class FlushContacts {
   std::array<Entry, most_entries> entries_;
   std::size_t count_ = 0;
   bool too_many_ = false;
+  bool is_placed_ = false;  ///< in this run
   bool sees_all_ = true;
   bool explains_all_ = false;
   math::Pose pose_;

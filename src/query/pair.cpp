@@ -179,6 +179,8 @@ void forecast(const Met& met, const math::Pose& pose_b_in_a, const SearchResult&
     undecided =
         pair.recalibration(probability_of_hit(odds, remains_of(met, result, spending.so_far(), cell_probability)));
   }
+  // Surfaces that were seen to cross there.
+  if (pair.flush.serves()) undecided = std::max(undecided, tolerances::flush_probability);
   judge(result, undecided, request, !pair.hits.empty(), answer);
   if (answer.basis == Basis::proved || result.shortlist.empty()) return;
   answer.has_cell_pair = true;
@@ -261,6 +263,8 @@ void search_and_answer(const Tree& a, const Tree& b, const PosedMeshes& meshes, 
       note_clear(meshes, pose_b_in_a, request, pair);
     }
     pair.within_is_of_front = pair.within_is_of_front && result.method == Method::incremental;
+  } else if (answer.basis != Basis::proved && pair.flush.serves()) {
+    make_flush_contacts(meshes, request, pair);
   } else if (pair.within == Within::neither) {
     pair.previous_normal.setZero();
   }
@@ -280,6 +284,7 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
   Answer& answer = pair.answer;
   answer = {};
   pair.hits.clear();
+  pair.flush.begin();
   if (pair.late) pair.late->age(pose_b_in_a, std::min(pair.a->mesh().size(), pair.b->mesh().size()));
   const PosedMeshes meshes(pair.a->mesh(), pair.b->mesh(), a.origin(), b.origin(), pose_b_in_a);
   forget_if_elsewhere(meshes, pair);

@@ -181,16 +181,6 @@ void write_late(const math::Pose& pose_b_in_a, const Request& request, Pair::Imp
   pair.answer.contact_pairs = manifold.made_from();
 }
 
-/// The contacts of faces that lie on each other.
-void write_flush(const PosedMeshes& meshes, const Request& request, Pair::Implementation& pair) noexcept {
-  const std::span<Contact> room = room_for_contacts(request, pair);
-  pair.answer.contacts = room.first(pair.flush.write(room));
-  pair.answer.contact_pairs = static_cast<std::uint32_t>(pair.answer.contacts.size());
-  double deepest = 0.0;
-  for (const Contact& contact : pair.answer.contacts) deepest = std::max(deepest, contact.depth);
-  pair.known_depth.note(meshes.pose(), deepest);
-}
-
 /// Whether the pair's hits are where faces lie on each other; some of them are looked at, from all over their list.
 bool see_flush(const PosedMeshes& meshes, Pair::Implementation& pair, Spending& spending) noexcept {
   constexpr std::size_t most_seen = 3;
@@ -239,6 +229,17 @@ bool may_be_late(const Request& request, const Pair::Implementation& pair) noexc
 
 }  // namespace
 
+void make_flush_contacts(const PosedMeshes& meshes, const Request& request, Pair::Implementation& pair) noexcept {
+  const std::span<Contact> room = room_for_contacts(request, pair);
+  pair.answer.contacts = room.first(pair.flush.write(room));
+  pair.answer.contacts_flush = true;
+  pair.answer.contacts_complete = false;
+  pair.answer.contact_pairs = static_cast<std::uint32_t>(pair.answer.contacts.size());
+  double deepest = 0.0;
+  for (const Contact& contact : pair.answer.contacts) deepest = std::max(deepest, contact.depth);
+  pair.known_depth.note(meshes.pose(), deepest);
+}
+
 bool is_short(const Request& request, const Pair::Implementation& pair) noexcept {
   return may_be_late(request, pair) && (request.budget.microseconds < short_us || pair.late->is_wanted()) &&
          pair.late->can_work();
@@ -264,7 +265,7 @@ bool carry_late_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_
   begin_haste(pose_b_in_a, pair);
   pair.answer.contacts_complete = false;
   if (is_flush) {
-    write_flush(meshes, request, pair);
+    make_flush_contacts(meshes, request, pair);
   } else {
     write_late(pose_b_in_a, request, pair);
   }
@@ -290,7 +291,7 @@ void make_contacts_over_runs(const PosedMeshes& meshes, const math::Pose& pose_b
   ++pair.hasty_runs;
   begin_haste(pose_b_in_a, pair);
   if (see_flush(meshes, pair, spending)) {
-    write_flush(meshes, request, pair);
+    make_flush_contacts(meshes, request, pair);
     pair.carried.keep_proofs(pair.hits.pairs());
   } else if (serves_late(pose_b_in_a, pair)) {
     write_late(pose_b_in_a, request, pair);

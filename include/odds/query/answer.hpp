@@ -86,6 +86,9 @@ struct Answer {
   /// They were made with care, but for a pose some runs ago, for a short budget had no time for them at once; moved
   /// along with the bodies since, the deepest first (Request::late_contacts). Then contacts_complete is false.
   bool contacts_late = false;
+  /// They are of flat faces that lie on each other, as polygons, at the pose of this run, which had no time for a patch
+  /// (Request::late_contacts): all that is known of, but something else may touch. Then contacts_complete is false.
+  bool contacts_flush = false;
   bool has_cell_pair = false;  ///< whether `cell_pair` is set: some pair of nodes remained undecided
   Contact cell_pair;           ///< where the surfaces most probably meet: centroids, mean normals, depth estimate
   double cell_pair_probability = 0.0;  ///< of an intersection within that pair of nodes
