@@ -54,7 +54,8 @@ struct Request {
   /// pair has seen not to do, are made over the runs that follow, in what is left of their budgets, and carried along
   /// with the bodies: complete, but of a pose some runs ago (Answer::contacts_late). Until the first of them they are
   /// guessed, and no deeper than 1e-4 of the smaller body's size: a guess holds, and hardly pushes. For bodies that
-  /// rest or move slowly, in a solver that holds what touches. Without, contacts are made of what the budget has time
+  /// rest or move slowly, in a solver that holds what touches. Flat faces that lie on each other need no such work: they
+  /// have their contacts in the same run (Answer::contacts_flush). Without, contacts are made of what the budget has time
   /// for (Answer::contacts_complete): rougher, but with a depth. Of pairs with PairOptions::late_contacts; not
   /// polygon-free.
   bool late_contacts = true;
