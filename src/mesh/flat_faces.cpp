@@ -94,9 +94,9 @@ class Finder {
               [&](std::uint32_t a, std::uint32_t b) { return areas_[a] != areas_[b] ? areas_[a] > areas_[b] : a < b; });
     std::vector<std::pair<double, FlatFace>> found;
     for (const std::uint32_t seed : order) {
-      if (taken_[seed] || normals_[seed].isZero()) continue;
+      if (region_of_[seed] != nobody || normals_[seed].isZero()) continue;
       const double area = grow(seed);
-      if (region_.size() < 2 || area < least_share * surface_) continue;
+      if (region_.size() < 2 || area < (is_sharp(seed) ? least_share : least_soft_share) * surface_) continue;
       FlatFace face;
       if (make_face(seed, area, face)) found.emplace_back(area, face);
     }
@@ -110,11 +110,12 @@ class Finder {
 
  private:
   static constexpr std::uint32_t nobody = ~std::uint32_t{0};
+  static constexpr double sharp = 0.94;  // cosine of 20 degrees
 
   /// Neighbours across edges that two triangles share, wound alike.
   void link() {
     beside_.assign(welded_.size(), {nobody, nobody, nobody});
-    taken_.assign(welded_.size(), false);
+    region_of_.assign(welded_.size(), nobody);
     for_each_edge(sorted_edge_uses(welded_), [this](std::span<const EdgeUse> uses) {
       if (uses.size() != 2 || uses[0].forward == uses[1].forward) return;
       add_neighbour(uses[0].triangle, uses[1].triangle);
@@ -132,20 +133,29 @@ class Finder {
   /// All triangles about `seed` that lie in its plane; their area.
   double grow(std::uint32_t seed) {
     region_.assign(1, seed);
-    taken_[seed] = true;
+    region_of_[seed] = seed;
     const Vec3 normal = normals_[seed];
     const double slack = tolerances::flat_face * mesh_.size();
     const double offset = normal.dot(mesh_.vertices()[mesh_.triangles()[seed][0]]);
     double area = areas_[seed];
     for (std::size_t i = 0; i < region_.size(); ++i) {
       for (const std::uint32_t next : beside_[region_[i]]) {
-        if (next == nobody || taken_[next] || !lies_in(next, normal, offset, slack)) continue;
-        taken_[next] = true;
+        if (next == nobody || region_of_[next] != nobody || !lies_in(next, normal, offset, slack)) continue;
+        region_of_[next] = seed;
         region_.push_back(next);
         area += areas_[next];
       }
     }
     return area;
+  }
+  /// Whether the surface turns sharply all round the region that was grown last: else it may be one of the facets that
+  /// a round body is cut into.
+  [[nodiscard]] bool is_sharp(std::uint32_t seed) const {
+    return std::all_of(region_.begin(), region_.end(), [&](std::uint32_t triangle) {
+      return std::all_of(beside_[triangle].begin(), beside_[triangle].end(), [&](std::uint32_t other) {
+        return other == nobody || region_of_[other] == seed || normals_[other].dot(normals_[seed]) < sharp;
+      });
+    });
   }
   [[nodiscard]] bool lies_in(std::uint32_t triangle, const Vec3& normal, double offset, double slack) const {
     if (!(normals_[triangle].dot(normal) > tolerances::same_face)) return false;
@@ -200,7 +210,7 @@ class Finder {
   std::vector<double> areas_;
   double surface_ = 0.0;
   std::vector<std::array<std::uint32_t, 3>> beside_;
-  std::vector<bool> taken_;
+  std::vector<std::uint32_t> region_of_;  ///< the seed of each triangle's region
   std::vector<std::uint32_t> region_;
 };
 

@@ -26,13 +26,15 @@ struct FlatFace {
   [[nodiscard]] std::span<const Vec3> corners() const noexcept { return std::span(corner).first(corner_count); }
 };
 
-/// Faces of two triangles or more that are flat, convex, and no less than `least_share` of the surface each; the
-/// largest `most_faces`, largest first. A face with more than `most_corners` corners, as the end of a cylinder, is
-/// given as the largest polygon of so many of them that leaving out one after the other finds: it lies within the face.
-/// Takes some 0.2 us a triangle.
+/// Faces of two triangles or more that are flat and convex, and no less than `least_share` of the surface each, or
+/// `least_soft_share` where the surface turns by less than 20 degrees at some side, as between the facets of a round
+/// body; the largest `most_faces`, largest first. A face with more than `most_corners` corners, as the end of a
+/// cylinder, is given as the largest polygon of so many of them that leaving out one after the other finds: it lies
+/// within the face. Takes some 0.2 us a triangle.
 [[nodiscard]] std::vector<FlatFace> find_flat_faces(const TriangleMesh& mesh);
 
 inline constexpr std::size_t most_faces = 64;
 inline constexpr double least_share = 5e-4;
+inline constexpr double least_soft_share = 0.02;
 
 }  // namespace odds::mesh

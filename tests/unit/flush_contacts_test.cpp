@@ -1,0 +1,344 @@
+// Contacts of flat faces that lie on each other: what two polygons say, in every run of however little time.
+#include "query/flush_contacts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "odds/math/random.hpp"
+#include "odds/math/tolerances.hpp"
+#include "odds/mesh/made/by_name.hpp"
+#include "odds/query/pair.hpp"
+#include "support/allocation_counter.hpp"
+
+namespace odds::query {
+namespace {
+
+mesh::TriangleMesh made_mesh(const std::string& name) { return std::move(mesh::made::make_shape(name)).value(); }
+
+/// 1 by 1, 0.2 high.
+mesh::TriangleMesh slab(int cells = 3) { return made_mesh("made:box:x=1,y=1,z=0.2,cells=" + std::to_string(cells)); }
+
+/// A stands on B, which has been turned about z by `turn` and about y by `tilt`, and pushed up until they overlap by
+/// `depth` in the middle.
+math::Pose below(double depth, double turn = 0.0, double tilt = 0.0) {
+  math::Pose pose;
+  pose.rotation = (Eigen::AngleAxisd(tilt, Vec3::UnitY()) * Eigen::AngleAxisd(turn, Vec3::UnitZ())).toRotationMatrix();
+  pose.translation.z() = -0.1 - 0.1 / std::cos(tilt) + depth;
+  return pose;
+}
+
+constexpr double size = 1.4;
+const Vec3 under(0.4, 0.3, -0.1);  ///< where A's bottom is
+
+FlushContacts contacts_of(const mesh::TriangleMesh& a, const mesh::TriangleMesh& b) {
+  return {mesh::find_flat_faces(a), mesh::find_flat_faces(b)};
+}
+
+/// As of runs at one pose, until all of the depth is given.
+std::vector<Contact> written(FlushContacts& flush, const math::Pose& pose, const Vec3& seen, std::size_t room = 8) {
+  flush.move_to(pose, size);
+  flush.note(flush.explains(seen), false);
+  for (int run = 0; run < 2000; ++run) {
+    flush.begin();
+    flush.move_to(pose, size);
+  }
+  std::vector<Contact> contacts(room);
+  contacts.resize(flush.serves() ? flush.write(contacts) : 0);
+  return contacts;
+}
+
+TEST(FlushContacts, OfASlabOnASlabAreAtItsCorners) {
+  auto flush = contacts_of(slab(), slab(5));
+  math::Pose pose = below(1e-3);
+  pose.translation.x() = 0.5;
+  const auto contacts = written(flush, pose, under);
+  ASSERT_EQ(contacts.size(), 4U);
+  std::set<std::pair<double, double>> corners;
+  for (const Contact& contact : contacts) {
+    EXPECT_NEAR(contact.depth, 1e-3, 1e-12);
+    EXPECT_NEAR(contact.normal.z(), 1.0, 1e-12) << "into A, which is above";
+    EXPECT_NEAR(contact.position.z(), -0.1 + 0.5e-3, 1e-12) << "half-way";
+    corners.emplace(std::round(1e6 * contact.position.x()), std::round(1e6 * contact.position.y()));
+    EXPECT_NE(contact.triangle_a, no_feature);
+    EXPECT_NE(contact.triangle_b, no_feature);
+  }
+  EXPECT_EQ(corners, (std::set<std::pair<double, double>>{{0, -5e5}, {0, 5e5}, {5e5, -5e5}, {5e5, 5e5}}));
+}
+
+TEST(FlushContacts, AreTheSameWhicheverBodyIsFirst) {
+  for (int i = 0; i < 200; ++i) {
+    math::Random random(100 + static_cast<std::uint64_t>(i));
+    math::Pose pose = below(5e-4, random.uniform(-3, 3), random.uniform(-5e-3, 5e-3));
+    pose.translation.x() += random.uniform(-0.4, 0.4);
+    pose.translation.y() += random.uniform(-0.4, 0.4);
+    auto one = contacts_of(slab(), slab(5));
+    auto other = contacts_of(slab(5), slab());
+    const auto a = written(one, pose, Vec3(0.5 * pose.translation.x(), 0.5 * pose.translation.y(), -0.1));
+    const math::Pose back = pose.inverse();
+    const auto b = written(other, back, back * Vec3(0.5 * pose.translation.x(), 0.5 * pose.translation.y(), -0.1));
+    ASSERT_FALSE(a.empty());
+    ASSERT_FALSE(b.empty());
+    double deepest[2] = {0.0, 0.0};
+    for (const Contact& contact : a) deepest[0] = std::max(deepest[0], contact.depth);
+    for (const Contact& contact : b) deepest[1] = std::max(deepest[1], contact.depth);
+    EXPECT_NEAR(deepest[0], deepest[1], 1e-12);
+    EXPECT_LT((pose.rotation * b[0].normal + a[0].normal).norm(), 1e-12);
+  }
+}
+
+// Of random rectangles on each other: what is deepest is found, and nothing lies outside either.
+TEST(FlushContacts, LieInBothFacesAndReachTheDeepestPoint) {
+  for (int i = 0; i < 300; ++i) {
+    math::Random random(static_cast<std::uint64_t>(i));
+    math::Pose pose = below(random.uniform(0.0, 2e-3), random.uniform(-3, 3), random.uniform(-4e-3, 4e-3));
+    pose.translation.x() += random.uniform(-0.6, 0.6);
+    pose.translation.y() += random.uniform(-0.6, 0.6);
+    const math::Pose back = pose.inverse();
+    // B's top over A's bottom, by sampling.
+    double deepest = 0.0;
+    Vec3 seen = Vec3::Zero();
+    for (int k = 0; k < 4000; ++k) {
+      const Vec3 on_a(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), -0.1);
+      const Vec3 in_b = back * on_a;
+      if (in_b.head<2>().cwiseAbs().maxCoeff() > 0.5) continue;
+      if (0.1 - in_b.z() > deepest) {
+        deepest = 0.1 - in_b.z();
+        seen = on_a;
+      }
+    }
+    if (deepest == 0.0) continue;
+    auto flush = contacts_of(slab(), slab(2));
+    const auto contacts = written(flush, pose, seen);
+    ASSERT_FALSE(contacts.empty()) << i;
+    double found = 0.0;
+    for (const Contact& contact : contacts) {
+      found = std::max(found, contact.depth);
+      EXPECT_LE((contact.position.head<2>()).cwiseAbs().maxCoeff(), 0.5 + 1e-5);
+      EXPECT_LE((back * contact.position).head<2>().cwiseAbs().maxCoeff(), 0.5 + 1e-4);
+      EXPECT_GE(contact.depth, 0.0);
+    }
+    EXPECT_GE(found, deepest * (1.0 - 1e-4)) << i;
+    EXPECT_LE(found, deepest + 2e-4) << i;
+    EXPECT_GE(contacts.front().depth, 0.97 * found) << "the deepest first, or one as deep that is farther out";
+  }
+}
+
+TEST(FlushContacts, EndWhereTheFacesTilt) {
+  auto flush = contacts_of(slab(), slab());
+  const double most = std::acos(tolerances::flush_faces);
+  EXPECT_FALSE(written(flush, below(0.0, 0.0, 0.9 * most), Vec3(-0.49, 0, -0.1)).empty());
+  flush.begin();
+  flush.move_to(below(0.0, 0.0, 1.1 * most), size);
+  EXPECT_FALSE(flush.serves());
+}
+
+TEST(FlushContacts, OfFacesOnFarSidesAreNone) {
+  // A's left side and B's right side face each other through both bodies.
+  auto flush = contacts_of(slab(), slab());
+  math::Pose pose = below(0.05);
+  flush.move_to(pose, size);
+  EXPECT_FALSE(flush.explains(Vec3(-0.5, 0, -0.09))) << "deeper than faces that came to lie on each other";
+  EXPECT_FALSE(flush.explains(Vec3(0, 0, 0))) << "in the middle of A";
+}
+
+TEST(FlushContacts, WhatCameDeepUnknownPushesSlowly) {
+  auto flush = contacts_of(slab(), slab());
+  const math::Pose pose = below(1e-2);
+  flush.move_to(pose, size);
+  flush.note(flush.explains(under), false);
+  ASSERT_TRUE(flush.serves());
+  std::array<Contact, 8> contacts;
+  ASSERT_GT(flush.write(contacts), 0U);
+  EXPECT_NEAR(contacts[0].depth, tolerances::unmeasured_depth * size, 1e-12);
+  flush.begin();
+  flush.move_to(pose, size);
+  ASSERT_GT(flush.write(contacts), 0U);
+  EXPECT_NEAR(contacts[0].depth, (tolerances::unmeasured_depth + tolerances::late_rise) * size, 1e-12);
+  // What comes deeper against a push is given at once.
+  flush.begin();
+  flush.move_to(below(1.2e-2), size);
+  ASSERT_GT(flush.write(contacts), 0U);
+  EXPECT_NEAR(contacts[0].depth, (tolerances::unmeasured_depth + 2 * tolerances::late_rise) * size + 2e-3, 1e-9);
+}
+
+TEST(FlushContacts, AHopIsNotForgotten) {
+  auto flush = contacts_of(slab(), slab());
+  ASSERT_FALSE(written(flush, below(1e-3), under).empty());
+  flush.begin();
+  flush.move_to(below(-1e-3), size);
+  EXPECT_FALSE(flush.serves()) << "they are apart";
+  flush.begin();
+  flush.move_to(below(1e-4), size);
+  EXPECT_TRUE(flush.serves());
+  flush.begin();
+  flush.move_to(below(-2.0 * tolerances::late_gap * size), size);
+  flush.begin();
+  flush.move_to(below(1e-4), size);
+  EXPECT_FALSE(flush.serves()) << "far apart they are forgotten";
+}
+
+TEST(FlushContacts, WhatElseWasSeenIsNotLeftOut) {
+  auto flush = contacts_of(slab(), slab());
+  ASSERT_FALSE(written(flush, below(1e-3), under).empty());
+  flush.note(false, false);
+  EXPECT_FALSE(flush.serves());
+  flush.note(true, false);
+  EXPECT_FALSE(flush.serves()) << "a run that saw a part does not take that back";
+  flush.note(true, true);
+  EXPECT_TRUE(flush.serves());
+}
+
+TEST(FlushContacts, OfManyPairsOfFacesAreLeftToAPatch) {
+  // A round peg in a hole with facets as wide as its own.
+  auto flush =
+      contacts_of(made_mesh("made:peg:radius=0.01,length=0.02,around=16"),
+                  made_mesh("made:plate_with_hole:peg_radius=0.01,thickness=0.02,around=16,clearance=-2.2e-4"));
+  math::Pose pose;
+  pose.translation.z() = 0.019;
+  flush.move_to(pose, 0.03);
+  int explained = 0;
+  for (int i = 0; i < 16; ++i) {
+    const double angle = (i + 0.5) * std::numbers::pi / 8.0;
+    explained += flush.explains(Vec3(0.0098 * std::cos(angle), 0.0098 * std::sin(angle), 0.01)) ? 1 : 0;
+  }
+  EXPECT_GT(explained, 0);
+  EXPECT_LT(explained, 16);
+  EXPECT_FALSE(flush.may_be());
+  EXPECT_FALSE(flush.serves());
+  flush.forget();
+  EXPECT_TRUE(flush.may_be());
+}
+
+std::shared_ptr<const Shape> shape_of(mesh::TriangleMesh mesh) {
+  return Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(mesh))).value();
+}
+
+Request in_microseconds(double microseconds, realtime::ManualClock& clock) {
+  Request request;
+  request.method = Method::incremental;
+  request.max_contacts = 4;
+  request.budget = Budget::time(microseconds);
+  request.budget.clock = clock.clock();
+  return request;
+}
+
+Pair late_pair(const std::shared_ptr<const Shape>& a, const std::shared_ptr<const Shape>& b) {
+  return std::move(Pair::make(a, b, {.late_contacts = true})).value();
+}
+
+TEST(FlushContacts, OfARunAreThoseOfAPatchWithoutALimit) {
+  const auto brick = shape_of(slab(10));
+  for (const double microseconds : {5.0, 20.0}) {
+    realtime::ManualClock clock(50);
+    Pair pair = late_pair(brick, brick);
+    math::Pose pose = below(1e-5, 0.3);
+    pose.translation.x() = 0.2;
+    int flush = 0;
+    for (int run = 0; run < 40; ++run) {
+      const Answer& answer = pair.run(pose, in_microseconds(microseconds, clock));
+      if (!answer.contacts_flush) continue;
+      ++flush;
+      EXPECT_FALSE(answer.contacts_complete || answer.contacts_late);
+      EXPECT_EQ(answer.verdict, Verdict::hit);
+    }
+    EXPECT_GE(flush, 38) << microseconds;
+    const Answer& last = pair.run(pose, in_microseconds(microseconds, clock));
+    const std::vector<Contact> found(last.contacts.begin(), last.contacts.end());
+    Pair careful = std::move(Pair::make(brick, brick)).value();
+    Request all;
+    all.max_contacts = 4;
+    const Answer& exact = careful.run(pose, all);
+    ASSERT_TRUE(exact.contacts_complete);
+    ASSERT_EQ(found.size(), exact.contacts.size());
+    for (const Contact& contact : exact.contacts) {
+      const bool is_there = std::any_of(found.begin(), found.end(), [&](const Contact& other) {
+        return (other.position - contact.position).norm() < 1e-3 && std::abs(other.depth - contact.depth) < 1e-9 &&
+               other.normal.dot(contact.normal) > 0.999999;
+      });
+      EXPECT_TRUE(is_there) << contact.position.transpose();
+    }
+  }
+}
+
+TEST(FlushContacts, OfARunWithoutAProofAreGivenAllTheSame) {
+  const auto brick = shape_of(slab(10));
+  realtime::ManualClock clock(50);
+  Pair pair = late_pair(brick, brick);
+  const math::Pose pose = below(1e-5, 0.3);
+  for (int run = 0; run < 20; ++run) static_cast<void>(pair.run(pose, in_microseconds(5.0, clock)));
+  realtime::ManualClock slow(2000);  // the time is up at the second look
+  int unproved = 0;
+  for (int run = 0; run < 20; ++run) {
+    // Far enough for no pair of triangles that met to meet still.
+    const Answer& answer = pair.run(below(1e-5, 0.3 + 0.02 * run), in_microseconds(3.0, slow));
+    if (answer.basis == Basis::proved) continue;
+    ++unproved;
+    EXPECT_EQ(answer.verdict, Verdict::hit);
+    EXPECT_GE(answer.probability, tolerances::flush_probability);
+    EXPECT_TRUE(answer.contacts_flush);
+    EXPECT_EQ(answer.contacts.size(), 4U);
+  }
+  EXPECT_GT(unproved, 0);
+}
+
+/// A slab and a ball, as one body, that both touch a larger slab.
+TEST(FlushContacts, OfABodyThatAlsoTouchesElsewhereAreNotAll) {
+  const mesh::TriangleMesh foot = slab(6);
+  const mesh::TriangleMesh ball = made_mesh("made:icosphere:frequency=12,radius=0.1");
+  std::vector<Vec3> vertices(foot.vertices().begin(), foot.vertices().end());
+  std::vector<mesh::Triangle> triangles(foot.triangles().begin(), foot.triangles().end());
+  const auto first = static_cast<std::uint32_t>(vertices.size());
+  for (const Vec3& v : ball.vertices()) vertices.push_back(v + Vec3(1.0, 0.0, -1e-3));
+  for (const mesh::Triangle& t : ball.triangles()) triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  const auto both =
+      shape_of(std::move(mesh::TriangleMesh::make(std::move(vertices), std::move(triangles), "both")).value());
+  ASSERT_TRUE(both->is_solid());
+  const auto ground = shape_of(made_mesh("made:box:x=4,y=4,z=0.2,cells=4"));
+  realtime::ManualClock clock(50);
+  Pair pair = late_pair(both, ground);
+  const math::Pose pose = below(1e-4);
+  int of_ball = 0;
+  for (int run = 0; run < 3000; ++run) {
+    const Answer& answer = pair.run(pose, in_microseconds(10.0, clock));
+    if (run < 2000) continue;
+    EXPECT_FALSE(answer.contacts_flush) << run;
+    of_ball += std::any_of(answer.contacts.begin(), answer.contacts.end(),
+                           [](const Contact& contact) { return contact.position.x() > 0.9; })
+                   ? 1
+                   : 0;
+  }
+  EXPECT_GT(of_ball, 900);
+}
+
+TEST(FlushContacts, AreOfSolidsAlone) {
+  // Without its lid a box has two-sided walls.
+  mesh::TriangleMesh closed = slab(3);
+  std::vector<Vec3> vertices(closed.vertices().begin(), closed.vertices().end());
+  std::vector<mesh::Triangle> triangles(closed.triangles().begin(), closed.triangles().end() - 1);
+  const auto open =
+      shape_of(std::move(mesh::TriangleMesh::make(std::move(vertices), std::move(triangles), "open")).value());
+  realtime::ManualClock clock(50);
+  Pair pair = late_pair(open, shape_of(slab(3)));
+  for (int run = 0; run < 40; ++run) {
+    EXPECT_FALSE(pair.run(below(1e-4), in_microseconds(5.0, clock)).contacts_flush);
+  }
+}
+
+TEST(FlushContacts, TakeNoMemoryInARun) {
+  const auto brick = shape_of(slab(10));
+  realtime::ManualClock clock(50);
+  Pair pair = late_pair(brick, brick);
+  const support::AllocationCounter counter;
+  for (int run = 0; run < 50; ++run) static_cast<void>(pair.run(below(1e-5, 0.01 * run), in_microseconds(5.0, clock)));
+  EXPECT_EQ(counter.allocations(), 0U);
+}
+
+}  // namespace
+}  // namespace odds::query
