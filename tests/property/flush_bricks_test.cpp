@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "odds/math/random.hpp"
 #include "odds/mesh/made/by_name.hpp"
@@ -83,6 +85,65 @@ TEST(FlushBricks, AreNotPushedSidewaysHoweverLittleTimeThereIs) {
       EXPECT_EQ(found.sideways, 0) << units << " units, " << a << " and " << b << " cells";
       EXPECT_EQ(found.deep, 0) << units << " units, " << a << " and " << b << " cells";
     }
+  }
+}
+
+/// Area of the polygon of the contacts' places, seen from above, square metres.
+double supported_area(std::span<const Contact> contacts) {
+  double area = 0.0;
+  Vec3 centre = Vec3::Zero();
+  for (const Contact& contact : contacts) centre += contact.position / static_cast<double>(contacts.size());
+  std::vector<Vec3> places;
+  for (const Contact& contact : contacts) places.push_back(contact.position - centre);
+  std::sort(places.begin(), places.end(),
+            [](const Vec3& p, const Vec3& q) { return std::atan2(p.y(), p.x()) < std::atan2(q.y(), q.x()); });
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Vec3& p = places[i];
+    const Vec3& q = places[(i + 1) % places.size()];
+    area += 0.5 * (p.x() * q.y() - p.y() * q.x());
+  }
+  return area;
+}
+
+TEST(FlushBricks, InFiveMicrosecondsAreHeldAsWithoutALimit) {
+  math::Random random(5, 9);
+  for (const auto& [cells_a, cells_b] : {std::pair{1, 1}, {8, 8}, {11, 1}, {5, 12}}) {
+    const auto a = brick(cells_a);
+    const auto b = brick(cells_b);
+    int flush = 0;
+    int stands = 0;
+    for (int i = 0; i < 100; ++i) {
+      Stand stand = random_stand(random, {-3.5, -4.0, -5.0, 2.0});
+      stand.below.rotation =
+          Eigen::AngleAxisd(random.uniform(-3, 3), Vec3::UnitZ()).toRotationMatrix() * stand.below.rotation;
+      stand.below.translation.x() += random.uniform(-0.1, 0.1);
+      auto careful = std::move(Pair::make(a, b)).value();
+      Request all;
+      all.max_contacts = most_contacts;
+      const Answer& exact = careful.run(stand.below, all);
+      if (exact.contacts.size() < 3) continue;  // it stands on one edge
+      ++stands;
+      auto pair = std::move(Pair::make(a, b, {.late_contacts = true})).value();
+      realtime::ManualClock clock(60);
+      Request request = all;
+      request.method = Method::incremental;
+      request.budget = Budget::time(5.0);
+      request.budget.clock = clock.clock();
+      for (int run = 0; run < 10; ++run) static_cast<void>(pair.run(stand.below, request));
+      const Answer& answer = pair.run(stand.below, request);
+      if (!answer.contacts_flush) continue;
+      ++flush;
+      double deepest[2] = {0.0, 0.0};
+      for (const Contact& contact : exact.contacts) deepest[0] = std::max(deepest[0], contact.depth);
+      for (const Contact& contact : answer.contacts) {
+        deepest[1] = std::max(deepest[1], contact.depth);
+        EXPECT_GT(contact.normal.z(), 0.999);
+      }
+      EXPECT_NEAR(deepest[1], deepest[0], 0.05 * deepest[0] + 1e-9) << cells_a << " " << cells_b << " " << i;
+      EXPECT_GT(supported_area(answer.contacts), 0.8 * supported_area(exact.contacts)) << cells_a << " " << i;
+    }
+    EXPECT_GT(stands, 50);
+    EXPECT_GE(flush, stands * 95 / 100) << cells_a << " and " << cells_b << " cells";
   }
 }
 
