@@ -73,6 +73,7 @@ std::vector<PreparedMesh::Vertex> used_vertices(const mesh::TriangleMesh& mesh) 
 std::shared_ptr<const PreparedMesh> PreparedMesh::make(std::shared_ptr<const query::Shape> shape) {
   auto prepared = std::make_shared<PreparedMesh>();
   prepared->shape = std::move(shape);
+  prepared->shape->find_flat_faces();  // or the first collision that prepares a pair would
   const mesh::TriangleMesh& mesh = prepared->mesh();
   prepared->vertices = used_vertices(mesh);
   std::vector<BoxTree::Box> boxes;

@@ -142,12 +142,17 @@ void FlushContacts::move_to(const math::Pose& pose, double size) noexcept {
   count_ = left;
 }
 
-bool FlushContacts::explains(const Vec3& at) noexcept {
+void FlushContacts::straighten(Contact& guess) noexcept {
+  if (!is_placed_ || !may_be()) return;
+  if (const Entry* entry = find(guess.position)) guess.normal = entry->normal;
+}
+
+const FlushContacts::Entry* FlushContacts::find(const Vec3& at) noexcept {
   const double slack = tolerances::flush_depth * size_;
   for (const Entry& entry : std::span(entries_).first(count_)) {
     const Vec3 from = at - entry.centre;
     const double height = entry.normal.dot(from);
-    if (std::abs(height) <= slack && (from - height * entry.normal).norm() <= entry.radius + slack) return true;
+    if (std::abs(height) <= slack && (from - height * entry.normal).norm() <= entry.radius + slack) return &entry;
   }
   const auto is_at = [slack](const mesh::FlatFace& face, const Vec3& point) noexcept {
     return std::abs(face.normal.dot(point) - face.offset) <= slack &&
@@ -167,14 +172,14 @@ bool FlushContacts::explains(const Vec3& at) noexcept {
         count_ = 0;
         too_many_ = true;
         explains_all_ = false;
-        return false;
+        return nullptr;
       }
       entry.given = std::clamp(entry.depth, 0.0, tolerances::unmeasured_depth * size_);
-      entries_[count_++] = entry;
-      return true;
+      entries_[count_] = entry;
+      return &entries_[count_++];
     }
   }
-  return false;
+  return nullptr;
 }
 
 bool FlushContacts::overlaps() const noexcept {

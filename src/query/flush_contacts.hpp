@@ -38,7 +38,9 @@ class FlushContacts {
   /// forgotten.
   void move_to(const math::Pose& pose, double size) noexcept;
   /// Whether the surfaces cross at `place` because of a pair of faces that is known, or is found now.
-  [[nodiscard]] bool explains(const Vec3& place) noexcept;
+  [[nodiscard]] bool explains(const Vec3& place) noexcept { return find(place) != nullptr; }
+  /// A contact that is guessed where such faces are near each other has their normal.
+  void straighten(Contact& guess) noexcept;
 
   /// Whether all that was seen of the bodies' contact was explained, and some of it overlaps now.
   [[nodiscard]] bool serves() const noexcept { return is_placed_ && explains_all_ && overlaps(); }
@@ -71,6 +73,8 @@ class FlushContacts {
   };
 
   [[nodiscard]] bool overlaps() const noexcept;
+  /// The faces that are known at a place, or found now; null: there are none, or no room for more.
+  [[nodiscard]] const Entry* find(const Vec3& place) noexcept;
   /// How the faces of an entry lie now. False: not on each other.
   [[nodiscard]] bool place(Entry& entry) const noexcept;
 

@@ -191,6 +191,7 @@ void forecast(const Met& met, const math::Pose& pose_b_in_a, const SearchResult&
   const bool both_solid = pair.a->is_solid() && pair.b->is_solid();
   answer.cell_pair = likeliest_place(met, result.shortlist, answer.probability, both_solid, apart);
   answer.cell_pair.position += met.a().origin();
+  pair.flush.straighten(answer.cell_pair);
   answer.cell_pair_probability = static_cast<double>(cell_probability);
 }
 

@@ -251,6 +251,7 @@ volume::Kind Shape::volume() const noexcept { return data_->options.volume; }
 const ShapeOptions& Shape::options() const noexcept { return data_->options; }
 const ShapeSummary& Shape::summary() const noexcept { return data_->summary; }
 bool Shape::is_solid() const noexcept { return data_->solid; }
+void Shape::find_flat_faces() const { static_cast<void>(data_->flat_faces()); }
 
 std::size_t triangles_in_box(const Shape& shape, const Vec3& center, const Mat3& axes, const Vec3& half_extents,
                              std::span<std::uint32_t> found, std::uint64_t budget_nodes, bool* complete) noexcept {

@@ -148,6 +148,24 @@ TEST(FlushContacts, OfFacesOnFarSidesAreNone) {
   EXPECT_FALSE(flush.explains(Vec3(0, 0, 0))) << "in the middle of A";
 }
 
+TEST(FlushContacts, AGuessOnFacesHasTheirNormal) {
+  auto flush = contacts_of(slab(), slab());
+  Contact guess;
+  guess.normal = Vec3(0.4, -0.3, 0.87).normalized();
+  guess.position = under + Vec3(0, 0, 1e-3);
+  flush.straighten(guess);
+  EXPECT_LT(guess.normal.z(), 0.9) << "no run has begun that has no time for a patch";
+  flush.move_to(below(-1e-4, 0.3, 1e-3), size);
+  flush.straighten(guess);
+  EXPECT_GT(guess.normal.z(), 0.999999);
+  EXPECT_FALSE(flush.serves()) << "a guess is no crossing";
+  Contact elsewhere = guess;
+  elsewhere.normal = Vec3::UnitX();
+  elsewhere.position = Vec3(0.5, 0, 0.05);
+  flush.straighten(elsewhere);
+  EXPECT_EQ(elsewhere.normal, Vec3(Vec3::UnitX()));
+}
+
 TEST(FlushContacts, WhatCameDeepUnknownPushesSlowly) {
   auto flush = contacts_of(slab(), slab());
   const math::Pose pose = below(1e-2);
