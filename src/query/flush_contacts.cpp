@@ -49,9 +49,8 @@ void clip(Polygon<most>& polygon, Side&& side) noexcept {
 
 void FlushContacts::forget() noexcept {
   count_ = 0;
-  too_many_ = false;
-  sees_all_ = true;
-  explains_all_ = false;
+  was_seen_ = false;
+  note_clear();
 }
 
 bool FlushContacts::place(Entry& entry) const noexcept {
@@ -135,10 +134,8 @@ void FlushContacts::move_to(const math::Pose& pose, double size) noexcept {
     if (left != i) entries_[left] = entry;
     ++left;
   }
-  if (left == 0 && count_ > 0) {
-    sees_all_ = true;
-    explains_all_ = false;
-  }
+  if (left == 0) was_seen_ = false;
+  if (doubt_ > 0) --doubt_;
   count_ = left;
 }
 
@@ -170,8 +167,8 @@ const FlushContacts::Entry* FlushContacts::find(const Vec3& at) noexcept {
       if (!place(entry)) continue;
       if (count_ == entries_.size()) {
         count_ = 0;
+        was_seen_ = false;
         too_many_ = true;
-        explains_all_ = false;
         return nullptr;
       }
       entry.given = std::clamp(entry.depth, 0.0, tolerances::unmeasured_depth * size_);

@@ -43,12 +43,22 @@ class FlushContacts {
   void straighten(Contact& guess) noexcept;
 
   /// Whether all that was seen of the bodies' contact was explained, and some of it overlaps now.
-  [[nodiscard]] bool serves() const noexcept { return is_placed_ && explains_all_ && overlaps(); }
-  /// What a run saw: whether all of it was explained. `all`: it saw all that there is; until such a one has, a run that
-  /// saw something else is believed.
+  [[nodiscard]] bool serves() const noexcept {
+    return is_placed_ && was_seen_ && !is_denied_ && doubt_ == 0 && overlaps();
+  }
+  /// What a run saw: whether all of it was explained. `all`: it saw all that there is, and is believed until the next
+  /// such one; what else one saw that did not is doubted for some runs.
   void note(bool explained, bool all) noexcept {
-    if (all || !explained) sees_all_ = explained;
-    explains_all_ = sees_all_;
+    was_seen_ = was_seen_ || explained;
+    if (all) is_denied_ = !explained;
+    if (!explained && !all) doubt_ = longest_doubt;
+    if (explained && all) doubt_ = 0;
+  }
+  /// The bodies are proved apart: whatever else touched does no more.
+  void note_clear() noexcept {
+    too_many_ = false;
+    is_denied_ = false;
+    doubt_ = 0;
   }
 
   /// Writes the contacts, the deepest of each pair of faces first. Returns how many.
@@ -57,6 +67,8 @@ class FlushContacts {
  private:
   /// Pairs of faces: of more, as in a peg of many sides, a patch says more.
   static constexpr std::size_t most_entries = 6;
+  /// Runs of five microseconds within which a patch of all there is comes late.
+  static constexpr std::uint32_t longest_doubt = 64;
   static constexpr std::size_t most_points = 2 * mesh::FlatFace::most_corners + 2;
 
   /// Two faces, and where they overlap.
@@ -83,9 +95,10 @@ class FlushContacts {
   std::array<Entry, most_entries> entries_;
   std::size_t count_ = 0;
   bool too_many_ = false;
-  bool is_placed_ = false;  ///< in this run
-  bool sees_all_ = true;
-  bool explains_all_ = false;
+  bool is_placed_ = false;   ///< in this run
+  bool was_seen_ = false;    ///< a place that they explain, since the first of them is known
+  bool is_denied_ = false;   ///< by a run that saw all
+  std::uint32_t doubt_ = 0;  ///< runs
   math::Pose pose_;
   double size_ = 0.0;
 };

@@ -260,6 +260,7 @@ void search_and_answer(const Tree& a, const Tree& b, const PosedMeshes& meshes, 
     const double most_depth = pair.known_depth.most(meshes.pose(), b.reach());
     make_contacts(meshes, pose_b_in_a, result, most_depth, request, scratch->patches, pair, spending);
   } else if (answer.basis == Basis::proved && answer.verdict == Verdict::clear) {
+    pair.flush.note_clear();
     if (!answer_within(meshes, pose_b_in_a, request, b.reach(), false, pair, spending)) {
       note_clear(meshes, pose_b_in_a, request, pair);
     }

@@ -211,6 +211,20 @@ TEST(FlushContacts, WhatElseWasSeenIsNotLeftOut) {
   EXPECT_FALSE(flush.serves()) << "a run that saw a part does not take that back";
   flush.note(true, true);
   EXPECT_TRUE(flush.serves());
+  flush.note(false, false);
+  int runs = 0;
+  while (!flush.serves() && runs < 1000) {
+    flush.move_to(below(1e-3), size);
+    ++runs;
+  }
+  EXPECT_GT(runs, 20);
+  EXPECT_LT(runs, 200) << "what only a part has seen is not doubted for ever";
+  flush.note(false, true);
+  for (int run = 0; run < 1000; ++run) flush.move_to(below(1e-3), size);
+  flush.note(true, false);
+  EXPECT_FALSE(flush.serves()) << "what all has shown is";
+  flush.note_clear();
+  EXPECT_TRUE(flush.serves());
 }
 
 TEST(FlushContacts, OfManyPairsOfFacesAreLeftToAPatch) {
