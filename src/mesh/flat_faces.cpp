@@ -105,12 +105,22 @@ class Finder {
     std::vector<FlatFace> faces;
     faces.reserve(found.size());
     for (const auto& [area, face] : found) faces.push_back(face);
+    for (FlatFace& front : faces) {
+      for (const FlatFace& back : faces) {
+        if (!(front.normal.dot(back.normal) < opposed)) continue;
+        const Vec3 between = front.centre - back.centre;
+        const double behind = front.normal.dot(between);
+        const bool is_behind = behind > 0.0 && (between - behind * front.normal).norm() <= front.radius + back.radius;
+        if (is_behind) front.thickness = std::min(front.thickness, behind);
+      }
+    }
     return faces;
   }
 
  private:
   static constexpr std::uint32_t nobody = ~std::uint32_t{0};
-  static constexpr double sharp = 0.94;  // cosine of 20 degrees
+  static constexpr double sharp = 0.94;    // cosine of 20 degrees
+  static constexpr double opposed = -0.9;  // of 154 degrees
 
   /// Neighbours across edges that two triangles share, wound alike.
   void link() {
@@ -193,6 +203,9 @@ class Finder {
     if (!(std::abs(hull_area - area) <= as_good_as * area)) return false;
     simplify(hull, as_good_as * hull_area);
     face.offset = offset;
+    for (const std::uint32_t vertex : vertices) {
+      face.uneven = std::max(face.uneven, std::abs(face.normal.dot(mesh_.vertices()[vertex]) - offset));
+    }
     face.triangle = seed;
     face.corner_count = hull.size();
     for (std::size_t i = 0; i < hull.size(); ++i) {

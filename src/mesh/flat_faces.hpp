@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -13,12 +14,14 @@ namespace odds::mesh {
 
 /// A convex polygon in the surface of a mesh, metres, in the mesh's frame.
 struct FlatFace {
-  static constexpr std::size_t most_corners = 16;
+  static constexpr std::size_t most_corners = 8;  ///< as many as a pair of bodies has contacts
 
   Vec3 normal = Vec3::UnitZ();  ///< unit, to the side that the triangles' winding says is outside
   double offset = 0.0;          ///< normal . x of its points
   Vec3 centre = Vec3::Zero();
   double radius = 0.0;  ///< of its corners about the centre
+  double uneven = 0.0;  ///< greatest distance of a corner of its triangles from the plane
+  double thickness = std::numeric_limits<double>::infinity();  ///< least distance to a flat face behind it
   std::array<Vec3, most_corners> corner;
   std::size_t corner_count = 0;  ///< 3 or more; counter-clockwise, seen from outside
   std::uint32_t triangle = 0;    ///< the largest of those that it is made of

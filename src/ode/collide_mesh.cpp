@@ -128,7 +128,8 @@ Outcome outcome_of(const query::Answer& answer, const Settings& own, const Setti
   if (complete || !is_ended_by_share(own, settings, spent)) return Outcome::finished;
   // Contacts of fewer pairs of triangles hold nothing up: bodies sink in while the frame believes them served.
   constexpr std::uint32_t pairs_of_use = 8;
-  const bool of_use = answer.verdict == query::Verdict::clear || limit <= 1 || answer.contact_pairs >= pairs_of_use;
+  const bool of_use = answer.verdict == query::Verdict::clear || limit <= 1 || answer.contacts_flush ||
+                      answer.contact_pairs >= pairs_of_use;
   return decided && of_use ? Outcome::enough : Outcome::starved;
 }
 

@@ -1,6 +1,7 @@
 #include "query/flush_contacts.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "odds/math/tolerances.hpp"
@@ -42,7 +43,8 @@ void clip(Polygon<most>& polygon, Side&& side) noexcept {
     kept.corners[kept.count++] = {from.u + t * (to.u - from.u), from.v + t * (to.v - from.v),
                                   from.depth + t * (to.depth - from.depth)};
   }
-  polygon = kept;
+  std::copy_n(kept.corners.begin(), kept.count, polygon.corners.begin());
+  polygon.count = kept.count;
 }
 
 }  // namespace
@@ -50,7 +52,16 @@ void clip(Polygon<most>& polygon, Side&& side) noexcept {
 void FlushContacts::forget() noexcept {
   count_ = 0;
   was_seen_ = false;
-  note_clear();
+  too_many_ = false;
+  is_denied_ = false;
+  doubt_ = 0;
+}
+
+void FlushContacts::note_clear() noexcept {
+  if (is_placed_ && is_certain()) return forget();
+  too_many_ = false;
+  is_denied_ = false;
+  doubt_ = 0;
 }
 
 bool FlushContacts::place(Entry& entry) const noexcept {
@@ -99,10 +110,9 @@ bool FlushContacts::place(Entry& entry) const noexcept {
     high = i == 0 ? at : Vec3(high.cwiseMax(at));
     deepest = std::max(deepest, p.depth);
   }
-  if (!(deepest >= -tolerances::late_gap * size_ && deepest <= tolerances::flush_depth * size_)) return false;
-  const Vec3 middle = 0.5 * (low + high);
-  entry.centre = origin + middle.x() * frame.u + middle.y() * frame.v +
-                 (level_a + slope_a[0] * middle.x() + slope_a[1] * middle.y()) * frame.normal;
+  // Through a body its far side faces the other one, too.
+  const double most = std::min({tolerances::flush_depth * size_, 0.5 * a.thickness, 0.5 * b.thickness});
+  if (!(deepest >= -tolerances::late_gap * size_ && deepest <= most)) return false;
   entry.radius = 0.5 * (high - low).norm();
   entry.depth = deepest;
 
@@ -118,54 +128,58 @@ bool FlushContacts::place(Entry& entry) const noexcept {
   return true;
 }
 
-void FlushContacts::move_to(const math::Pose& pose, double size) noexcept {
-  pose_ = pose;
-  size_ = size;
-  is_placed_ = true;
-  std::size_t left = 0;
-  for (std::size_t i = 0; i < count_; ++i) {
-    Entry& entry = entries_[i];
-    const double before = std::max(entry.depth, 0.0);
-    if (!place(entry)) continue;
-    const double depth = std::max(entry.depth, 0.0);
-    const double deeper = std::max(depth - before, 0.0);
-    entry.given = std::clamp(entry.given + deeper + tolerances::late_rise * size,
-                             std::min(depth, tolerances::unmeasured_depth * size), depth);
-    if (left != i) entries_[left] = entry;
-    ++left;
+bool FlushContacts::follow(Entry& entry) const noexcept {
+  const double before = std::max(entry.depth, 0.0);
+  if (!place(entry)) return false;
+  const double depth = std::max(entry.depth, 0.0);
+  if (entry.holds) {  // as in LateManifold::age
+    const double rise = tolerances::late_rise * size_;
+    const bool parts = before - depth > rise;
+    entry.given += std::max(depth - before, 0.0) + (parts ? -rise : rise);
   }
-  if (left == 0) was_seen_ = false;
-  if (doubt_ > 0) --doubt_;
-  count_ = left;
+  entry.holds = false;
+  entry.given = std::clamp(entry.given, std::min(depth, tolerances::unmeasured_depth * size_), depth);
+  return true;
 }
 
-void FlushContacts::straighten(Contact& guess) noexcept {
-  if (!is_placed_ || !may_be()) return;
-  if (const Entry* entry = find(guess.position)) guess.normal = entry->normal;
+bool FlushContacts::covers(const mesh::FlatFace& face, const Vec3& point, double slack) const noexcept {
+  const double height = face.normal.dot(point) - face.offset;
+  const double under = tolerances::flush_depth * size_ + slack;
+  if (!(height <= slack && height >= -under)) return false;
+  const double radius = face.radius + under;
+  if (!((point - face.centre).squaredNorm() <= radius * radius)) return false;
+  for (std::size_t i = 0; i < face.corner_count; ++i) {
+    const Vec3 side = face.corner[i + 1 < face.corner_count ? i + 1 : 0] - face.corner[i];
+    if (!(face.normal.cross(side).dot(point - face.corner[i]) >= -slack * side.norm())) return false;
+  }
+  return true;
 }
 
-const FlushContacts::Entry* FlushContacts::find(const Vec3& at) noexcept {
-  const double slack = tolerances::flush_depth * size_;
-  for (const Entry& entry : std::span(entries_).first(count_)) {
-    const Vec3 from = at - entry.centre;
-    const double height = entry.normal.dot(from);
-    if (std::abs(height) <= slack && (from - height * entry.normal).norm() <= entry.radius + slack) return &entry;
+template <class Agrees>
+const FlushContacts::Entry* FlushContacts::find(const Vec3& at, const math::Pose& pose, double slack, bool may_be_many,
+                                                Agrees agrees) noexcept {
+  const Vec3 at_in_b = pose.inverse() * at;
+  for (const Entry& entry : entries()) {
+    if (agrees(entry.normal) && covers(faces_a_[entry.face_a], at, slack) &&
+        covers(faces_b_[entry.face_b], at_in_b, slack)) {
+      return &entry;
+    }
   }
-  const auto is_at = [slack](const mesh::FlatFace& face, const Vec3& point) noexcept {
-    return std::abs(face.normal.dot(point) - face.offset) <= slack &&
-           (point - face.centre).squaredNorm() <= (face.radius + slack) * (face.radius + slack);
-  };
-  const Vec3 at_in_b = pose_.rotation.transpose() * (at - pose_.translation);
+  const double uneven = tolerances::unmeasured_depth * size_;
   for (std::uint32_t b = 0; b < faces_b_.size(); ++b) {
-    if (!is_at(faces_b_[b], at_in_b)) continue;
-    const Vec3 normal_b = pose_.rotation * faces_b_[b].normal;
+    if (!covers(faces_b_[b], at_in_b, slack)) continue;
+    const Vec3 normal_b = pose.rotation * faces_b_[b].normal;
     for (std::uint32_t a = 0; a < faces_a_.size(); ++a) {
-      if (!(-faces_a_[a].normal.dot(normal_b) > tolerances::flush_faces) || !is_at(faces_a_[a], at)) continue;
+      if (!(-faces_a_[a].normal.dot(normal_b) > tolerances::flush_faces) || !agrees(normal_b) ||
+          !(faces_a_[a].uneven + faces_b_[b].uneven <= uneven) || !covers(faces_a_[a], at, slack)) {
+        continue;
+      }
       Entry entry;
       entry.face_a = a;
       entry.face_b = b;
       if (!place(entry)) continue;
       if (count_ == entries_.size()) {
+        if (!may_be_many) return nullptr;
         count_ = 0;
         was_seen_ = false;
         too_many_ = true;
@@ -179,34 +193,78 @@ const FlushContacts::Entry* FlushContacts::find(const Vec3& at) noexcept {
   return nullptr;
 }
 
-bool FlushContacts::overlaps() const noexcept {
-  return std::any_of(entries_.begin(), entries_.begin() + static_cast<std::ptrdiff_t>(count_),
-                     [](const Entry& entry) { return entry.depth > 0.0; });
+bool FlushContacts::explains_crossing(const Vec3& at, const Vec3& normal_a, const Vec3& normal_b) noexcept {
+  // One of the two is a face, or both stand on it beside each other, as the walls of bricks of one size.
+  const auto agrees = [&](const Vec3& normal) noexcept {
+    constexpr double wall = 0.5;
+    const double a = -normal_a.dot(normal);
+    const double b = normal_b.dot(normal);
+    return std::max(a, b) > tolerances::hasty_agreement || (std::abs(a) < wall && std::abs(b) < wall);
+  };
+  return find(at, pose_, tolerances::hasty_slack * size_, true, agrees) != nullptr;
 }
 
-std::size_t FlushContacts::write(std::span<Contact> contacts) noexcept {
-  std::array<patch::Chosen, most_entries> chosen;
-  std::array<std::size_t, most_entries> order;
-  std::size_t pairs = 0;
+bool FlushContacts::explains(const Contact& contact, const math::Pose& pose) noexcept {
+  const auto agrees = [&](const Vec3& normal) noexcept {
+    return contact.normal.dot(normal) > tolerances::hasty_agreement;
+  };
+  return find(contact.position, pose, tolerances::hasty_slack * size_, true, agrees) != nullptr;
+}
+
+void FlushContacts::straighten(Contact& guess) noexcept {
+  if (!is_placed_ || !may_be()) return;
+  const auto agrees = [&](const Vec3& normal) noexcept {
+    return guess.normal.dot(normal) > tolerances::same_contact_side;
+  };
+  // It is the middle of a piece of surface.
+  const Entry* entry = find(guess.position, pose_, tolerances::flush_depth * size_, false, agrees);
+  if (entry == nullptr) return;
+  guess.normal = entry->normal;
+  was_seen_ = true;
+}
+
+double FlushContacts::deepest() const noexcept {
+  double most = -std::numeric_limits<double>::infinity();
+  for (const Entry& entry : entries()) most = std::max(most, entry.depth);
+  return most;
+}
+
+bool FlushContacts::is_certain() const noexcept {
+  const double rounding = tolerances::bears_nothing * size_;
+  return serves() && std::any_of(entries().begin(), entries().end(), [&](const Entry& entry) {
+           return entry.depth > faces_a_[entry.face_a].uneven + faces_b_[entry.face_b].uneven + rounding;
+         });
+}
+
+FlushContacts::Order FlushContacts::by_depth() const noexcept {
+  Order order;
   for (std::size_t i = 0; i < count_; ++i) {
-    Entry& entry = entries_[i];
-    if (!(entry.depth > 0.0) || entry.point_count == 0) continue;
-    const std::span points = std::span(entry.points).first(entry.point_count);
-    const patch::Witness deepest =
-        *std::max_element(points.begin(), points.end(), [](const auto& p, const auto& q) { return p.depth < q.depth; });
-    for (patch::Witness& point : points) point = patch::pulled_in(point, deepest);
-    const double spacing = patch::spacing(entry.depth, entry.radius);
-    chosen[i] = patch::choose(points, patch::Frame(entry.normal), most_contacts, spacing);
-    std::size_t at = pairs++;
-    for (; at > 0 && entries_[order[at - 1]].depth < entry.depth; --at) order[at] = order[at - 1];
-    order[at] = i;
+    if (!(entries_[i].depth > 0.0) || entries_[i].point_count == 0) continue;
+    std::size_t at = order.count++;
+    for (; at > 0 && entries_[order.entry[at - 1]].depth < entries_[i].depth; --at)
+      order.entry[at] = order.entry[at - 1];
+    order.entry[at] = i;
   }
+  return order;
+}
+
+patch::Chosen FlushContacts::choose(Entry& entry, std::size_t most) noexcept {
+  const std::span points = std::span(entry.points).first(entry.point_count);
+  const patch::Witness deepest =
+      *std::max_element(points.begin(), points.end(), [](const auto& p, const auto& q) { return p.depth < q.depth; });
+  for (patch::Witness& point : points) point = patch::pulled_in(point, deepest);
+  entry.holds = true;
+  return patch::choose(points, patch::Frame(entry.normal), most, patch::spacing(entry.depth, entry.radius));
+}
+
+std::size_t FlushContacts::interleave(std::span<const std::size_t> order, std::span<const patch::Chosen> chosen,
+                                      std::span<Contact> contacts) const noexcept {
   std::size_t written = 0;
   for (std::size_t round = 0; round < most_contacts; ++round) {
-    for (std::size_t k = 0; k < pairs && written < contacts.size(); ++k) {
-      const Entry& entry = entries_[order[k]];
-      if (round >= chosen[order[k]].count) continue;
-      const patch::Witness& w = chosen[order[k]].witnesses[round];
+    for (std::size_t i = 0; i < order.size() && written < contacts.size(); ++i) {
+      if (round >= chosen[i].count) continue;
+      const Entry& entry = entries_[order[i]];
+      const patch::Witness& w = chosen[i].witnesses[round];
       contacts[written++] = {w.middle(), entry.normal, std::min(w.depth, entry.given), w.triangle_a, w.triangle_b};
     }
   }

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "mesh/flat_faces.hpp"
 #include "odds/math/pose.hpp"
@@ -20,13 +19,17 @@ namespace odds::query {
 /// each other have all of their contacts in every run, also in one without time for a patch.
 ///
 /// Which faces those are is learnt from places where the surfaces were found to cross, and kept from run to run. What
-/// came deep while nobody knew is given slowly, as by LateManifold. Of solids. In A's mesh frame, metres; `size`: of
-/// the smaller body. After construction no allocation.
+/// came deep while they did not hold it is given slowly, as by LateManifold. Of solids. In A's mesh frame, metres;
+/// `size`: of the smaller body. No allocation.
 class FlushContacts {
  public:
+  /// Pairs of faces, as of a table on four legs: of more, as of a peg with many sides, a patch says more.
+  static constexpr std::size_t most_entries = 4;
+
   FlushContacts() = default;
-  FlushContacts(std::vector<mesh::FlatFace> faces_a, std::vector<mesh::FlatFace> faces_b) noexcept
-      : faces_a_(std::move(faces_a)), faces_b_(std::move(faces_b)) {}
+  /// The faces must outlive it.
+  FlushContacts(std::span<const mesh::FlatFace> faces_a, std::span<const mesh::FlatFace> faces_b) noexcept
+      : faces_a_(faces_a), faces_b_(faces_b) {}
 
   void forget() noexcept;
 
@@ -35,17 +38,33 @@ class FlushContacts {
   /// A run begins.
   void begin() noexcept { is_placed_ = false; }
   /// It is one that has no time for a patch, with B's mesh frame at `pose`: what no longer lies on each other is
-  /// forgotten.
-  void move_to(const math::Pose& pose, double size) noexcept;
-  /// Whether the surfaces cross at `place` because of a pair of faces that is known, or is found now.
-  [[nodiscard]] bool explains(const Vec3& place) noexcept { return find(place) != nullptr; }
-  /// A contact that is guessed where such faces are near each other has their normal.
+  /// forgotten. `may_go_on()` is asked before every pair of faces but the first, some 0.3 us each; where it is false
+  /// they do not serve this run.
+  template <class MayGoOn>
+  void move_to(const math::Pose& pose, double size, MayGoOn may_go_on) noexcept {
+    pose_ = pose;
+    size_ = size;
+    if (doubt_ > 0) --doubt_;
+    is_placed_ = true;
+    std::size_t left = 0;
+    for (std::size_t i = 0; i < count_; ++i) {
+      is_placed_ = is_placed_ && (i == 0 || may_go_on());
+      if (is_placed_ && !follow(entries_[i])) continue;
+      if (left != i) entries_[left] = entries_[i];
+      ++left;
+    }
+    count_ = left;
+    if (count_ == 0) was_seen_ = false;
+  }
+
+  /// Whether two triangles cross at `place` because of a pair of faces that is known, or is found now. Their normals
+  /// are unit, in A's frame.
+  [[nodiscard]] bool explains_crossing(const Vec3& place, const Vec3& normal_a, const Vec3& normal_b) noexcept;
+  /// The same of a contact that a patch has found with B's mesh frame at `pose`, near to where it is now.
+  [[nodiscard]] bool explains(const Contact& contact, const math::Pose& pose) noexcept;
+  /// A guess of where such faces are near each other has their normal; they are looked at from then on.
   void straighten(Contact& guess) noexcept;
 
-  /// Whether all that was seen of the bodies' contact was explained, and some of it overlaps now.
-  [[nodiscard]] bool serves() const noexcept {
-    return is_placed_ && was_seen_ && !is_denied_ && doubt_ == 0 && overlaps();
-  }
   /// What a run saw: whether all of it was explained. `all`: it saw all that there is, and is believed until the next
   /// such one; what else one saw that did not is doubted for some runs.
   void note(bool explained, bool all) noexcept {
@@ -54,44 +73,76 @@ class FlushContacts {
     if (!explained && !all) doubt_ = longest_doubt;
     if (explained && all) doubt_ = 0;
   }
-  /// The bodies are proved apart: whatever else touched does no more.
-  void note_clear() noexcept {
-    too_many_ = false;
-    is_denied_ = false;
-    doubt_ = 0;
+  /// The bodies are proved apart: whatever else touched does no more, and faces that overlap all the same do not lie on
+  /// each other but through the bodies.
+  void note_clear() noexcept;
+
+  /// Whether all that was seen of the bodies' contact was explained, and some of it overlaps now.
+  [[nodiscard]] bool serves() const noexcept {
+    return is_placed_ && was_seen_ && !is_denied_ && doubt_ == 0 && deepest() > 0.0;
+  }
+  /// The same, and it overlaps by more than the faces are uneven: then the surfaces meet.
+  [[nodiscard]] bool is_certain() const noexcept;
+
+  /// Writes the contacts, of the deepest pair of faces first, and of each the deepest first. `may_go_on()` is asked
+  /// before every pair but the first; where it is false the others are left out. Returns how many.
+  template <class MayGoOn>
+  [[nodiscard]] std::size_t write(std::span<Contact> contacts, MayGoOn may_go_on) noexcept {
+    const Order order = by_depth();
+    std::array<patch::Chosen, most_entries> chosen;
+    std::size_t pairs = 0;
+    for (; pairs < order.count && (pairs == 0 || may_go_on()); ++pairs) {
+      chosen[pairs] = choose(entries_[order.entry[pairs]], most_of_each(contacts.size(), order.count));
+    }
+    return interleave({order.entry.data(), pairs}, chosen, contacts);
   }
 
-  /// Writes the contacts, the deepest of each pair of faces first. Returns how many.
-  [[nodiscard]] std::size_t write(std::span<Contact> contacts) noexcept;
-
  private:
-  /// Pairs of faces: of more, as in a peg of many sides, a patch says more.
-  static constexpr std::size_t most_entries = 6;
+  static constexpr std::size_t most_points = 2 * mesh::FlatFace::most_corners + 2;
   /// Runs of five microseconds within which a patch of all there is comes late.
   static constexpr std::uint32_t longest_doubt = 64;
-  static constexpr std::size_t most_points = 2 * mesh::FlatFace::most_corners + 2;
 
   /// Two faces, and where they overlap.
   struct Entry {
     std::uint32_t face_a = 0;
     std::uint32_t face_b = 0;
+    bool holds = false;  ///< its contacts were written in the last run
     double given = 0.0;  ///< of the depth, at most
     double depth = 0.0;  ///< greatest, in the last run; negative: a gap
-    Vec3 normal = Vec3::UnitZ();
-    Vec3 centre = Vec3::Zero();  ///< of what is seen of one through the other
     double radius = 0.0;
+    Vec3 normal = Vec3::UnitZ();
     std::array<patch::Witness, most_points> points;  ///< corners of the overlap
     std::size_t point_count = 0;
   };
+  struct Order {
+    std::array<std::size_t, most_entries> entry;
+    std::size_t count = 0;
+  };
 
-  [[nodiscard]] bool overlaps() const noexcept;
-  /// The faces that are known at a place, or found now; null: there are none, or no room for more.
-  [[nodiscard]] const Entry* find(const Vec3& place) noexcept;
+  [[nodiscard]] std::span<const Entry> entries() const noexcept { return std::span(entries_).first(count_); }
+  [[nodiscard]] double deepest() const noexcept;
   /// How the faces of an entry lie now. False: not on each other.
   [[nodiscard]] bool place(Entry& entry) const noexcept;
+  /// The same, and how much of the depth is given.
+  [[nodiscard]] bool follow(Entry& entry) const noexcept;
+  /// The faces known at a place, or found now, whose normal, into A, `agrees`; null: there are none, or, unless
+  /// `may_be_many`, no room for them. `pose`: of B's mesh frame when it was seen.
+  template <class Agrees>
+  [[nodiscard]] const Entry* find(const Vec3& at, const math::Pose& pose, double slack, bool may_be_many,
+                                  Agrees agrees) noexcept;
+  /// Whether a point lies within `slack` of a face, or no deeper under it than faces lie in each other.
+  [[nodiscard]] bool covers(const mesh::FlatFace& face, const Vec3& point, double slack) const noexcept;
+  [[nodiscard]] Order by_depth() const noexcept;
+  /// No more than are used where several pairs of faces share the room.
+  [[nodiscard]] static std::size_t most_of_each(std::size_t room, std::size_t pairs) noexcept {
+    return pairs < 2 ? most_contacts : std::min<std::size_t>(most_contacts, 2 * ((room + pairs - 1) / pairs));
+  }
+  [[nodiscard]] static patch::Chosen choose(Entry& entry, std::size_t most) noexcept;
+  [[nodiscard]] std::size_t interleave(std::span<const std::size_t> order, std::span<const patch::Chosen> chosen,
+                                       std::span<Contact> contacts) const noexcept;
 
-  std::vector<mesh::FlatFace> faces_a_;
-  std::vector<mesh::FlatFace> faces_b_;
+  std::span<const mesh::FlatFace> faces_a_;
+  std::span<const mesh::FlatFace> faces_b_;
   std::array<Entry, most_entries> entries_;
   std::size_t count_ = 0;
   bool too_many_ = false;

@@ -68,6 +68,8 @@ class LateContacts {
   [[nodiscard]] std::span<const TrianglePair> hits() const noexcept;
   /// After work() was true: the contacts that it has made, at the pose that it was asked about.
   [[nodiscard]] std::span<const Contact> contacts() const noexcept;
+  /// That pose, of B's mesh frame in A's.
+  [[nodiscard]] const math::Pose& pose() const noexcept { return pose_; }
   /// Whether this run takes over the last guess, which has left no time for the work.
   [[nodiscard]] bool shares_guess() const noexcept { return owed_ > 0 && guessed_ > 0; }
   /// Contacts that this run has guessed.

@@ -179,8 +179,6 @@ void forecast(const Met& met, const math::Pose& pose_b_in_a, const SearchResult&
     undecided =
         pair.recalibration(probability_of_hit(odds, remains_of(met, result, spending.so_far(), cell_probability)));
   }
-  // Surfaces that were seen to cross there.
-  if (pair.flush.serves()) undecided = std::max(undecided, tolerances::flush_probability);
   judge(result, undecided, request, !pair.hits.empty(), answer);
   if (answer.basis == Basis::proved || result.shortlist.empty()) return;
   answer.has_cell_pair = true;
@@ -238,6 +236,7 @@ void search_and_answer(const Tree& a, const Tree& b, const PosedMeshes& meshes, 
   if (carry_late_contacts(meshes, pose_b_in_a, request, pair, spending)) return;
   if (is_still_apart(b, meshes, request, pair)) {
     pair.has_witness = false;
+    pair.flush.note_clear();
     if (!answer_within(meshes, pose_b_in_a, request, b.reach(), pair.within_is_of_front, pair, spending)) {
       note_clear(meshes, pose_b_in_a, request, pair);
     }
@@ -253,6 +252,10 @@ void search_and_answer(const Tree& a, const Tree& b, const PosedMeshes& meshes, 
     const auto encounter = encounter_of(a, b, meshes, request);
     result = search(encounter, meshes, request, scratch->queue, pair, spending);
     forecast(encounter, pose_b_in_a, result, request, spending, pair);
+    if (answer.basis == Basis::budget && pair.flush.is_certain()) {
+      answer.verdict = Verdict::hit;
+      answer.probability = std::max(answer.probability, tolerances::flush_probability);
+    }
   }
   pair.within_is_of_front = false;
   if (!pair.hits.empty()) pair.within = Within::neither;
@@ -265,8 +268,8 @@ void search_and_answer(const Tree& a, const Tree& b, const PosedMeshes& meshes, 
       note_clear(meshes, pose_b_in_a, request, pair);
     }
     pair.within_is_of_front = pair.within_is_of_front && result.method == Method::incremental;
-  } else if (answer.basis != Basis::proved && pair.flush.serves()) {
-    make_flush_contacts(meshes, request, pair);
+  } else if (answer.basis == Basis::budget && request.max_contacts > 0 && pair.flush.is_certain()) {
+    make_flush_contacts(meshes, request, pair, spending);
   } else if (pair.within == Within::neither) {
     pair.previous_normal.setZero();
   }
@@ -392,7 +395,6 @@ void Pair::note_apart(const math::Pose& pose_b_in_a) noexcept {
         note_clear(meshes, pose_b_in_a, {.solids = true}, pair);
         pair.near.forget();
         pair.haste.forget();
-        pair.flush.forget();
         pair.flush.forget();
         if (pair.late) pair.late->forget();
         pair.within_is_of_front = false;

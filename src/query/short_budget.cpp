@@ -21,6 +21,8 @@ constexpr double most_hits = 65536.0;
 constexpr double share_of_a_guess = 0.5;
 /// Hits of the work under way that are tried in a run.
 constexpr std::size_t most_tried = 4;
+/// What one pair of flat faces takes, to be moved or to have its contacts chosen, where caches are cold.
+constexpr double least_left_us = 0.8;
 
 double smaller_size(const Pair::Implementation& pair) noexcept {
   return std::min(pair.a->mesh().size(), pair.b->mesh().size());
@@ -178,6 +180,7 @@ void write_late(const math::Pose& pose_b_in_a, const Request& request, Pair::Imp
   pair.answer.contacts = room.first(pair.haste.hold_beside(room, written, pose_b_in_a, tolerances::hasty_spacing * size,
                                                            tolerances::unmeasured_depth * size));
   pair.answer.contacts_late = true;
+  pair.answer.contacts_flush = false;
   pair.answer.contact_pairs = manifold.made_from();
 }
 
@@ -188,8 +191,9 @@ bool see_flush(const PosedMeshes& meshes, Pair::Implementation& pair, Spending& 
   const std::span<const TrianglePair> hits = pair.hits.pairs();
   const std::size_t seen = std::min(hits.size(), most_seen);
   for (std::size_t i = 0; i < seen && (i == 0 || spending.may_make_contacts()); ++i) {
-    const Vec3 place = Crossing::of(meshes, hits[i * hits.size() / seen]).middle() + meshes.origin_a();
-    const bool explained = pair.flush.explains(place);
+    const Crossing crossing = Crossing::of(meshes, hits[i * hits.size() / seen]);
+    const bool explained =
+        pair.flush.explains_crossing(crossing.middle() + meshes.origin_a(), crossing.normal_a, crossing.normal_b);
     pair.flush.note(explained, false);
     if (!explained) return false;
   }
@@ -197,11 +201,14 @@ bool see_flush(const PosedMeshes& meshes, Pair::Implementation& pair, Spending& 
 }
 
 /// Whether the contacts that the work has made are all where faces lie on each other.
-bool is_all_flush(Pair::Implementation& pair) noexcept {
+bool is_all_flush(Pair::Implementation& pair, Spending& spending) noexcept {
   if (!pair.flush.may_be()) return false;
   const std::span<const Contact> made = pair.late->contacts();
-  const bool explained = std::all_of(made.begin(), made.end(),
-                                     [&pair](const Contact& contact) { return pair.flush.explains(contact.position); });
+  const auto is_explained = [&pair, &spending](const Contact& contact) noexcept {
+    static_cast<void>(spending.left_us());  // so that the gap is no stall
+    return pair.flush.explains(contact, pair.late->pose());
+  };
+  const bool explained = std::all_of(made.begin(), made.end(), is_explained);
   pair.flush.note(explained, true);
   return pair.flush.serves();
 }
@@ -215,7 +222,7 @@ void work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implement
   }
   spending.reserve_for_contacts(pair.endings.late);
   const double press = request.budget.microseconds < short_us ? tolerances::late_press * smaller_size(pair) : 0.0;
-  if (pair.late->work(pose_b_in_a, request, pair, spending, press) && !is_all_flush(pair) &&
+  if (pair.late->work(pose_b_in_a, request, pair, spending, press) && !is_all_flush(pair, spending) &&
       serves_late(pose_b_in_a, pair)) {
     write_late(pose_b_in_a, request, pair);
   }
@@ -229,9 +236,11 @@ bool may_be_late(const Request& request, const Pair::Implementation& pair) noexc
 
 }  // namespace
 
-void make_flush_contacts(const PosedMeshes& meshes, const Request& request, Pair::Implementation& pair) noexcept {
+void make_flush_contacts(const PosedMeshes& meshes, const Request& request, Pair::Implementation& pair,
+                         Spending& spending) noexcept {
   const std::span<Contact> room = room_for_contacts(request, pair);
-  pair.answer.contacts = room.first(pair.flush.write(room));
+  const auto may_go_on = [&spending] { return spending.left_us() > least_left_us; };
+  pair.answer.contacts = room.first(pair.flush.write(room, may_go_on));
   pair.answer.contacts_flush = true;
   pair.answer.contacts_complete = false;
   pair.answer.contact_pairs = static_cast<std::uint32_t>(pair.answer.contacts.size());
@@ -258,14 +267,14 @@ std::uint32_t hits_of_a_guess(const Request& request, const Pair::Implementation
 bool carry_late_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request,
                          Pair::Implementation& pair, Spending& spending) noexcept {
   if (!is_short(request, pair)) return false;
-  pair.flush.move_to(pose_b_in_a, smaller_size(pair));
+  pair.flush.move_to(pose_b_in_a, smaller_size(pair), [&spending] { return spending.left_us() > 2.0 * least_left_us; });
   const bool is_flush = pair.flush.serves();
   if (!is_flush && !serves_late(pose_b_in_a, pair)) return false;
   if (!prove_carried(meshes, pair, spending)) return false;
   begin_haste(pose_b_in_a, pair);
   pair.answer.contacts_complete = false;
   if (is_flush) {
-    make_flush_contacts(meshes, request, pair);
+    make_flush_contacts(meshes, request, pair, spending);
   } else {
     write_late(pose_b_in_a, request, pair);
   }
@@ -291,7 +300,7 @@ void make_contacts_over_runs(const PosedMeshes& meshes, const math::Pose& pose_b
   ++pair.hasty_runs;
   begin_haste(pose_b_in_a, pair);
   if (see_flush(meshes, pair, spending)) {
-    make_flush_contacts(meshes, request, pair);
+    make_flush_contacts(meshes, request, pair, spending);
     pair.carried.keep_proofs(pair.hits.pairs());
   } else if (serves_late(pose_b_in_a, pair)) {
     write_late(pose_b_in_a, request, pair);

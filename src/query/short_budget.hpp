@@ -29,7 +29,8 @@ void make_contacts_over_runs(const PosedMeshes& meshes, const math::Pose& pose_b
                              const Request& request, Pair::Implementation& pair, Spending& spending) noexcept;
 
 /// The contacts of flat faces that lie on each other. Precondition: pair.flush.serves().
-void make_flush_contacts(const PosedMeshes& meshes, const Request& request, Pair::Implementation& pair) noexcept;
+void make_flush_contacts(const PosedMeshes& meshes, const Request& request, Pair::Implementation& pair,
+                         Spending& spending) noexcept;
 
 /// At the end of a run: what has become of no use is dropped, where there is time, for others to use its memory.
 void settle_late(const Request& request, Pair::Implementation& pair, Spending& spending) noexcept;

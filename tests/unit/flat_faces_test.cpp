@@ -83,7 +83,7 @@ TEST(FlatFaces, TheEndOfAPegIsAPolygonWithinIt) {
   EXPECT_EQ(top->corner_count, FlatFace::most_corners);
   const double disc = std::numbers::pi * radius * radius;
   EXPECT_LT(area_of(*top), disc);
-  EXPECT_GT(area_of(*top), 0.97 * disc);
+  EXPECT_GT(area_of(*top), 0.87 * disc) << "an octagon has 0.9 of its circle";
   for (const Vec3& corner : top->corners()) {
     EXPECT_NEAR(corner.z(), 0.02, 1e-12);
     EXPECT_LE(corner.head<2>().norm(), radius * (1.0 + 1e-12));

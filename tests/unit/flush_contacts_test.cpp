@@ -4,12 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "odds/math/random.hpp"
 #include "odds/math/tolerances.hpp"
@@ -37,20 +38,42 @@ math::Pose below(double depth, double turn = 0.0, double tilt = 0.0) {
 constexpr double size = 1.4;
 const Vec3 under(0.4, 0.3, -0.1);  ///< where A's bottom is
 
-FlushContacts contacts_of(const mesh::TriangleMesh& a, const mesh::TriangleMesh& b) {
-  return {mesh::find_flat_faces(a), mesh::find_flat_faces(b)};
+/// With the faces that it looks at.
+struct Flush : FlushContacts {
+  explicit Flush(std::shared_ptr<const std::vector<mesh::FlatFace>> a,
+                 std::shared_ptr<const std::vector<mesh::FlatFace>> b)
+      : FlushContacts(*a, *b), of_a(std::move(a)), of_b(std::move(b)) {}
+  std::shared_ptr<const std::vector<mesh::FlatFace>> of_a, of_b;
+
+  void move_to(const math::Pose& pose, double of_size = size) {
+    FlushContacts::move_to(pose, of_size, [] { return true; });
+  }
+  /// Faces that look up and down, as of a body that stands on another one.
+  [[nodiscard]] bool explains_at(const Vec3& place, const Vec3& up = Vec3::UnitZ()) {
+    return explains_crossing(place, -up, up);
+  }
+  [[nodiscard]] std::vector<Contact> contacts(std::size_t room = 8) {
+    std::vector<Contact> all(room);
+    all.resize(write(all, [] { return true; }));
+    return all;
+  }
+};
+
+Flush contacts_of(const mesh::TriangleMesh& a, const mesh::TriangleMesh& b) {
+  return Flush(std::make_shared<const std::vector<mesh::FlatFace>>(mesh::find_flat_faces(a)),
+               std::make_shared<const std::vector<mesh::FlatFace>>(mesh::find_flat_faces(b)));
 }
 
 /// As of runs at one pose, until all of the depth is given.
-std::vector<Contact> written(FlushContacts& flush, const math::Pose& pose, const Vec3& seen, std::size_t room = 8) {
-  flush.move_to(pose, size);
-  flush.note(flush.explains(seen), false);
+std::vector<Contact> written(Flush& flush, const math::Pose& pose, const Vec3& seen) {
+  flush.move_to(pose);
+  flush.note(flush.explains_at(seen, pose.rotation.col(2).z() > 0.0 ? Vec3::UnitZ() : Vec3(-Vec3::UnitZ())), false);
+  std::vector<Contact> contacts;
   for (int run = 0; run < 2000; ++run) {
     flush.begin();
-    flush.move_to(pose, size);
+    flush.move_to(pose);
+    contacts = flush.serves() ? flush.contacts() : std::vector<Contact>();
   }
-  std::vector<Contact> contacts(room);
-  contacts.resize(flush.serves() ? flush.write(contacts) : 0);
   return contacts;
 }
 
@@ -82,7 +105,16 @@ TEST(FlushContacts, AreTheSameWhicheverBodyIsFirst) {
     auto other = contacts_of(slab(5), slab());
     const auto a = written(one, pose, Vec3(0.5 * pose.translation.x(), 0.5 * pose.translation.y(), -0.1));
     const math::Pose back = pose.inverse();
-    const auto b = written(other, back, back * Vec3(0.5 * pose.translation.x(), 0.5 * pose.translation.y(), -0.1));
+    other.move_to(back);
+    other.note(other.explains_crossing(back * Vec3(0.5 * pose.translation.x(), 0.5 * pose.translation.y(), -0.1),
+                                       Vec3::UnitZ(), back.rotation * -Vec3::UnitZ()),
+               false);
+    std::vector<Contact> b;
+    for (int run = 0; run < 2000; ++run) {
+      other.begin();
+      other.move_to(back);
+      b = other.serves() ? other.contacts() : std::vector<Contact>();
+    }
     ASSERT_FALSE(a.empty());
     ASSERT_FALSE(b.empty());
     double deepest[2] = {0.0, 0.0};
@@ -135,7 +167,7 @@ TEST(FlushContacts, EndWhereTheFacesTilt) {
   const double most = std::acos(tolerances::flush_faces);
   EXPECT_FALSE(written(flush, below(0.0, 0.0, 0.9 * most), Vec3(-0.49, 0, -0.1)).empty());
   flush.begin();
-  flush.move_to(below(0.0, 0.0, 1.1 * most), size);
+  flush.move_to(below(0.0, 0.0, 1.1 * most));
   EXPECT_FALSE(flush.serves());
 }
 
@@ -143,9 +175,12 @@ TEST(FlushContacts, OfFacesOnFarSidesAreNone) {
   // A's left side and B's right side face each other through both bodies.
   auto flush = contacts_of(slab(), slab());
   math::Pose pose = below(0.05);
-  flush.move_to(pose, size);
-  EXPECT_FALSE(flush.explains(Vec3(-0.5, 0, -0.09))) << "deeper than faces that came to lie on each other";
-  EXPECT_FALSE(flush.explains(Vec3(0, 0, 0))) << "in the middle of A";
+  flush.move_to(pose);
+  EXPECT_FALSE(flush.explains_at(Vec3(-0.5, 0, -0.09))) << "deeper than faces that came to lie on each other";
+  flush.move_to(below(1e-3));
+  EXPECT_FALSE(flush.explains_at(Vec3(0, 0, 0))) << "in the middle of A";
+  EXPECT_FALSE(flush.explains_crossing(under, Vec3::UnitX(), -Vec3::UnitZ())) << "by its normals of another side";
+  EXPECT_TRUE(flush.explains_crossing(under, -Vec3::UnitX(), Vec3::UnitZ())) << "a wall of A in B's top";
 }
 
 TEST(FlushContacts, AGuessOnFacesHasTheirNormal) {
@@ -155,10 +190,15 @@ TEST(FlushContacts, AGuessOnFacesHasTheirNormal) {
   guess.position = under + Vec3(0, 0, 1e-3);
   flush.straighten(guess);
   EXPECT_LT(guess.normal.z(), 0.9) << "no run has begun that has no time for a patch";
-  flush.move_to(below(-1e-4, 0.3, 1e-3), size);
+  flush.move_to(below(-1e-4, 0.3));
   flush.straighten(guess);
   EXPECT_GT(guess.normal.z(), 0.999999);
-  EXPECT_FALSE(flush.serves()) << "a guess is no crossing";
+  EXPECT_FALSE(flush.serves()) << "they are near, but apart";
+  flush.move_to(below(1e-9));
+  EXPECT_TRUE(flush.serves());
+  EXPECT_FALSE(flush.is_certain()) << "that may be rounding";
+  flush.move_to(below(1e-5));
+  EXPECT_TRUE(flush.is_certain());
   Contact elsewhere = guess;
   elsewhere.normal = Vec3::UnitX();
   elsewhere.position = Vec3(0.5, 0, 0.05);
@@ -166,39 +206,127 @@ TEST(FlushContacts, AGuessOnFacesHasTheirNormal) {
   EXPECT_EQ(elsewhere.normal, Vec3(Vec3::UnitX()));
 }
 
+TEST(FlushContacts, OfThinPlatesAreOfTheSidesThatTouch) {
+  // Their far sides face each other, too, through both.
+  for (const double depth : {-1e-4, 1e-4, 1e-3}) {
+    auto flush = contacts_of(made_mesh("made:box:x=1,y=1,z=0.004"), made_mesh("made:box:x=1,y=1,z=0.004,cells=3"));
+    math::Pose pose;
+    pose.translation.z() = -0.004 + depth;
+    flush.move_to(pose);
+    ASSERT_TRUE(flush.explains_at(Vec3(0.2, 0.1, -0.002)));
+    flush.note(true, false);
+    const auto contacts = flush.serves() ? flush.contacts() : std::vector<Contact>();
+    EXPECT_EQ(contacts.size(), depth > 0.0 ? 4U : 0U);
+    for (const Contact& contact : contacts) EXPECT_GT(contact.normal.z(), 0.999999);
+    // A guess that points the other way is left as it is, and what would lie on each other through the plates is not.
+    Contact guess;
+    guess.position = Vec3(0.2, 0.1, -0.002);
+    guess.normal = -Vec3::UnitZ();
+    flush.straighten(guess);
+    EXPECT_LT(guess.normal.z(), 0.0);
+    EXPECT_FALSE(flush.explains_at(Vec3(0.2, 0.1, -0.002), -Vec3::UnitZ()));
+  }
+}
+
+TEST(FlushContacts, OfAProofThatTheBodiesAreApartAreForgotten) {
+  auto flush = contacts_of(slab(), slab());
+  ASSERT_FALSE(written(flush, below(1e-3), under).empty());
+  flush.note_clear();
+  flush.begin();
+  flush.move_to(below(1e-3));
+  EXPECT_FALSE(flush.serves());
+}
+
+TEST(FlushContacts, OnePairOfFacesIsKnownOnce) {
+  // Long beams across each other: what is seen lies far from where they overlap, but on both faces' sides.
+  auto flush = contacts_of(made_mesh("made:box:x=1,y=0.1,z=0.1"), made_mesh("made:box:x=0.1,y=1,z=0.1"));
+  math::Pose pose;
+  pose.translation.z() = -0.1 + 1e-4;
+  flush.move_to(pose);
+  for (const double x : {0.0, 0.04, -0.04, 0.3, -0.4, 0.2}) {
+    static_cast<void>(flush.explains_at(Vec3(x, 0.02, -0.05)));
+  }
+  flush.note(true, false);
+  EXPECT_EQ(flush.contacts().size(), 4U);
+  EXPECT_FALSE(flush.explains_at(Vec3(0.3, 0.0, -0.05))) << "beside B";
+}
+
+TEST(FlushContacts, OfUnevenGroundUnderASmallBodyAreNone) {
+  // A dip of a few micrometres is flat for a floor of four metres, not for a cube of a centimetre.
+  const mesh::TriangleMesh floor = made_mesh("made:box:x=4,y=4,z=0.2,cells=4");
+  std::vector<Vec3> vertices(floor.vertices().begin(), floor.vertices().end());
+  for (Vec3& v : vertices) {
+    if ((v - Vec3(0, 0, 0.1)).norm() < 1e-6) v.z() -= 5e-6;
+  }
+  const auto dipped =
+      std::move(mesh::TriangleMesh::make(
+                    std::move(vertices),
+                    std::vector<mesh::Triangle>(floor.triangles().begin(), floor.triangles().end()), "dip"))
+          .value();
+  const mesh::TriangleMesh cube = made_mesh("made:box:x=0.01,y=0.01,z=0.01");
+  math::Pose pose;
+  pose.translation.z() = -0.105;
+  for (const bool dips : {false, true}) {
+    auto flush = contacts_of(cube, dips ? dipped : floor);
+    flush.move_to(pose, 0.0173);
+    EXPECT_NE(flush.explains_at(Vec3(0, 0, -0.005)), dips);
+  }
+}
+
+TEST(FlushContacts, WithoutTimeForAllDoNotServe) {
+  auto flush = contacts_of(slab(), slab());
+  ASSERT_FALSE(written(flush, below(1e-3), under).empty());
+  flush.begin();
+  flush.FlushContacts::move_to(below(1e-3), size, [] { return false; });
+  EXPECT_TRUE(flush.serves()) << "there is time for one";
+}
+
 TEST(FlushContacts, WhatCameDeepUnknownPushesSlowly) {
   auto flush = contacts_of(slab(), slab());
   const math::Pose pose = below(1e-2);
-  flush.move_to(pose, size);
-  flush.note(flush.explains(under), false);
+  flush.move_to(pose);
+  flush.note(flush.explains_at(under), false);
   ASSERT_TRUE(flush.serves());
-  std::array<Contact, 8> contacts;
-  ASSERT_GT(flush.write(contacts), 0U);
+  std::vector<Contact> contacts = flush.contacts();
+  ASSERT_FALSE(contacts.empty());
   EXPECT_NEAR(contacts[0].depth, tolerances::unmeasured_depth * size, 1e-12);
   flush.begin();
-  flush.move_to(pose, size);
-  ASSERT_GT(flush.write(contacts), 0U);
+  flush.move_to(pose);
+  contacts = flush.contacts();
+  ASSERT_FALSE(contacts.empty());
   EXPECT_NEAR(contacts[0].depth, (tolerances::unmeasured_depth + tolerances::late_rise) * size, 1e-12);
   // What comes deeper against a push is given at once.
   flush.begin();
-  flush.move_to(below(1.2e-2), size);
-  ASSERT_GT(flush.write(contacts), 0U);
+  flush.move_to(below(1.2e-2));
+  contacts = flush.contacts();
+  ASSERT_FALSE(contacts.empty());
   EXPECT_NEAR(contacts[0].depth, (tolerances::unmeasured_depth + 2 * tolerances::late_rise) * size + 2e-3, 1e-9);
+  // What comes deeper while it does not push is not.
+  const double given = contacts[0].depth;
+  flush.begin();
+  flush.move_to(below(1.2e-2));
+  for (int run = 0; run < 50; ++run) {
+    flush.begin();
+    flush.move_to(below(1.6e-2));
+  }
+  contacts = flush.contacts();
+  ASSERT_FALSE(contacts.empty());
+  EXPECT_LE(contacts[0].depth, given + 2.0 * tolerances::late_rise * size);
 }
 
 TEST(FlushContacts, AHopIsNotForgotten) {
   auto flush = contacts_of(slab(), slab());
   ASSERT_FALSE(written(flush, below(1e-3), under).empty());
   flush.begin();
-  flush.move_to(below(-1e-3), size);
+  flush.move_to(below(-1e-3));
   EXPECT_FALSE(flush.serves()) << "they are apart";
   flush.begin();
-  flush.move_to(below(1e-4), size);
+  flush.move_to(below(1e-4));
   EXPECT_TRUE(flush.serves());
   flush.begin();
-  flush.move_to(below(-2.0 * tolerances::late_gap * size), size);
+  flush.move_to(below(-2.0 * tolerances::late_gap * size));
   flush.begin();
-  flush.move_to(below(1e-4), size);
+  flush.move_to(below(1e-4));
   EXPECT_FALSE(flush.serves()) << "far apart they are forgotten";
 }
 
@@ -214,13 +342,13 @@ TEST(FlushContacts, WhatElseWasSeenIsNotLeftOut) {
   flush.note(false, false);
   int runs = 0;
   while (!flush.serves() && runs < 1000) {
-    flush.move_to(below(1e-3), size);
+    flush.move_to(below(1e-3));
     ++runs;
   }
   EXPECT_GT(runs, 20);
   EXPECT_LT(runs, 200) << "what only a part has seen is not doubted for ever";
   flush.note(false, true);
-  for (int run = 0; run < 1000; ++run) flush.move_to(below(1e-3), size);
+  for (int run = 0; run < 1000; ++run) flush.move_to(below(1e-3));
   flush.note(true, false);
   EXPECT_FALSE(flush.serves()) << "what all has shown is";
   flush.note_clear();
@@ -238,7 +366,8 @@ TEST(FlushContacts, OfManyPairsOfFacesAreLeftToAPatch) {
   int explained = 0;
   for (int i = 0; i < 16; ++i) {
     const double angle = (i + 0.5) * std::numbers::pi / 8.0;
-    explained += flush.explains(Vec3(0.0098 * std::cos(angle), 0.0098 * std::sin(angle), 0.01)) ? 1 : 0;
+    const Vec3 out(std::cos(angle), std::sin(angle), 0.0);
+    explained += flush.explains_at(0.0098 * out + Vec3(0, 0, 0.01), -out) ? 1 : 0;
   }
   EXPECT_GT(explained, 0);
   EXPECT_LT(explained, 16);
@@ -320,33 +449,64 @@ TEST(FlushContacts, OfARunWithoutAProofAreGivenAllTheSame) {
   EXPECT_GT(unproved, 0);
 }
 
-/// A slab and a ball, as one body, that both touch a larger slab.
-TEST(FlushContacts, OfABodyThatAlsoTouchesElsewhereAreNotAll) {
-  const mesh::TriangleMesh foot = slab(6);
+/// A foot with a flat face and a ball, as one body, that both touch the ground.
+std::shared_ptr<const Shape> foot_and_ball(const std::string& name, double lowest, const Vec3& place) {
+  const mesh::TriangleMesh foot = made_mesh(name);
   const mesh::TriangleMesh ball = made_mesh("made:icosphere:frequency=12,radius=0.1");
   std::vector<Vec3> vertices(foot.vertices().begin(), foot.vertices().end());
   std::vector<mesh::Triangle> triangles(foot.triangles().begin(), foot.triangles().end());
   const auto first = static_cast<std::uint32_t>(vertices.size());
-  for (const Vec3& v : ball.vertices()) vertices.push_back(v + Vec3(1.0, 0.0, -1e-3));
+  for (const Vec3& v : ball.vertices()) vertices.push_back(v + place + Vec3(0, 0, lowest + 0.1));
   for (const mesh::Triangle& t : ball.triangles()) triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
-  const auto both =
-      shape_of(std::move(mesh::TriangleMesh::make(std::move(vertices), std::move(triangles), "both")).value());
-  ASSERT_TRUE(both->is_solid());
+  return shape_of(std::move(mesh::TriangleMesh::make(std::move(vertices), std::move(triangles), "both")).value());
+}
+
+TEST(FlushContacts, OfABodyThatAlsoTouchesElsewhereAreNotAll) {
   const auto ground = shape_of(made_mesh("made:box:x=4,y=4,z=0.2,cells=4"));
-  realtime::ManualClock clock(50);
-  Pair pair = late_pair(both, ground);
-  const math::Pose pose = below(1e-4);
-  int of_ball = 0;
-  for (int run = 0; run < 3000; ++run) {
-    const Answer& answer = pair.run(pose, in_microseconds(10.0, clock));
-    if (run < 2000) continue;
-    EXPECT_FALSE(answer.contacts_flush) << run;
-    of_ball += std::any_of(answer.contacts.begin(), answer.contacts.end(),
-                           [](const Contact& contact) { return contact.position.x() > 0.9; })
-                   ? 1
-                   : 0;
+  // Beside a wide foot, and beside a narrow one, nearer to it than it is long.
+  for (const auto& [name, place] : {std::pair{"made:box:x=1,y=1,z=0.2,cells=6", Vec3(1.0, 0.0, 0.0)},
+                                    {"made:box:x=1,y=0.1,z=0.2,cells=6", Vec3(0.0, 0.35, 0.0)}}) {
+    const auto both = foot_and_ball(name, -0.101, place);
+    ASSERT_TRUE(both->is_solid());
+    realtime::ManualClock clock(50);
+    Pair pair = late_pair(both, ground);
+    const math::Pose pose = below(1e-4);
+    int of_ball = 0;
+    int flush = 0;
+    for (int run = 0; run < 3000; ++run) {
+      const Answer& answer = pair.run(pose, in_microseconds(10.0, clock));
+      if (run < 2000) continue;
+      flush += answer.contacts_flush ? 1 : 0;
+      const auto is_of_ball = [&place = place](const Contact& contact) {
+        return (contact.position - place).head<2>().norm() < 0.1;
+      };
+      of_ball += std::any_of(answer.contacts.begin(), answer.contacts.end(), is_of_ball) ? 1 : 0;
+    }
+    EXPECT_EQ(flush, 0) << name;
+    EXPECT_GT(of_ball, 900) << name;
   }
-  EXPECT_GT(of_ball, 900);
+}
+
+// Of thin sheets the far sides face each other, too: whichever body is first, they are pushed apart, not together.
+TEST(FlushContacts, ThinSheetsArePushedApart) {
+  const auto sheet = shape_of(made_mesh("made:box:x=1,y=1,z=0.003,cells=5"));
+  const auto board = shape_of(made_mesh("made:box:x=1.6,y=1,z=0.02,cells=7"));
+  for (const bool board_first : {false, true}) {
+    realtime::ManualClock clock(50);
+    Pair pair = board_first ? late_pair(board, sheet) : late_pair(sheet, board);
+    math::Pose sheet_on_board;
+    sheet_on_board.translation.z() = 0.0115 - 1e-5;
+    const math::Pose pose = board_first ? sheet_on_board : sheet_on_board.inverse();
+    int flush = 0;
+    for (int run = 0; run < 100; ++run) {
+      const Answer& answer = pair.run(pose, in_microseconds(5.0, clock));
+      flush += answer.contacts_flush ? 1 : 0;
+      for (const Contact& contact : answer.contacts) {
+        EXPECT_GT(board_first ? -contact.normal.z() : contact.normal.z(), 0.9) << run;
+      }
+    }
+    EXPECT_GT(flush, 90);
+  }
 }
 
 TEST(FlushContacts, AreOfSolidsAlone) {
