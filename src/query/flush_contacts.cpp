@@ -213,10 +213,8 @@ bool FlushContacts::explains(const Contact& contact, const math::Pose& pose) noe
 
 void FlushContacts::straighten(Contact& guess) noexcept {
   if (!is_placed_ || !may_be()) return;
-  const auto agrees = [&](const Vec3& normal) noexcept {
-    return guess.normal.dot(normal) > tolerances::same_contact_side;
-  };
-  // It is the middle of a piece of surface.
+  // It is the middle of a piece of surface, whose mean normal may be that of the edge of a brick.
+  const auto agrees = [&](const Vec3& normal) noexcept { return guess.normal.dot(normal) > tolerances::opposed; };
   const Entry* entry = find(guess.position, pose_, tolerances::flush_depth * size_, false, agrees);
   if (entry == nullptr) return;
   guess.normal = entry->normal;
