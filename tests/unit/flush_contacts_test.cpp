@@ -1,4 +1,4 @@
-// Contacts of flat faces that lie on each other: what two polygons say, in every run of however little time.
+// Contacts of flat faces that lie on each other: what two polygons say.
 #include "query/flush_contacts.hpp"
 
 #include <gtest/gtest.h>
@@ -14,26 +14,14 @@
 
 #include "odds/math/random.hpp"
 #include "odds/math/tolerances.hpp"
-#include "odds/mesh/made/by_name.hpp"
-#include "odds/query/pair.hpp"
-#include "support/allocation_counter.hpp"
+#include "support/slabs.hpp"
 
 namespace odds::query {
 namespace {
 
-mesh::TriangleMesh made_mesh(const std::string& name) { return std::move(mesh::made::make_shape(name)).value(); }
-
-/// 1 by 1, 0.2 high.
-mesh::TriangleMesh slab(int cells = 3) { return made_mesh("made:box:x=1,y=1,z=0.2,cells=" + std::to_string(cells)); }
-
-/// A stands on B, which has been turned about z by `turn` and about y by `tilt`, and pushed up until they overlap by
-/// `depth` in the middle.
-math::Pose below(double depth, double turn = 0.0, double tilt = 0.0) {
-  math::Pose pose;
-  pose.rotation = (Eigen::AngleAxisd(tilt, Vec3::UnitY()) * Eigen::AngleAxisd(turn, Vec3::UnitZ())).toRotationMatrix();
-  pose.translation.z() = -0.1 - 0.1 / std::cos(tilt) + depth;
-  return pose;
-}
+using testing::below;
+using testing::made_mesh;
+using testing::slab;
 
 constexpr double size = 1.4;
 const Vec3 under(0.4, 0.3, -0.1);  ///< where A's bottom is
@@ -274,11 +262,24 @@ TEST(FlushContacts, OfUnevenGroundUnderASmallBodyAreNone) {
 }
 
 TEST(FlushContacts, WithoutTimeForAllDoNotServe) {
-  auto flush = contacts_of(slab(), slab());
-  ASSERT_FALSE(written(flush, below(1e-3), under).empty());
+  // On two feet.
+  auto flush = contacts_of(slab(), testing::joined(made_mesh("made:box:x=0.2,y=1,z=0.2,cells=2"),
+                                                   made_mesh("made:box:x=0.2,y=1,z=0.2,cells=2"), Vec3(0.6, 0, 0)));
+  math::Pose pose = below(1e-3);
+  pose.translation.x() = -0.3;
+  flush.move_to(pose);
+  ASSERT_TRUE(flush.explains_at(Vec3(-0.3, 0, -0.1)) && flush.explains_at(Vec3(0.3, 0, -0.1)));
+  flush.note(true, true);
+  EXPECT_EQ(flush.contacts().size(), 8U);
+  std::vector<Contact> contacts(8);
+  EXPECT_EQ(flush.write(contacts, [] { return false; }), 4U) << "of one foot";
   flush.begin();
-  flush.FlushContacts::move_to(below(1e-3), size, [] { return false; });
-  EXPECT_TRUE(flush.serves()) << "there is time for one";
+  flush.FlushContacts::move_to(pose, size, [] { return false; });
+  EXPECT_FALSE(flush.serves()) << "where the other one stands is not known";
+  flush.begin();
+  flush.move_to(pose);
+  EXPECT_TRUE(flush.serves());
+  EXPECT_EQ(flush.contacts().size(), 8U) << "and is not forgotten";
 }
 
 TEST(FlushContacts, WhatCameDeepUnknownPushesSlowly) {
@@ -375,161 +376,6 @@ TEST(FlushContacts, OfManyPairsOfFacesAreLeftToAPatch) {
   EXPECT_FALSE(flush.serves());
   flush.forget();
   EXPECT_TRUE(flush.may_be());
-}
-
-std::shared_ptr<const Shape> shape_of(mesh::TriangleMesh mesh) {
-  return Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(mesh))).value();
-}
-
-Request in_microseconds(double microseconds, realtime::ManualClock& clock) {
-  Request request;
-  request.method = Method::incremental;
-  request.max_contacts = 4;
-  request.budget = Budget::time(microseconds);
-  request.budget.clock = clock.clock();
-  return request;
-}
-
-Pair late_pair(const std::shared_ptr<const Shape>& a, const std::shared_ptr<const Shape>& b) {
-  return std::move(Pair::make(a, b, {.late_contacts = true})).value();
-}
-
-TEST(FlushContacts, OfARunAreThoseOfAPatchWithoutALimit) {
-  const auto brick = shape_of(slab(10));
-  for (const double microseconds : {5.0, 20.0}) {
-    realtime::ManualClock clock(50);
-    Pair pair = late_pair(brick, brick);
-    math::Pose pose = below(1e-5, 0.3);
-    pose.translation.x() = 0.2;
-    int flush = 0;
-    for (int run = 0; run < 40; ++run) {
-      const Answer& answer = pair.run(pose, in_microseconds(microseconds, clock));
-      if (!answer.contacts_flush) continue;
-      ++flush;
-      EXPECT_FALSE(answer.contacts_complete || answer.contacts_late);
-      EXPECT_EQ(answer.verdict, Verdict::hit);
-    }
-    EXPECT_GE(flush, 38) << microseconds;
-    const Answer& last = pair.run(pose, in_microseconds(microseconds, clock));
-    const std::vector<Contact> found(last.contacts.begin(), last.contacts.end());
-    Pair careful = std::move(Pair::make(brick, brick)).value();
-    Request all;
-    all.max_contacts = 4;
-    const Answer& exact = careful.run(pose, all);
-    ASSERT_TRUE(exact.contacts_complete);
-    ASSERT_EQ(found.size(), exact.contacts.size());
-    for (const Contact& contact : exact.contacts) {
-      const bool is_there = std::any_of(found.begin(), found.end(), [&](const Contact& other) {
-        return (other.position - contact.position).norm() < 1e-3 && std::abs(other.depth - contact.depth) < 1e-9 &&
-               other.normal.dot(contact.normal) > 0.999999;
-      });
-      EXPECT_TRUE(is_there) << contact.position.transpose();
-    }
-  }
-}
-
-TEST(FlushContacts, OfARunWithoutAProofAreGivenAllTheSame) {
-  const auto brick = shape_of(slab(10));
-  realtime::ManualClock clock(50);
-  Pair pair = late_pair(brick, brick);
-  const math::Pose pose = below(1e-5, 0.3);
-  for (int run = 0; run < 20; ++run) static_cast<void>(pair.run(pose, in_microseconds(5.0, clock)));
-  realtime::ManualClock slow(2000);  // the time is up at the second look
-  int unproved = 0;
-  for (int run = 0; run < 20; ++run) {
-    // Far enough for no pair of triangles that met to meet still.
-    const Answer& answer = pair.run(below(1e-5, 0.3 + 0.02 * run), in_microseconds(3.0, slow));
-    if (answer.basis == Basis::proved) continue;
-    ++unproved;
-    EXPECT_EQ(answer.verdict, Verdict::hit);
-    EXPECT_GE(answer.probability, tolerances::flush_probability);
-    EXPECT_TRUE(answer.contacts_flush);
-    EXPECT_EQ(answer.contacts.size(), 4U);
-  }
-  EXPECT_GT(unproved, 0);
-}
-
-/// A foot with a flat face and a ball, as one body, that both touch the ground.
-std::shared_ptr<const Shape> foot_and_ball(const std::string& name, double lowest, const Vec3& place) {
-  const mesh::TriangleMesh foot = made_mesh(name);
-  const mesh::TriangleMesh ball = made_mesh("made:icosphere:frequency=12,radius=0.1");
-  std::vector<Vec3> vertices(foot.vertices().begin(), foot.vertices().end());
-  std::vector<mesh::Triangle> triangles(foot.triangles().begin(), foot.triangles().end());
-  const auto first = static_cast<std::uint32_t>(vertices.size());
-  for (const Vec3& v : ball.vertices()) vertices.push_back(v + place + Vec3(0, 0, lowest + 0.1));
-  for (const mesh::Triangle& t : ball.triangles()) triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
-  return shape_of(std::move(mesh::TriangleMesh::make(std::move(vertices), std::move(triangles), "both")).value());
-}
-
-TEST(FlushContacts, OfABodyThatAlsoTouchesElsewhereAreNotAll) {
-  const auto ground = shape_of(made_mesh("made:box:x=4,y=4,z=0.2,cells=4"));
-  // Beside a wide foot, and beside a narrow one, nearer to it than it is long.
-  for (const auto& [name, place] : {std::pair{"made:box:x=1,y=1,z=0.2,cells=6", Vec3(1.0, 0.0, 0.0)},
-                                    {"made:box:x=1,y=0.1,z=0.2,cells=6", Vec3(0.0, 0.35, 0.0)}}) {
-    const auto both = foot_and_ball(name, -0.101, place);
-    ASSERT_TRUE(both->is_solid());
-    realtime::ManualClock clock(50);
-    Pair pair = late_pair(both, ground);
-    const math::Pose pose = below(1e-4);
-    int of_ball = 0;
-    int flush = 0;
-    for (int run = 0; run < 3000; ++run) {
-      const Answer& answer = pair.run(pose, in_microseconds(10.0, clock));
-      if (run < 2000) continue;
-      flush += answer.contacts_flush ? 1 : 0;
-      const auto is_of_ball = [&place = place](const Contact& contact) {
-        return (contact.position - place).head<2>().norm() < 0.1;
-      };
-      of_ball += std::any_of(answer.contacts.begin(), answer.contacts.end(), is_of_ball) ? 1 : 0;
-    }
-    EXPECT_EQ(flush, 0) << name;
-    EXPECT_GT(of_ball, 900) << name;
-  }
-}
-
-// Of thin sheets the far sides face each other, too: whichever body is first, they are pushed apart, not together.
-TEST(FlushContacts, ThinSheetsArePushedApart) {
-  const auto sheet = shape_of(made_mesh("made:box:x=1,y=1,z=0.003,cells=5"));
-  const auto board = shape_of(made_mesh("made:box:x=1.6,y=1,z=0.02,cells=7"));
-  for (const bool board_first : {false, true}) {
-    realtime::ManualClock clock(50);
-    Pair pair = board_first ? late_pair(board, sheet) : late_pair(sheet, board);
-    math::Pose sheet_on_board;
-    sheet_on_board.translation.z() = 0.0115 - 1e-5;
-    const math::Pose pose = board_first ? sheet_on_board : sheet_on_board.inverse();
-    int flush = 0;
-    for (int run = 0; run < 100; ++run) {
-      const Answer& answer = pair.run(pose, in_microseconds(5.0, clock));
-      flush += answer.contacts_flush ? 1 : 0;
-      for (const Contact& contact : answer.contacts) {
-        EXPECT_GT(board_first ? -contact.normal.z() : contact.normal.z(), 0.9) << run;
-      }
-    }
-    EXPECT_GT(flush, 90);
-  }
-}
-
-TEST(FlushContacts, AreOfSolidsAlone) {
-  // Without its lid a box has two-sided walls.
-  mesh::TriangleMesh closed = slab(3);
-  std::vector<Vec3> vertices(closed.vertices().begin(), closed.vertices().end());
-  std::vector<mesh::Triangle> triangles(closed.triangles().begin(), closed.triangles().end() - 1);
-  const auto open =
-      shape_of(std::move(mesh::TriangleMesh::make(std::move(vertices), std::move(triangles), "open")).value());
-  realtime::ManualClock clock(50);
-  Pair pair = late_pair(open, shape_of(slab(3)));
-  for (int run = 0; run < 40; ++run) {
-    EXPECT_FALSE(pair.run(below(1e-4), in_microseconds(5.0, clock)).contacts_flush);
-  }
-}
-
-TEST(FlushContacts, TakeNoMemoryInARun) {
-  const auto brick = shape_of(slab(10));
-  realtime::ManualClock clock(50);
-  Pair pair = late_pair(brick, brick);
-  const support::AllocationCounter counter;
-  for (int run = 0; run < 50; ++run) static_cast<void>(pair.run(below(1e-5, 0.01 * run), in_microseconds(5.0, clock)));
-  EXPECT_EQ(counter.allocations(), 0U);
 }
 
 }  // namespace

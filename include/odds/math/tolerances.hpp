@@ -166,7 +166,7 @@ inline constexpr double flat_face = 1e-6;
 inline constexpr double flush_faces = 0.999;
 inline constexpr double flush_depth = 0.02;  ///< see flush_faces
 /// Of a hit where such faces overlap, in a run without a proof. Test:
-/// FlushContacts.OfARunWithoutAProofAreGivenAllTheSame.
+/// FlushPair.OfARunWithoutAProofAreGivenAllTheSame.
 inline constexpr double flush_probability = 0.99;
 /// Cosine below which a surface is a wall, whose slope tells nothing of where an overlap gets deeper.
 inline constexpr double steep = 0.05;

@@ -1,0 +1,168 @@
+// Contacts of flat faces that lie on each other, of pairs whose budget has no time for a patch.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "odds/math/tolerances.hpp"
+#include "odds/query/pair.hpp"
+#include "support/allocation_counter.hpp"
+#include "support/slabs.hpp"
+
+namespace odds::query {
+namespace {
+
+using testing::below;
+using testing::made_mesh;
+using testing::slab;
+
+std::shared_ptr<const Shape> shape_of(mesh::TriangleMesh mesh) {
+  return Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(mesh))).value();
+}
+
+Request in_microseconds(double microseconds, realtime::ManualClock& clock) {
+  Request request;
+  request.method = Method::incremental;
+  request.max_contacts = 4;
+  request.budget = Budget::time(microseconds);
+  request.budget.clock = clock.clock();
+  return request;
+}
+
+Pair late_pair(const std::shared_ptr<const Shape>& a, const std::shared_ptr<const Shape>& b) {
+  return std::move(Pair::make(a, b, {.late_contacts = true})).value();
+}
+
+TEST(FlushPair, OfARunAreThoseOfAPatchWithoutALimit) {
+  const auto brick = shape_of(slab(10));
+  for (const double microseconds : {5.0, 20.0}) {
+    realtime::ManualClock clock(50);
+    Pair pair = late_pair(brick, brick);
+    math::Pose pose = below(1e-5, 0.3);
+    pose.translation.x() = 0.2;
+    int flush = 0;
+    for (int run = 0; run < 40; ++run) {
+      const Answer& answer = pair.run(pose, in_microseconds(microseconds, clock));
+      if (!answer.contacts_flush) continue;
+      ++flush;
+      EXPECT_FALSE(answer.contacts_complete || answer.contacts_late);
+      EXPECT_EQ(answer.verdict, Verdict::hit);
+    }
+    EXPECT_GE(flush, 38) << microseconds;
+    const Answer& last = pair.run(pose, in_microseconds(microseconds, clock));
+    const std::vector<Contact> found(last.contacts.begin(), last.contacts.end());
+    Pair careful = std::move(Pair::make(brick, brick)).value();
+    Request all;
+    all.max_contacts = 4;
+    const Answer& exact = careful.run(pose, all);
+    ASSERT_TRUE(exact.contacts_complete);
+    ASSERT_EQ(found.size(), exact.contacts.size());
+    for (const Contact& contact : exact.contacts) {
+      const bool is_there = std::any_of(found.begin(), found.end(), [&](const Contact& other) {
+        return (other.position - contact.position).norm() < 1e-3 && std::abs(other.depth - contact.depth) < 1e-9 &&
+               other.normal.dot(contact.normal) > 0.999999;
+      });
+      EXPECT_TRUE(is_there) << contact.position.transpose();
+    }
+  }
+}
+
+TEST(FlushPair, OfARunWithoutAProofAreGivenAllTheSame) {
+  const auto brick = shape_of(slab(10));
+  realtime::ManualClock clock(50);
+  Pair pair = late_pair(brick, brick);
+  const math::Pose pose = below(1e-5, 0.3);
+  for (int run = 0; run < 20; ++run) static_cast<void>(pair.run(pose, in_microseconds(5.0, clock)));
+  realtime::ManualClock slow(2000);  // the time is up at the second look
+  int unproved = 0;
+  for (int run = 0; run < 20; ++run) {
+    // Far enough for no pair of triangles that met to meet still.
+    const Answer& answer = pair.run(below(1e-5, 0.3 + 0.02 * run), in_microseconds(3.0, slow));
+    if (answer.basis == Basis::proved) continue;
+    ++unproved;
+    EXPECT_EQ(answer.verdict, Verdict::hit);
+    EXPECT_GE(answer.probability, tolerances::flush_probability);
+    EXPECT_TRUE(answer.contacts_flush);
+    EXPECT_EQ(answer.contacts.size(), 4U);
+  }
+  EXPECT_GT(unproved, 0);
+}
+
+TEST(FlushPair, OfABodyThatAlsoTouchesElsewhereAreNotAll) {
+  const auto ground = shape_of(made_mesh("made:box:x=4,y=4,z=0.2,cells=4"));
+  // Beside a wide foot, and beside a narrow one, nearer to it than it is long.
+  for (const auto& [name, place] : {std::pair{"made:box:x=1,y=1,z=0.2,cells=6", Vec3(1.0, 0.0, 0.0)},
+                                    {"made:box:x=1,y=0.1,z=0.2,cells=6", Vec3(0.0, 0.35, 0.0)}}) {
+    const auto both = shape_of(testing::joined(made_mesh(name), made_mesh("made:icosphere:frequency=12,radius=0.1"),
+                                               place + Vec3(0.0, 0.0, -0.001)));
+    ASSERT_TRUE(both->is_solid());
+    realtime::ManualClock clock(50);
+    Pair pair = late_pair(both, ground);
+    const math::Pose pose = below(1e-4);
+    int of_ball = 0;
+    int flush = 0;
+    for (int run = 0; run < 3000; ++run) {
+      const Answer& answer = pair.run(pose, in_microseconds(10.0, clock));
+      if (run < 2000) continue;
+      flush += answer.contacts_flush ? 1 : 0;
+      const auto is_of_ball = [&place = place](const Contact& contact) {
+        return (contact.position - place).head<2>().norm() < 0.1;
+      };
+      of_ball += std::any_of(answer.contacts.begin(), answer.contacts.end(), is_of_ball) ? 1 : 0;
+    }
+    EXPECT_EQ(flush, 0) << name;
+    EXPECT_GT(of_ball, 900) << name;
+  }
+}
+
+// Of thin sheets the far sides face each other, too: whichever body is first, they are pushed apart, not together.
+TEST(FlushPair, ThinSheetsArePushedApart) {
+  const auto sheet = shape_of(made_mesh("made:box:x=1,y=1,z=0.003,cells=5"));
+  const auto board = shape_of(made_mesh("made:box:x=1.6,y=1,z=0.02,cells=7"));
+  for (const bool board_first : {false, true}) {
+    realtime::ManualClock clock(50);
+    Pair pair = board_first ? late_pair(board, sheet) : late_pair(sheet, board);
+    math::Pose sheet_on_board;
+    sheet_on_board.translation.z() = 0.0115 - 1e-5;
+    const math::Pose pose = board_first ? sheet_on_board : sheet_on_board.inverse();
+    int flush = 0;
+    for (int run = 0; run < 100; ++run) {
+      const Answer& answer = pair.run(pose, in_microseconds(5.0, clock));
+      flush += answer.contacts_flush ? 1 : 0;
+      for (const Contact& contact : answer.contacts) {
+        EXPECT_GT(board_first ? -contact.normal.z() : contact.normal.z(), 0.9) << run;
+      }
+    }
+    EXPECT_GT(flush, 90);
+  }
+}
+
+TEST(FlushPair, AreOfSolidsAlone) {
+  // Without its lid a box has two-sided walls.
+  mesh::TriangleMesh closed = slab(3);
+  std::vector<Vec3> vertices(closed.vertices().begin(), closed.vertices().end());
+  std::vector<mesh::Triangle> triangles(closed.triangles().begin(), closed.triangles().end() - 1);
+  const auto open =
+      shape_of(std::move(mesh::TriangleMesh::make(std::move(vertices), std::move(triangles), "open")).value());
+  realtime::ManualClock clock(50);
+  Pair pair = late_pair(open, shape_of(slab(3)));
+  for (int run = 0; run < 40; ++run) {
+    EXPECT_FALSE(pair.run(below(1e-4), in_microseconds(5.0, clock)).contacts_flush);
+  }
+}
+
+TEST(FlushPair, TakeNoMemoryInARun) {
+  const auto brick = shape_of(slab(10));
+  realtime::ManualClock clock(50);
+  Pair pair = late_pair(brick, brick);
+  const support::AllocationCounter counter;
+  for (int run = 0; run < 50; ++run) static_cast<void>(pair.run(below(1e-5, 0.01 * run), in_microseconds(5.0, clock)));
+  EXPECT_EQ(counter.allocations(), 0U);
+}
+
+}  // namespace
+}  // namespace odds::query
