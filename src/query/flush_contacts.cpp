@@ -103,8 +103,11 @@ bool FlushContacts::place(Entry& entry) const noexcept {
   Vec3 low = Vec3::Zero();
   Vec3 high = Vec3::Zero();
   double deepest = -std::numeric_limits<double>::infinity();
+  double twice_area = 0.0;
   for (std::size_t i = 0; i < overlap.count; ++i) {
     const Seen& p = overlap.corners[i];
+    const Seen& next = overlap.corners[i + 1 < overlap.count ? i + 1 : 0];
+    twice_area += p.u * next.v - next.u * p.v;
     const Vec3 at(p.u, p.v, 0.0);
     low = i == 0 ? at : Vec3(low.cwiseMin(at));
     high = i == 0 ? at : Vec3(high.cwiseMax(at));
@@ -114,6 +117,8 @@ bool FlushContacts::place(Entry& entry) const noexcept {
   const double most = std::min({tolerances::flush_depth * size_, 0.5 * a.thickness, 0.5 * b.thickness});
   if (!(deepest >= -tolerances::late_gap * size_ && deepest <= most)) return false;
   entry.radius = 0.5 * (high - low).norm();
+  // What is deeper than it is wide, as of a crate that runs into a kerb, is left by its side.
+  if (!(deepest * 2.0 * entry.radius <= 0.5 * std::abs(twice_area))) return false;
   entry.depth = deepest;
 
   clip(overlap, [](const Seen& p) noexcept { return p.depth; });

@@ -216,6 +216,23 @@ TEST(FlushContacts, OfThinPlatesAreOfTheSidesThatTouch) {
   }
 }
 
+TEST(FlushContacts, WhatIsDeeperThanWideIsLeftByItsSide) {
+  // A slab that has run into a lower one by less than its bottom lies below the other one's top: side against side.
+  auto flush = contacts_of(slab(), slab());
+  math::Pose pose = below(0.02);
+  for (const double over : {0.005, 0.015, 0.025, 0.1}) {
+    pose.translation.x() = 1.0 - over;
+    flush.forget();
+    flush.move_to(pose);
+    flush.note(flush.explains_at(Vec3(0.5 - 0.5 * over, 0, -0.1)), true);
+    const auto contacts = flush.contacts();
+    ASSERT_FALSE(contacts.empty()) << over;
+    for (const Contact& contact : contacts) {
+      EXPECT_GT(over > 0.02 ? contact.normal.z() : -contact.normal.x(), 0.999) << over;
+    }
+  }
+}
+
 TEST(FlushContacts, OfAProofThatTheBodiesAreApartAreForgotten) {
   auto flush = contacts_of(slab(), slab());
   ASSERT_FALSE(written(flush, below(1e-3), under).empty());
