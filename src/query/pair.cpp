@@ -189,7 +189,6 @@ void forecast(const Met& met, const math::Pose& pose_b_in_a, const SearchResult&
   const bool both_solid = pair.a->is_solid() && pair.b->is_solid();
   answer.cell_pair = likeliest_place(met, result.shortlist, answer.probability, both_solid, apart);
   answer.cell_pair.position += met.a().origin();
-  pair.flush.straighten(answer.cell_pair);
   answer.cell_pair_probability = static_cast<double>(cell_probability);
 }
 
@@ -252,6 +251,7 @@ void search_and_answer(const Tree& a, const Tree& b, const PosedMeshes& meshes, 
     const auto encounter = encounter_of(a, b, meshes, request);
     result = search(encounter, meshes, request, scratch->queue, pair, spending);
     forecast(encounter, pose_b_in_a, result, request, spending, pair);
+    if (answer.has_cell_pair && has_time_for_flush(request, spending)) pair.flush.straighten(answer.cell_pair);
     if (answer.basis == Basis::budget && pair.flush.is_certain()) {
       answer.verdict = Verdict::hit;
       answer.probability = std::max(answer.probability, tolerances::flush_probability);
@@ -268,7 +268,8 @@ void search_and_answer(const Tree& a, const Tree& b, const PosedMeshes& meshes, 
       note_clear(meshes, pose_b_in_a, request, pair);
     }
     pair.within_is_of_front = pair.within_is_of_front && result.method == Method::incremental;
-  } else if (answer.basis == Basis::budget && request.max_contacts > 0 && pair.flush.is_certain()) {
+  } else if (answer.basis == Basis::budget && request.max_contacts > 0 && pair.flush.is_certain() &&
+             has_time_for_flush(request, spending)) {
     make_flush_contacts(meshes, request, pair, spending);
   } else if (pair.within == Within::neither) {
     pair.previous_normal.setZero();

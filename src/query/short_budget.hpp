@@ -9,6 +9,14 @@
 
 namespace odds::query {
 
+/// Whether contacts of flat faces, or a look at them, fit behind a search that its budget has ended. What is kept back
+/// for such an ending learns what it takes, but of less than 3 us it cannot be enough.
+[[nodiscard]] inline bool has_time_for_flush(const Request& request, Spending& spending) noexcept {
+  constexpr double enough_us = 3.0;
+  constexpr double takes_us = 0.6;
+  return request.budget.microseconds >= enough_us || spending.left_us() > takes_us;
+}
+
 /// Whether contacts are made over several runs (Request::late_contacts).
 [[nodiscard]] bool is_short(const Request& request, const Pair::Implementation& pair) noexcept;
 
