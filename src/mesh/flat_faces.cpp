@@ -68,6 +68,17 @@ void simplify(std::vector<Corner>& polygon, double nothing) {
   }
 }
 
+/// How far points lie outside of a convex polygon, the farthest of them.
+double reach_beyond(std::span<const Corner> polygon, std::span<const Corner> points) {
+  double most = 0.0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec2& from = polygon[i].place;
+    const Vec2 side = (polygon[(i + 1) % polygon.size()].place - from).normalized();
+    for (const Corner& point : points) most = std::max(most, -cross(side, point.place - from));
+  }
+  return most;
+}
+
 class Finder {
  public:
   explicit Finder(const TriangleMesh& mesh) : mesh_(mesh), first_(first_at_position(mesh.vertices())) {
@@ -201,7 +212,9 @@ class Finder {
     constexpr double as_good_as = 1e-6;
     const double hull_area = area_of(hull);
     if (!(std::abs(hull_area - area) <= as_good_as * area)) return false;
+    const std::vector<Corner> whole = hull;
     simplify(hull, as_good_as * hull_area);
+    face.beyond = reach_beyond(hull, whole);
     face.offset = offset;
     for (const std::uint32_t vertex : vertices) {
       face.uneven = std::max(face.uneven, std::abs(face.normal.dot(mesh_.vertices()[vertex]) - offset));

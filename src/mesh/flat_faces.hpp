@@ -20,6 +20,7 @@ struct FlatFace {
   double offset = 0.0;          ///< normal . x of its points
   Vec3 centre = Vec3::Zero();
   double radius = 0.0;  ///< of its corners about the centre
+  double beyond = 0.0;  ///< greatest distance of the face's own corners from the polygon, outside of it
   double uneven = 0.0;  ///< greatest distance of a corner of its triangles from the plane
   double thickness = std::numeric_limits<double>::infinity();  ///< least distance to a flat face behind it
   std::array<Vec3, most_corners> corner;

@@ -88,6 +88,11 @@ TEST(FlatFaces, TheEndOfAPegIsAPolygonWithinIt) {
     EXPECT_NEAR(corner.z(), 0.02, 1e-12);
     EXPECT_LE(corner.head<2>().norm(), radius * (1.0 + 1e-12));
   }
+  EXPECT_GT(top->beyond, 0.05 * radius) << "the arc over a side of an octagon";
+  EXPECT_LT(top->beyond, 0.2 * radius);
+  for (const FlatFace& face : find_flat_faces(made_mesh("made:box:cells=3"))) {
+    EXPECT_LT(face.beyond, 1e-12);
+  }
 }
 
 TEST(FlatFaces, ASlightBendDividesAFace) {
