@@ -47,51 +47,86 @@ void clip(Polygon<most>& polygon, Side&& side) noexcept {
   polygon.count = kept.count;
 }
 
+/// Two planes that nearly face each other, seen along the mean of their normals.
+class Facing {
+ public:
+  /// By `normal . x = offset`; through which points near `origin` go.
+  struct Plane {
+    Vec3 normal;
+    double offset;
+  };
+  // Neither is preferred: exchanging the bodies turns the normal round, and nothing else.
+  Facing(const Plane& a, const Plane& b, const Vec3& origin) noexcept
+      : frame_((b.normal - a.normal).normalized()), origin_(origin), a_(height_of(a)), b_(height_of(b)) {}
+
+  [[nodiscard]] const Vec3& normal() const noexcept { return frame_.normal; }
+  /// B's plane above A's is an overlap.
+  [[nodiscard]] Seen seen(const Vec3& point) const noexcept {
+    const Vec3 from = point - origin_;
+    const double u = frame_.u.dot(from);
+    const double v = frame_.v.dot(from);
+    return {u, v, b_.at(u, v) - a_.at(u, v)};
+  }
+  [[nodiscard]] Vec3 on_a(const Seen& p) const noexcept {
+    return origin_ + p.u * frame_.u + p.v * frame_.v + a_.at(p.u, p.v) * frame_.normal;
+  }
+
+ private:
+  /// Of a plane over the frame's, which goes through the origin.
+  struct Height {
+    double level, by_u, by_v;
+    [[nodiscard]] double at(double u, double v) const noexcept { return level + by_u * u + by_v * v; }
+  };
+  [[nodiscard]] Height height_of(const Plane& plane) const noexcept {
+    const double steepness = plane.normal.dot(frame_.normal);
+    return {(plane.offset - plane.normal.dot(origin_)) / steepness, -plane.normal.dot(frame_.u) / steepness,
+            -plane.normal.dot(frame_.v) / steepness};
+  }
+
+  patch::Frame frame_;
+  Vec3 origin_;
+  Height a_, b_;
+};
+
+/// How large a convex polygon is.
+struct Extent {
+  double diagonal = 0.0;  ///< of the box about it
+  double area = 0.0;
+  double deepest = -std::numeric_limits<double>::infinity();
+
+  template <std::size_t most>
+  explicit Extent(const Polygon<most>& polygon) noexcept {
+    double low[2] = {polygon.corners[0].u, polygon.corners[0].v};
+    double high[2] = {low[0], low[1]};
+    for (std::size_t i = 0; i < polygon.count; ++i) {
+      const Seen& p = polygon.corners[i];
+      const Seen& next = polygon.corners[i + 1 < polygon.count ? i + 1 : 0];
+      area += 0.5 * (p.u * next.v - next.u * p.v);
+      deepest = std::max(deepest, p.depth);
+      low[0] = std::min(low[0], p.u);
+      low[1] = std::min(low[1], p.v);
+      high[0] = std::max(high[0], p.u);
+      high[1] = std::max(high[1], p.v);
+    }
+    area = std::abs(area);
+    diagonal = std::sqrt((high[0] - low[0]) * (high[0] - low[0]) + (high[1] - low[1]) * (high[1] - low[1]));
+  }
+};
+
 }  // namespace
-
-void FlushContacts::forget() noexcept {
-  count_ = 0;
-  was_seen_ = false;
-  too_many_ = false;
-  is_denied_ = false;
-  doubt_ = 0;
-}
-
-void FlushContacts::note_clear() noexcept {
-  if (is_placed_ && is_certain()) return forget();
-  too_many_ = false;
-  is_denied_ = false;
-  doubt_ = 0;
-}
 
 bool FlushContacts::place(Entry& entry) const noexcept {
   const mesh::FlatFace& a = faces_a_[entry.face_a];
   const mesh::FlatFace& b = faces_b_[entry.face_b];
   const Vec3 normal_b = pose_.rotation * b.normal;
   if (!(-a.normal.dot(normal_b) > tolerances::flush_faces)) return false;
-  // Neither is preferred: exchanging the bodies turns the normal round, and nothing else.
-  const patch::Frame frame((normal_b - a.normal).normalized());
-  entry.normal = frame.normal;
-  const Vec3 origin = a.centre;
+  const Facing facing({a.normal, a.offset}, {normal_b, b.offset + normal_b.dot(pose_.translation)}, a.centre);
+  entry.normal = facing.normal();
 
-  // Heights of both planes over the frame's plane through the origin; B's above A's is an overlap.
-  const double per_a = -1.0 / a.normal.dot(frame.normal);
-  const double per_b = -1.0 / normal_b.dot(frame.normal);
-  const double slope_a[2] = {per_a * a.normal.dot(frame.u), per_a * a.normal.dot(frame.v)};
-  const double slope_b[2] = {per_b * normal_b.dot(frame.u), per_b * normal_b.dot(frame.v)};
-  const double level_a = -per_a * (a.offset - a.normal.dot(origin));
-  const double level_b = -per_b * (b.offset - b.normal.dot(pose_.rotation.transpose() * (origin - pose_.translation)));
-  const auto seen = [&](const Vec3& point) noexcept {
-    const Vec3 from = point - origin;
-    const double u = frame.u.dot(from);
-    const double v = frame.v.dot(from);
-    return Seen{u, v, (level_b + slope_b[0] * u + slope_b[1] * v) - (level_a + slope_a[0] * u + slope_a[1] * v)};
-  };
-
-  std::array<Seen, mesh::FlatFace::most_corners> window;  // B's corners: counter-clockwise along the normal
-  for (std::size_t i = 0; i < b.corner_count; ++i) window[i] = seen(pose_ * b.corner[i]);
+  std::array<Seen, mesh::FlatFace::most_corners> window;  // counter-clockwise along the normal, as A's are against it
+  for (std::size_t i = 0; i < b.corner_count; ++i) window[i] = facing.seen(pose_ * b.corner[i]);
   Polygon<most_points> overlap;
-  for (std::size_t i = a.corner_count; i-- != 0;) overlap.corners[overlap.count++] = seen(a.corner[i]);
+  for (std::size_t i = a.corner_count; i-- != 0;) overlap.corners[overlap.count++] = facing.seen(a.corner[i]);
   for (std::size_t i = 0; i < b.corner_count && overlap.count > 0; ++i) {
     const Seen& from = window[i];
     const Seen& to = window[i + 1 < b.corner_count ? i + 1 : 0];
@@ -100,50 +135,30 @@ bool FlushContacts::place(Entry& entry) const noexcept {
   }
   if (overlap.count < 3) return false;
 
-  Vec3 low = Vec3::Zero();
-  Vec3 high = Vec3::Zero();
-  double deepest = -std::numeric_limits<double>::infinity();
-  double twice_area = 0.0;
-  for (std::size_t i = 0; i < overlap.count; ++i) {
-    const Seen& p = overlap.corners[i];
-    const Seen& next = overlap.corners[i + 1 < overlap.count ? i + 1 : 0];
-    twice_area += p.u * next.v - next.u * p.v;
-    const Vec3 at(p.u, p.v, 0.0);
-    low = i == 0 ? at : Vec3(low.cwiseMin(at));
-    high = i == 0 ? at : Vec3(high.cwiseMax(at));
-    deepest = std::max(deepest, p.depth);
-  }
+  const Extent extent(overlap);
   // Through a body its far side faces the other one, too.
   const double most = std::min({tolerances::flush_depth * size_, 0.5 * a.thickness, 0.5 * b.thickness});
-  if (!(deepest >= -tolerances::late_gap * size_ && deepest <= most)) return false;
-  entry.radius = 0.5 * (high - low).norm();
+  if (!(extent.deepest >= -tolerances::late_gap * size_ && extent.deepest <= most)) return false;
   // What is deeper than it is wide, as of a crate that runs into a kerb, is left by its side.
-  if (!(deepest * 2.0 * entry.radius <= 0.5 * std::abs(twice_area))) return false;
-  entry.depth = deepest;
+  if (!(extent.deepest * extent.diagonal <= extent.area)) return false;
+  entry.depth = extent.deepest;
+  entry.radius = 0.5 * extent.diagonal;
 
   clip(overlap, [](const Seen& p) noexcept { return p.depth; });
   entry.point_count = overlap.count;
   for (std::size_t i = 0; i < overlap.count; ++i) {
-    const Seen& p = overlap.corners[i];
-    const double depth = std::max(p.depth, 0.0);
-    const Vec3 on_a =
-        origin + p.u * frame.u + p.v * frame.v + (level_a + slope_a[0] * p.u + slope_a[1] * p.v) * frame.normal;
-    entry.points[i] = {on_a, on_a + depth * frame.normal, depth, a.triangle, b.triangle};
+    const Vec3 on_a = facing.on_a(overlap.corners[i]);
+    const double depth = std::max(overlap.corners[i].depth, 0.0);
+    entry.points[i] = {on_a, on_a + depth * facing.normal(), depth, a.triangle, b.triangle};
   }
   return true;
 }
 
 bool FlushContacts::follow(Entry& entry) const noexcept {
-  const double before = std::max(entry.depth, 0.0);
   if (!place(entry)) return false;
-  const double depth = std::max(entry.depth, 0.0);
-  if (entry.holds) {  // as in LateManifold::age
-    const double rise = tolerances::late_rise * size_;
-    const bool parts = before - depth > rise;
-    entry.given += std::max(depth - before, 0.0) + (parts ? -rise : rise);
-  }
-  entry.holds = false;
-  entry.given = std::clamp(entry.given, std::min(depth, tolerances::unmeasured_depth * size_), depth);
+  // While they hold nothing their contacts are no closer to being given.
+  const double rise = entry.given.holds() ? tolerances::late_rise * size_ : 0.0;
+  entry.given.age(entry.depth, tolerances::unmeasured_depth * size_, rise);
   return true;
 }
 
@@ -151,51 +166,63 @@ bool FlushContacts::covers(const mesh::FlatFace& face, const Vec3& point, double
   const double height = face.normal.dot(point) - face.offset;
   const double under = tolerances::flush_depth * size_ + slack;
   if (!(height <= slack && height >= -under)) return false;
-  const double radius = face.radius + under;
+  const double beside = face.beyond + slack;
+  const double radius = face.radius + under + face.beyond;
   if (!((point - face.centre).squaredNorm() <= radius * radius)) return false;
   for (std::size_t i = 0; i < face.corner_count; ++i) {
     const Vec3 side = face.corner[i + 1 < face.corner_count ? i + 1 : 0] - face.corner[i];
-    if (!(face.normal.cross(side).dot(point - face.corner[i]) >= -slack * side.norm())) return false;
+    if (!(face.normal.cross(side).dot(point - face.corner[i]) >= -beside * side.norm())) return false;
   }
   return true;
 }
 
+FlushContacts::FacesThere FlushContacts::faces_at(std::span<const mesh::FlatFace> faces, const Vec3& point,
+                                                  double slack) const noexcept {
+  FacesThere there;
+  for (std::uint32_t i = 0; i < faces.size() && there.count < FacesThere::most; ++i) {
+    if (covers(faces[i], point, slack)) there.face[there.count++] = i;
+  }
+  return there;
+}
+
 template <class Agrees>
-const FlushContacts::Entry* FlushContacts::find(const Vec3& at, const math::Pose& pose, double slack, bool may_be_many,
-                                                Agrees agrees) noexcept {
-  const Vec3 at_in_b = pose.inverse() * at;
+const FlushContacts::Entry* FlushContacts::find(const Place& place, Agrees agrees) noexcept {
   for (const Entry& entry : entries()) {
-    if (agrees(entry.normal) && covers(faces_a_[entry.face_a], at, slack) &&
-        covers(faces_b_[entry.face_b], at_in_b, slack)) {
+    if (agrees(entry.normal) && covers(faces_a_[entry.face_a], place.on_a, place.slack) &&
+        covers(faces_b_[entry.face_b], place.on_b, place.slack)) {
       return &entry;
     }
   }
-  const double uneven = tolerances::unmeasured_depth * size_;
-  for (std::uint32_t b = 0; b < faces_b_.size(); ++b) {
-    if (!covers(faces_b_[b], at_in_b, slack)) continue;
-    const Vec3 normal_b = pose.rotation * faces_b_[b].normal;
-    for (std::uint32_t a = 0; a < faces_a_.size(); ++a) {
-      if (!(-faces_a_[a].normal.dot(normal_b) > tolerances::flush_faces) || !agrees(normal_b) ||
-          !(faces_a_[a].uneven + faces_b_[b].uneven <= uneven) || !covers(faces_a_[a], at, slack)) {
-        continue;
-      }
-      Entry entry;
-      entry.face_a = a;
-      entry.face_b = b;
-      if (!place(entry)) continue;
-      if (count_ == entries_.size()) {
-        if (!may_be_many) return nullptr;
-        count_ = 0;
-        was_seen_ = false;
-        too_many_ = true;
-        return nullptr;
-      }
-      entry.given = std::clamp(entry.depth, 0.0, tolerances::unmeasured_depth * size_);
-      entries_[count_] = entry;
-      return &entries_[count_++];
+  const FacesThere of_a = faces_at(faces_a_, place.on_a, place.slack);
+  const FacesThere of_b = faces_at(faces_b_, place.on_b, place.slack);
+  for (std::size_t b = 0; b < of_b.count; ++b) {
+    const Vec3 normal = pose_.rotation * faces_b_[of_b.face[b]].normal;
+    if (!agrees(normal)) continue;
+    for (std::size_t a = 0; a < of_a.count; ++a) {
+      const bool face_each_other = -faces_a_[of_a.face[a]].normal.dot(normal) > tolerances::flush_faces;
+      if (!face_each_other) continue;
+      if (const Entry* const added = add(of_a.face[a], of_b.face[b])) return added;
     }
   }
   return nullptr;
+}
+
+const FlushContacts::Entry* FlushContacts::add(std::uint32_t face_a, std::uint32_t face_b) noexcept {
+  const auto is_it = [&](const Entry& entry) noexcept { return entry.face_a == face_a && entry.face_b == face_b; };
+  if (std::any_of(entries().begin(), entries().end(), is_it)) return nullptr;  // it is not what was seen
+  if (!(faces_a_[face_a].uneven + faces_b_[face_b].uneven <= tolerances::unmeasured_depth * size_)) return nullptr;
+  Entry entry;
+  entry.face_a = face_a;
+  entry.face_b = face_b;
+  if (too_many_ || !place(entry)) return nullptr;
+  if (count_ == entries_.size()) {
+    count_ = 0;
+    too_many_ = true;
+    return nullptr;
+  }
+  entry.given.begin(entry.depth, tolerances::unmeasured_depth * size_);
+  entries_[count_] = entry;
+  return &entries_[count_++];
 }
 
 bool FlushContacts::explains_crossing(const Vec3& at, const Vec3& normal_a, const Vec3& normal_b) noexcept {
@@ -206,24 +233,22 @@ bool FlushContacts::explains_crossing(const Vec3& at, const Vec3& normal_a, cons
     const double b = normal_b.dot(normal);
     return std::max(a, b) > tolerances::hasty_agreement || (std::abs(a) < wall && std::abs(b) < wall);
   };
-  return find(at, pose_, tolerances::hasty_slack * size_, true, agrees) != nullptr;
+  return find(place_at(at, pose_, tolerances::hasty_slack * size_), agrees) != nullptr;
 }
 
 bool FlushContacts::explains(const Contact& contact, const math::Pose& pose) noexcept {
   const auto agrees = [&](const Vec3& normal) noexcept {
     return contact.normal.dot(normal) > tolerances::hasty_agreement;
   };
-  return find(contact.position, pose, tolerances::hasty_slack * size_, true, agrees) != nullptr;
+  return find(place_at(contact.position, pose, tolerances::hasty_slack * size_), agrees) != nullptr;
 }
 
 void FlushContacts::straighten(Contact& guess) noexcept {
-  if (!is_placed_ || !may_be()) return;
+  if (!is_placed_ || !may_be() || count_ == entries_.size()) return;
   // It is the middle of a piece of surface, whose mean normal may be that of the edge of a brick.
   const auto agrees = [&](const Vec3& normal) noexcept { return guess.normal.dot(normal) > tolerances::opposed; };
-  const Entry* entry = find(guess.position, pose_, tolerances::flush_depth * size_, false, agrees);
-  if (entry == nullptr) return;
-  guess.normal = entry->normal;
-  was_seen_ = true;
+  const Place place = place_at(guess.position, pose_, tolerances::flush_depth * size_);
+  if (const Entry* const entry = find(place, agrees)) guess.normal = entry->normal;
 }
 
 double FlushContacts::deepest() const noexcept {
@@ -256,7 +281,7 @@ patch::Chosen FlushContacts::choose(Entry& entry, std::size_t most) noexcept {
   const patch::Witness deepest =
       *std::max_element(points.begin(), points.end(), [](const auto& p, const auto& q) { return p.depth < q.depth; });
   for (patch::Witness& point : points) point = patch::pulled_in(point, deepest);
-  entry.holds = true;
+  entry.given.hold();
   return patch::choose(points, patch::Frame(entry.normal), most, patch::spacing(entry.depth, entry.radius));
 }
 
@@ -268,7 +293,7 @@ std::size_t FlushContacts::interleave(std::span<const std::size_t> order, std::s
       if (round >= chosen[i].count) continue;
       const Entry& entry = entries_[order[i]];
       const patch::Witness& w = chosen[i].witnesses[round];
-      contacts[written++] = {w.middle(), entry.normal, std::min(w.depth, entry.given), w.triangle_a, w.triangle_b};
+      contacts[written++] = {w.middle(), entry.normal, entry.given.of(w.depth), w.triangle_a, w.triangle_b};
     }
   }
   return written;

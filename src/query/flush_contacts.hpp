@@ -10,6 +10,7 @@
 #include "odds/math/pose.hpp"
 #include "odds/query/answer.hpp"
 #include "odds/query/contact_patch.hpp"
+#include "query/given_depth.hpp"
 #include "query/patch_select.hpp"
 
 namespace odds::query {
@@ -19,7 +20,7 @@ namespace odds::query {
 /// each other have all of their contacts in every run, also in one without time for a patch.
 ///
 /// Which faces those are is learnt from places where the surfaces were found to cross, and kept from run to run. What
-/// came deep while they did not hold it is given slowly, as by LateManifold. Of solids. In A's mesh frame, metres;
+/// came deep while they did not hold it is given slowly. Of solids. In A's mesh frame, metres;
 /// `size`: of the smaller body. No allocation.
 class FlushContacts {
  public:
@@ -31,7 +32,10 @@ class FlushContacts {
   FlushContacts(std::span<const mesh::FlatFace> faces_a, std::span<const mesh::FlatFace> faces_b) noexcept
       : faces_a_(faces_a), faces_b_(faces_b) {}
 
-  void forget() noexcept;
+  void forget() noexcept {
+    count_ = 0;
+    believe_again();
+  }
 
   /// Whether there are faces that might lie on each other.
   [[nodiscard]] bool may_be() const noexcept { return !faces_a_.empty() && !faces_b_.empty() && !too_many_; }
@@ -54,7 +58,6 @@ class FlushContacts {
       ++left;
     }
     count_ = left;
-    if (count_ == 0) was_seen_ = false;
   }
 
   /// Whether two triangles cross at `place` because of a pair of faces that is known, or is found now. Their normals
@@ -68,19 +71,19 @@ class FlushContacts {
   /// What a run saw: whether all of it was explained. `all`: it saw all that there is, and is believed until the next
   /// such one; what else one saw that did not is doubted for some runs.
   void note(bool explained, bool all) noexcept {
-    was_seen_ = was_seen_ || explained;
     if (all) is_denied_ = !explained;
     if (!explained && !all) doubt_ = longest_doubt;
     if (explained && all) doubt_ = 0;
   }
   /// The bodies are proved apart: whatever else touched does no more, and faces that overlap all the same do not lie on
   /// each other but through the bodies.
-  void note_clear() noexcept;
+  void note_clear() noexcept {
+    if (is_certain()) count_ = 0;
+    believe_again();
+  }
 
   /// Whether all that was seen of the bodies' contact was explained, and some of it overlaps now.
-  [[nodiscard]] bool serves() const noexcept {
-    return is_placed_ && was_seen_ && !is_denied_ && doubt_ == 0 && deepest() > 0.0;
-  }
+  [[nodiscard]] bool serves() const noexcept { return is_placed_ && !is_denied_ && doubt_ == 0 && deepest() > 0.0; }
   /// The same, and it overlaps by more than the faces are uneven: then the surfaces meet.
   [[nodiscard]] bool is_certain() const noexcept;
 
@@ -106,9 +109,8 @@ class FlushContacts {
   struct Entry {
     std::uint32_t face_a = 0;
     std::uint32_t face_b = 0;
-    bool holds = false;  ///< its contacts were written in the last run
-    double given = 0.0;  ///< of the depth, at most
     double depth = 0.0;  ///< greatest, in the last run; negative: a gap
+    GivenDepth given;
     double radius = 0.0;
     Vec3 normal = Vec3::UnitZ();
     std::array<patch::Witness, most_points> points;  ///< corners of the overlap
@@ -119,17 +121,39 @@ class FlushContacts {
     std::size_t count = 0;
   };
 
+  void believe_again() noexcept {
+    too_many_ = false;
+    is_denied_ = false;
+    doubt_ = 0;
+  }
   [[nodiscard]] std::span<const Entry> entries() const noexcept { return std::span(entries_).first(count_); }
   [[nodiscard]] double deepest() const noexcept;
   /// How the faces of an entry lie now. False: not on each other.
   [[nodiscard]] bool place(Entry& entry) const noexcept;
   /// The same, and how much of the depth is given.
   [[nodiscard]] bool follow(Entry& entry) const noexcept;
-  /// The faces known at a place, or found now, whose normal, into A, `agrees`; null: there are none, or, unless
-  /// `may_be_many`, no room for them. `pose`: of B's mesh frame when it was seen.
+  /// Where something was seen.
+  struct Place {
+    Vec3 on_a;  ///< in A's mesh frame
+    Vec3 on_b;  ///< the same in B's
+    double slack;
+  };
+  [[nodiscard]] Place place_at(const Vec3& place, const math::Pose& pose, double slack) const noexcept {
+    return {place, pose.inverse() * place, slack};
+  }
+  /// The faces known at a place, or found now, whose normal, into A, `agrees`; null: there are none, or no room for
+  /// them.
   template <class Agrees>
-  [[nodiscard]] const Entry* find(const Vec3& at, const math::Pose& pose, double slack, bool may_be_many,
-                                  Agrees agrees) noexcept;
+  [[nodiscard]] const Entry* find(const Place& place, Agrees agrees) noexcept;
+  [[nodiscard]] const Entry* add(std::uint32_t face_a, std::uint32_t face_b) noexcept;
+  /// Of one body's faces those at a place, the largest few.
+  struct FacesThere {
+    static constexpr std::size_t most = 4;
+    std::array<std::uint32_t, most> face;
+    std::size_t count = 0;
+  };
+  [[nodiscard]] FacesThere faces_at(std::span<const mesh::FlatFace> faces, const Vec3& point,
+                                    double slack) const noexcept;
   /// Whether a point lies within `slack` of a face, or no deeper under it than faces lie in each other.
   [[nodiscard]] bool covers(const mesh::FlatFace& face, const Vec3& point, double slack) const noexcept;
   [[nodiscard]] Order by_depth() const noexcept;
@@ -147,7 +171,6 @@ class FlushContacts {
   std::size_t count_ = 0;
   bool too_many_ = false;
   bool is_placed_ = false;   ///< in this run
-  bool was_seen_ = false;    ///< a place that they explain, since the first of them is known
   bool is_denied_ = false;   ///< by a run that saw all
   std::uint32_t doubt_ = 0;  ///< runs
   math::Pose pose_;

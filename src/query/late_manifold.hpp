@@ -11,13 +11,14 @@
 #include "odds/math/tolerances.hpp"
 #include "odds/query/contact_patch.hpp"
 #include "odds/query/held_contact.hpp"
+#include "query/given_depth.hpp"
 
 namespace odds::query {
 
 /// Bodies that rest on each other rock by nanometres, and touch on one edge now, on another one then. A patch that is
 /// late by ten runs knows one of them; so those of the patches before it stay where they have come apart by little, and
-/// push again as soon as they touch. What came deep while nobody knew is pushed out gently: a solver would take back in
-/// a step or two what took ten, and throw the body. Each follows the bodies' motion. In A's mesh frame; `size`: of the
+/// push again as soon as they touch. What came deep while nobody knew is pushed out gently (GivenDepth). Each follows
+/// the bodies' motion. In A's mesh frame; `size`: of the
 /// smaller body, metres. No allocation.
 class LateManifold {
  public:
@@ -33,10 +34,10 @@ class LateManifold {
       now[i].held = HeldContact(contacts[i], pose);
       double given = tolerances::late_least * size;
       for (std::size_t k = 0; k < count_; ++k) {
-        if (held_[k].holds && is_same(held_[k].held, now[i].held, size)) given = std::max(given, held_[k].given);
+        const bool is_successor = held_[k].depth.holds() && is_same(held_[k].held, now[i].held, size);
+        if (is_successor) given = std::max(given, held_[k].depth.given());
       }
-      now[i].given = std::min(contacts[i].depth, given);
-      now[i].depth = std::max(now[i].held.parted(pose_now).depth, 0.0);
+      now[i].depth.begin(now[i].held.parted(pose_now).depth, std::min(contacts[i].depth, given));
     }
     for (std::size_t i = 0; i < count_ && kept < most; ++i) {
       const auto [depth, slip] = held_[i].held.parted(pose);
@@ -54,22 +55,14 @@ class LateManifold {
   /// Whether all of each depth is given, but for what rounding took.
   [[nodiscard]] bool gives_all(const math::Pose& pose) const noexcept {
     constexpr double all = 1.0 - 1e-6;
-    return std::all_of(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(count_),
-                       [&pose](const Entry& entry) { return entry.given >= all * entry.held.parted(pose).depth; });
+    return std::all_of(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(count_), [&pose](const Entry& entry) {
+      return entry.depth.given() >= all * entry.held.parted(pose).depth;
+    });
   }
-  /// A run begins, at `pose`. What the bodies have come deeper where a contact held them is given at once: they did so
-  /// against its push. Where they part faster than a depth is given, less is: what a solver makes of a depth, a speed,
-  /// is energy that nobody put in.
+  /// A run begins, at `pose`.
   void age(const math::Pose& pose, double size) noexcept {
-    const double least = tolerances::late_least * size;
     for (Entry& entry : std::span(held_).first(count_)) {
-      const double depth = std::max(entry.held.parted(pose).depth, 0.0);
-      const double deeper = entry.holds ? std::max(depth - entry.depth, 0.0) : 0.0;
-      const double rise = tolerances::late_rise * size;
-      const bool parts = entry.holds && entry.depth - depth > rise;
-      entry.given = std::min(depth, std::max(entry.given + deeper + (parts ? -rise : rise), least));
-      entry.depth = depth;
-      entry.holds = false;
+      entry.depth.age(entry.held.parted(pose).depth, tolerances::late_least * size, tolerances::late_rise * size);
     }
   }
 
@@ -105,9 +98,9 @@ class LateManifold {
                       [](const Candidate& x, const Candidate& y) { return x.depth > y.depth; });
     for (std::size_t i = 0; i < written; ++i) {
       Entry& entry = held_[candidates[i].entry];
-      entry.holds = true;
+      entry.depth.hold();
       contacts[i] = entry.held.at(pose);
-      contacts[i].depth = std::min(entry.given, candidates[i].depth);
+      contacts[i].depth = entry.depth.of(candidates[i].depth);
     }
     return written;
   }
@@ -118,9 +111,7 @@ class LateManifold {
 
   struct Entry {
     HeldContact held;
-    double depth = 0.0;  ///< at the last run, metres
-    double given = 0.0;  ///< of that
-    bool holds = false;  ///< it was written since the last run began
+    GivenDepth depth;
   };
   [[nodiscard]] static bool is_same(const HeldContact& x, const HeldContact& y, double size) noexcept {
     return (x.on_a() - y.on_a()).norm() <= tolerances::late_spacing * size &&

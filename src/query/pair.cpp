@@ -251,11 +251,7 @@ void search_and_answer(const Tree& a, const Tree& b, const PosedMeshes& meshes, 
     const auto encounter = encounter_of(a, b, meshes, request);
     result = search(encounter, meshes, request, scratch->queue, pair, spending);
     forecast(encounter, pose_b_in_a, result, request, spending, pair);
-    if (answer.has_cell_pair && has_time_for_flush(request, spending)) pair.flush.straighten(answer.cell_pair);
-    if (answer.basis == Basis::budget && pair.flush.is_certain()) {
-      answer.verdict = Verdict::hit;
-      answer.probability = std::max(answer.probability, tolerances::flush_probability);
-    }
+    if (answer.basis == Basis::budget) judge_by_flat_faces(meshes, request, pair, spending);
   }
   pair.within_is_of_front = false;
   if (!pair.hits.empty()) pair.within = Within::neither;
@@ -268,10 +264,7 @@ void search_and_answer(const Tree& a, const Tree& b, const PosedMeshes& meshes, 
       note_clear(meshes, pose_b_in_a, request, pair);
     }
     pair.within_is_of_front = pair.within_is_of_front && result.method == Method::incremental;
-  } else if (answer.basis == Basis::budget && request.max_contacts > 0 && pair.flush.is_certain() &&
-             has_time_for_flush(request, spending)) {
-    make_flush_contacts(meshes, request, pair, spending);
-  } else if (pair.within == Within::neither) {
+  } else if (pair.within == Within::neither && answer.contacts.empty()) {
     pair.previous_normal.setZero();
   }
 }

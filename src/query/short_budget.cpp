@@ -21,8 +21,9 @@ constexpr double most_hits = 65536.0;
 constexpr double share_of_a_guess = 0.5;
 /// Hits of the work under way that are tried in a run.
 constexpr std::size_t most_tried = 4;
-/// What one pair of flat faces takes, to be moved or to have its contacts chosen, where caches are cold.
-constexpr double least_left_us = 0.8;
+/// What contacts of one pair of flat faces take where caches are cold; of it its move takes a third.
+constexpr double of_flush_us = 1.1;
+constexpr double of_a_pair_us = 0.8;  ///< and the choice of contacts the rest
 
 double smaller_size(const Pair::Implementation& pair) noexcept {
   return std::min(pair.a->mesh().size(), pair.b->mesh().size());
@@ -184,6 +185,20 @@ void write_late(const math::Pose& pose_b_in_a, const Request& request, Pair::Imp
   pair.answer.contact_pairs = manifold.made_from();
 }
 
+/// The contacts of flat faces that lie on each other.
+void write_flush(const PosedMeshes& meshes, const Request& request, Pair::Implementation& pair,
+                 Spending& spending) noexcept {
+  const std::span<Contact> room = room_for_contacts(request, pair);
+  const auto may_go_on = [&spending] { return spending.left_us() > of_a_pair_us; };
+  pair.answer.contacts = room.first(pair.flush.write(room, may_go_on));
+  pair.answer.contacts_flush = true;
+  pair.answer.contacts_complete = false;
+  pair.answer.contact_pairs = static_cast<std::uint32_t>(pair.answer.contacts.size());
+  double deepest = 0.0;
+  for (const Contact& contact : pair.answer.contacts) deepest = std::max(deepest, contact.depth);
+  pair.known_depth.note(meshes.pose(), deepest);
+}
+
 /// Whether the pair's hits are where faces lie on each other; some of them are looked at, from all over their list.
 bool see_flush(const PosedMeshes& meshes, Pair::Implementation& pair, Spending& spending) noexcept {
   constexpr std::size_t most_seen = 3;
@@ -200,15 +215,16 @@ bool see_flush(const PosedMeshes& meshes, Pair::Implementation& pair, Spending& 
   return pair.flush.serves();
 }
 
-/// Whether the contacts that the work has made are all where faces lie on each other.
+/// Whether the contacts that the work has made are all where faces lie on each other; without time to look at all of
+/// them, whether those before were.
 bool is_all_flush(Pair::Implementation& pair, Spending& spending) noexcept {
+  constexpr double of_a_contact_us = 0.4;
   if (!pair.flush.may_be()) return false;
-  const std::span<const Contact> made = pair.late->contacts();
-  const auto is_explained = [&pair, &spending](const Contact& contact) noexcept {
-    static_cast<void>(spending.left_us());  // so that the gap is no stall
-    return pair.flush.explains(contact, pair.late->pose());
-  };
-  const bool explained = std::all_of(made.begin(), made.end(), is_explained);
+  bool explained = true;
+  for (const Contact& contact : pair.late->contacts()) {
+    if (spending.left_us() < of_a_contact_us) return pair.flush.serves();
+    explained = explained && pair.flush.explains(contact, pair.late->pose());
+  }
   pair.flush.note(explained, true);
   return pair.flush.serves();
 }
@@ -236,19 +252,6 @@ bool may_be_late(const Request& request, const Pair::Implementation& pair) noexc
 
 }  // namespace
 
-void make_flush_contacts(const PosedMeshes& meshes, const Request& request, Pair::Implementation& pair,
-                         Spending& spending) noexcept {
-  const std::span<Contact> room = room_for_contacts(request, pair);
-  const auto may_go_on = [&spending] { return spending.left_us() > least_left_us; };
-  pair.answer.contacts = room.first(pair.flush.write(room, may_go_on));
-  pair.answer.contacts_flush = true;
-  pair.answer.contacts_complete = false;
-  pair.answer.contact_pairs = static_cast<std::uint32_t>(pair.answer.contacts.size());
-  double deepest = 0.0;
-  for (const Contact& contact : pair.answer.contacts) deepest = std::max(deepest, contact.depth);
-  pair.known_depth.note(meshes.pose(), deepest);
-}
-
 bool is_short(const Request& request, const Pair::Implementation& pair) noexcept {
   return may_be_late(request, pair) && (request.budget.microseconds < short_us || pair.late->is_wanted()) &&
          pair.late->can_work();
@@ -267,19 +270,34 @@ std::uint32_t hits_of_a_guess(const Request& request, const Pair::Implementation
 bool carry_late_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request,
                          Pair::Implementation& pair, Spending& spending) noexcept {
   if (!is_short(request, pair)) return false;
-  pair.flush.move_to(pose_b_in_a, smaller_size(pair), [&spending] { return spending.left_us() > 2.0 * least_left_us; });
+  pair.flush.move_to(pose_b_in_a, smaller_size(pair), [&spending] { return spending.left_us() > of_flush_us; });
   const bool is_flush = pair.flush.serves();
   if (!is_flush && !serves_late(pose_b_in_a, pair)) return false;
   if (!prove_carried(meshes, pair, spending)) return false;
   begin_haste(pose_b_in_a, pair);
   pair.answer.contacts_complete = false;
   if (is_flush) {
-    make_flush_contacts(meshes, request, pair, spending);
+    write_flush(meshes, request, pair, spending);
   } else {
     write_late(pose_b_in_a, request, pair);
   }
   work(pose_b_in_a, request, pair, spending);
   return true;
+}
+
+void judge_by_flat_faces(const PosedMeshes& meshes, const Request& request, Pair::Implementation& pair,
+                         Spending& spending) noexcept {
+  // What is kept back for such an ending learns what this takes, but of a very short time it cannot be enough.
+  constexpr double enough_us = 3.0;
+  const auto has_time = [&](double takes_us) {
+    return request.budget.microseconds >= enough_us || spending.left_us() > takes_us;
+  };
+  Answer& answer = pair.answer;
+  if (answer.has_cell_pair && has_time(0.5 * of_a_pair_us)) pair.flush.straighten(answer.cell_pair);
+  if (!pair.flush.is_certain()) return;
+  answer.verdict = Verdict::hit;
+  answer.probability = std::max(answer.probability, tolerances::flush_probability);
+  if (request.max_contacts > 0 && has_time(of_a_pair_us)) write_flush(meshes, request, pair, spending);
 }
 
 void settle_late(const Request& request, Pair::Implementation& pair, Spending& spending) noexcept {
@@ -300,7 +318,7 @@ void make_contacts_over_runs(const PosedMeshes& meshes, const math::Pose& pose_b
   ++pair.hasty_runs;
   begin_haste(pose_b_in_a, pair);
   if (see_flush(meshes, pair, spending)) {
-    make_flush_contacts(meshes, request, pair, spending);
+    write_flush(meshes, request, pair, spending);
     pair.carried.keep_proofs(pair.hits.pairs());
   } else if (serves_late(pose_b_in_a, pair)) {
     write_late(pose_b_in_a, request, pair);

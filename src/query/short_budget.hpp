@@ -9,14 +9,6 @@
 
 namespace odds::query {
 
-/// Whether contacts of flat faces, or a look at them, fit behind a search that its budget has ended. What is kept back
-/// for such an ending learns what it takes, but of less than 3 us it cannot be enough.
-[[nodiscard]] inline bool has_time_for_flush(const Request& request, Spending& spending) noexcept {
-  constexpr double enough_us = 3.0;
-  constexpr double takes_us = 0.6;
-  return request.budget.microseconds >= enough_us || spending.left_us() > takes_us;
-}
-
 /// Whether contacts are made over several runs (Request::late_contacts).
 [[nodiscard]] bool is_short(const Request& request, const Pair::Implementation& pair) noexcept;
 
@@ -26,8 +18,8 @@ void note_unfinished(const Request& request, Pair::Implementation& pair) noexcep
 /// Hits that a search of such a run is asked for.
 [[nodiscard]] std::uint32_t hits_of_a_guess(const Request& request, const Pair::Implementation& pair) noexcept;
 
-/// The contacts of earlier poses, proved by a pair of triangles that met there and meets now, while the work on those
-/// of now goes on. False if there are none, or they are of no use.
+/// The contacts of flat faces that lie on each other, or else of earlier poses, proved by a pair of triangles that met
+/// before and meets now, while the work on those of now goes on. False if there are none, or they are of no use.
 [[nodiscard]] bool carry_late_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request,
                                        Pair::Implementation& pair, Spending& spending) noexcept;
 
@@ -36,8 +28,9 @@ void note_unfinished(const Request& request, Pair::Implementation& pair) noexcep
 void make_contacts_over_runs(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Vec3* known_normal,
                              const Request& request, Pair::Implementation& pair, Spending& spending) noexcept;
 
-/// The contacts of flat faces that lie on each other. Precondition: pair.flush.serves().
-void make_flush_contacts(const PosedMeshes& meshes, const Request& request, Pair::Implementation& pair,
+/// After a search that its budget has ended without a hit: where flat faces overlap that lie on each other, the
+/// surfaces meet, and have contacts if there is time; a guess beside such faces has their normal.
+void judge_by_flat_faces(const PosedMeshes& meshes, const Request& request, Pair::Implementation& pair,
                          Spending& spending) noexcept;
 
 /// At the end of a run: what has become of no use is dropped, where there is time, for others to use its memory.

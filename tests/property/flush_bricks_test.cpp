@@ -12,6 +12,7 @@
 #include "odds/math/random.hpp"
 #include "odds/mesh/made/by_name.hpp"
 #include "odds/query/pair.hpp"
+#include "support/short_request.hpp"
 
 namespace odds::query {
 namespace {
@@ -125,10 +126,8 @@ TEST(FlushBricks, InFiveMicrosecondsAreHeldAsWithoutALimit) {
       ++stands;
       auto pair = std::move(Pair::make(a, b, {.late_contacts = true})).value();
       realtime::ManualClock clock(60);
-      Request request = all;
-      request.method = Method::incremental;
-      request.budget = Budget::time(5.0);
-      request.budget.clock = clock.clock();
+      Request request = testing::short_request(clock);
+      request.max_contacts = most_contacts;
       for (int run = 0; run < 10; ++run) static_cast<void>(pair.run(stand.below, request));
       const Answer& answer = pair.run(stand.below, request);
       if (!answer.contacts_flush) continue;

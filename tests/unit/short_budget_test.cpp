@@ -11,9 +11,12 @@
 #include "odds/query/pair.hpp"
 #include "support/allocation_counter.hpp"
 #include "support/shapes.hpp"
+#include "support/short_request.hpp"
 
 namespace odds::query {
 namespace {
+
+using testing::short_request;
 
 std::shared_ptr<const Shape> knot() {
   auto mesh = mesh::made::make_shape("made:torus_knot:along=200,across=12");
@@ -41,15 +44,6 @@ math::Pose at(double x, double y = 0.0) {
 math::Pose deep(double depth) { return at(2.0 - depth); }
 
 constexpr int most_runs = 2000;
-
-Request short_request(realtime::ManualClock& clock, double microseconds = 5.0) {
-  Request request;
-  request.method = Method::incremental;
-  request.max_contacts = 4;
-  request.budget = Budget::time(microseconds);
-  request.budget.clock = clock.clock();
-  return request;
-}
 
 /// Runs until contacts are late; how many that took, none if they never were.
 std::optional<int> runs_until_late(Pair& pair, const math::Pose& pose, const Request& request) {
