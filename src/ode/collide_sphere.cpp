@@ -29,7 +29,7 @@ struct Places {
   bool complete = true;
 };
 
-// The nearest point of every triangle that is closer than the radius, nearest first.
+// The nearest point of every triangle that is no farther than the radius, nearest first.
 void find_places(const PreparedMesh& mesh, const Vec3& center, double radius, Limit& limit, Places& places) noexcept {
   std::array<std::uint32_t, most_near_triangles> near;
   const std::size_t count = query::triangles_in_box(*mesh.shape, center, Mat3::Identity(), Vec3::Constant(radius), near,
@@ -41,7 +41,7 @@ void find_places(const PreparedMesh& mesh, const Vec3& center, double radius, Li
     }
     const Vec3 point = closest_point(mesh.corners(near[i]), center);
     const double distance = (point - center).norm();
-    if (distance < radius) places.all[places.count++] = {point, distance, near[i]};
+    if (distance <= radius) places.all[places.count++] = {point, distance, near[i]};
   }
   std::sort(places.all.begin(), places.all.begin() + places.count, [](const Place& a, const Place& b) {
     return a.distance != b.distance ? a.distance < b.distance : a.triangle < b.triangle;
@@ -84,7 +84,7 @@ int collide_sphere(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, in
   bool complete = limit.units > 0;
 
   ContactWriter writer(o1, o2, room_for(flags, data.settings.max_contacts), contacts, skip);
-  if (nearest && (nearest->inside || nearest->distance < radius)) {
+  if (nearest && (nearest->inside || nearest->distance <= radius)) {
     // Towards the mesh seen from outside; from the pseudo-normal where the centre is on the surface itself.
     const bool on_surface = nearest->distance <= same_place * radius;
     const double side = nearest->inside ? -1.0 : 1.0;
@@ -96,10 +96,13 @@ int collide_sphere(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, in
       Places found;
       find_places(mesh, center, radius, limit, found);
       complete = complete && found.complete;
+      // Without depth nothing pushes, and every triangle that is touched is told, as by ODE.
+      const bool only_touches = nearest->distance == radius;
       for (std::size_t i = 0; i < found.count && found.complete && !writer.full(); ++i) {
         const Place& place = found.all[i];
-        const bool written = (place.point - nearest->point).norm() <= same_place * radius;
-        if (written || !is_local_minimum(mesh, found, i, same_place * radius)) continue;
+        const bool written = only_touches ? place.triangle == nearest->triangle
+                                          : (place.point - nearest->point).norm() <= same_place * radius;
+        if (written || !(only_touches || is_local_minimum(mesh, found, i, same_place * radius))) continue;
         writer.add(*pose * place.point, pose->rotation * ((place.point - center) / place.distance),
                    radius - place.distance, place.triangle, query::no_feature);
       }

@@ -220,7 +220,7 @@ const FlushContacts::Entry* FlushContacts::add(std::uint32_t face_a, std::uint32
     too_many_ = true;
     return nullptr;
   }
-  entry.given.begin(entry.depth, tolerances::unmeasured_depth * size_);
+  entry.given.begin(entry.depth, measured_ ? entry.depth : tolerances::unmeasured_depth * size_);
   entries_[count_] = entry;
   return &entries_[count_++];
 }
@@ -255,6 +255,11 @@ double FlushContacts::deepest() const noexcept {
   double most = -std::numeric_limits<double>::infinity();
   for (const Entry& entry : entries()) most = std::max(most, entry.depth);
   return most;
+}
+
+bool FlushContacts::gives_all() const noexcept {
+  return std::all_of(entries().begin(), entries().end(),
+                     [](const Entry& entry) { return entry.given.of(entry.depth) == std::max(entry.depth, 0.0); });
 }
 
 bool FlushContacts::is_certain() const noexcept {

@@ -41,13 +41,14 @@ class FlushContacts {
   [[nodiscard]] bool may_be() const noexcept { return !faces_a_.empty() && !faces_b_.empty() && !too_many_; }
   /// A run begins.
   void begin() noexcept { is_placed_ = false; }
-  /// It is one that has no time for a patch, with B's mesh frame at `pose`: what no longer lies on each other is
-  /// forgotten. `may_go_on()` is asked before every pair of faces, some 0.3 us each; where it is false
-  /// they do not serve this run.
+  /// It may need them, with B's mesh frame at `pose`: what no longer lies on each other is forgotten. `may_go_on()` is
+  /// asked before every pair of faces, some 0.3 us each; where it is false they do not serve this run. `measured`: a
+  /// patch of all there is has been made at this pose, and faces that are found in it are given as deep as they are.
   template <class MayGoOn>
-  void move_to(const math::Pose& pose, double size, MayGoOn may_go_on) noexcept {
+  void move_to(const math::Pose& pose, double size, bool measured, MayGoOn may_go_on) noexcept {
     pose_ = pose;
     size_ = size;
+    measured_ = measured;
     if (doubt_ > 0) --doubt_;
     is_placed_ = true;
     std::size_t left = 0;
@@ -84,7 +85,9 @@ class FlushContacts {
 
   /// Whether all that was seen of the bodies' contact was explained, and some of it overlaps now.
   [[nodiscard]] bool serves() const noexcept { return is_placed_ && !is_denied_ && doubt_ == 0 && deepest() > 0.0; }
-  /// The same, and it overlaps by more than the faces are uneven: then the surfaces meet.
+  /// Whether their depths are given in full.
+  [[nodiscard]] bool gives_all() const noexcept;
+  /// Whether they serve, and overlap by more than they are uneven: then the surfaces meet.
   [[nodiscard]] bool is_certain() const noexcept;
 
   /// Writes the contacts, of the deepest pair of faces first, and of each the deepest first. `may_go_on()` is asked
@@ -171,6 +174,7 @@ class FlushContacts {
   std::size_t count_ = 0;
   bool too_many_ = false;
   bool is_placed_ = false;   ///< in this run
+  bool measured_ = false;    ///< in this run
   bool is_denied_ = false;   ///< by a run that saw all
   std::uint32_t doubt_ = 0;  ///< runs
   math::Pose pose_;

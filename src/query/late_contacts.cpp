@@ -166,7 +166,8 @@ bool LateContacts::work(const math::Pose& pose_b_in_a, const Request& request, P
   if (too_many_) return false;
   if (!parted_) copy_what_is_known(*worker_, pair);
   manifold_.keep(answer.contacts, pose_, pose_b_in_a, size, answer.contact_pairs);
-  if (!pressed_ && manifold_.gives_all(pose_b_in_a)) {
+  gave_all_ = !pressed_ && manifold_.gives_all(pose_b_in_a);
+  if (gave_all_) {
     if (quick_ >= enough_quick) is_wanted_ = false;
     pair.carried = worker_->carried;
   } else {  // what is carried would push at once

@@ -64,6 +64,9 @@ class LateContacts {
   bool work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair, Spending& spending,
             double press) noexcept;
 
+  /// After work() was true: whether the bodies were not pressed, and nothing is held back: then `pair` carries them.
+  [[nodiscard]] bool gave_all() const noexcept { return gave_all_; }
+
   /// Pairs of triangles that the work has found to meet so far, at the pose that it is about; more than a run finds.
   [[nodiscard]] std::span<const TrianglePair> hits() const noexcept;
   /// After work() was true: the contacts that it has made, at the pose that it was asked about.
@@ -102,6 +105,7 @@ class LateContacts {
   Scratch* scratch_ = nullptr;  ///< while a question is being worked on
   Spending* spending_ = nullptr;
   bool pressed_ = false;   ///< what is being worked on
+  bool gave_all_ = false;  ///< of what was made last
   bool parted_ = false;    ///< the bodies were apart since it was asked
   bool too_many_ = false;  ///< the last one had more hits than are kept
   int clear_runs_ = 0;     ///< in a row

@@ -220,6 +220,7 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   } else if (!whole) {  // a single contact, or one far from where the depth was known
     for (Contact& contact : own_contacts(pair)) contact.depth = std::min(contact.depth, most_depth);
   }
+  const bool flush = answer_by_flat_faces(meshes, pose_b_in_a, whole, request, pair, spending);
   if (patches.finished() && request.max_contacts > 1) {
     const Contact& first = pair.answer.contacts.front();
     pair.known_direction.note(first.position, first.normal, pose_b_in_a, smaller, pair.answer.contacts_complete);
@@ -239,7 +240,7 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   }
   if (whole || (pair.answer.contacts_complete && request.max_contacts > 1)) {
     pair.known_depth.note(meshes.pose(), deepest_of(pair.answer.contacts));
-  } else if (request.max_contacts > 1) {
+  } else if (request.max_contacts > 1 && !flush) {
     if (knows_nothing_here(moved_little, pair)) {
       note_first_contact(meshes, pair);
     } else if (patches.finished() && patches.pairs_used() >= pairs_of_a_depth) {

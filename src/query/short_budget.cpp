@@ -185,18 +185,24 @@ void write_late(const math::Pose& pose_b_in_a, const Request& request, Pair::Imp
   pair.answer.contact_pairs = manifold.made_from();
 }
 
-/// The contacts of flat faces that lie on each other.
-void write_flush(const PosedMeshes& meshes, const Request& request, Pair::Implementation& pair,
+/// The contacts of flat faces that lie on each other. `all`: nothing else touches now.
+void write_flush(const PosedMeshes& meshes, bool all, const Request& request, Pair::Implementation& pair,
                  Spending& spending) noexcept {
   const std::span<Contact> room = room_for_contacts(request, pair);
   const auto may_go_on = [&spending] { return spending.left_us() > of_a_pair_us; };
   pair.answer.contacts = room.first(pair.flush.write(room, may_go_on));
   pair.answer.contacts_flush = true;
-  pair.answer.contacts_complete = false;
+  pair.answer.contacts_complete = all;
   pair.answer.contact_pairs = static_cast<std::uint32_t>(pair.answer.contacts.size());
   double deepest = 0.0;
   for (const Contact& contact : pair.answer.contacts) deepest = std::max(deepest, contact.depth);
   pair.known_depth.note(meshes.pose(), deepest);
+}
+
+/// What is known of faces that lie on each other, as they lie now. `measured`: by a patch of all there is.
+void move_flush(const math::Pose& pose_b_in_a, bool measured, Pair::Implementation& pair, Spending& spending) noexcept {
+  pair.flush.move_to(pose_b_in_a, smaller_size(pair), measured,
+                     [&spending] { return spending.left_us() > of_flush_us; });
 }
 
 /// Whether the pair's hits are where faces lie on each other; some of them are looked at, from all over their list.
@@ -215,15 +221,16 @@ bool see_flush(const PosedMeshes& meshes, Pair::Implementation& pair, Spending& 
   return pair.flush.serves();
 }
 
-/// Whether the contacts that the work has made are all where faces lie on each other; without time to look at all of
-/// them, whether those before were.
-bool is_all_flush(Pair::Implementation& pair, Spending& spending) noexcept {
+/// Whether the contacts that a patch of all there is has made, at `pose`, are all where faces lie on each other;
+/// without time to look at all of them, whether those before were.
+bool is_all_flush(std::span<const Contact> contacts, const math::Pose& pose, Pair::Implementation& pair,
+                  Spending& spending) noexcept {
   constexpr double of_a_contact_us = 0.4;
   if (!pair.flush.may_be()) return false;
   bool explained = true;
-  for (const Contact& contact : pair.late->contacts()) {
+  for (const Contact& contact : contacts) {
     if (spending.left_us() < of_a_contact_us) return pair.flush.serves();
-    explained = explained && pair.flush.explains(contact, pair.late->pose());
+    explained = explained && pair.flush.explains(contact, pose);
   }
   pair.flush.note(explained, true);
   return pair.flush.serves();
@@ -238,10 +245,15 @@ void work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implement
   }
   spending.reserve_for_contacts(pair.endings.late);
   const double press = request.budget.microseconds < short_us ? tolerances::late_press * smaller_size(pair) : 0.0;
-  if (pair.late->work(pose_b_in_a, request, pair, spending, press) && !is_all_flush(pair, spending) &&
-      serves_late(pose_b_in_a, pair)) {
-    write_late(pose_b_in_a, request, pair);
+  if (!pair.late->work(pose_b_in_a, request, pair, spending, press)) return;
+  if (!is_all_flush(pair.late->contacts(), pair.late->pose(), pair, spending)) {
+    if (serves_late(pose_b_in_a, pair)) write_late(pose_b_in_a, request, pair);
+    return;
   }
+  // Contacts of both kinds by turns would be as good as a tremor.
+  const bool carries = pair.late->gave_all() && pair.answer.contacts_flush && pair.flush.gives_all();
+  pair.carried.keep(carries ? pair.answer.contacts : std::span<const Contact>(), request.max_contacts,
+                    pair.carried.proofs(), pose_b_in_a);
 }
 
 /// Whether contacts of this pair are allowed to be late.
@@ -270,19 +282,30 @@ std::uint32_t hits_of_a_guess(const Request& request, const Pair::Implementation
 bool carry_late_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request,
                          Pair::Implementation& pair, Spending& spending) noexcept {
   if (!is_short(request, pair)) return false;
-  pair.flush.move_to(pose_b_in_a, smaller_size(pair), [&spending] { return spending.left_us() > of_flush_us; });
+  move_flush(pose_b_in_a, false, pair, spending);
   const bool is_flush = pair.flush.serves();
   if (!is_flush && !serves_late(pose_b_in_a, pair)) return false;
   if (!prove_carried(meshes, pair, spending)) return false;
   begin_haste(pose_b_in_a, pair);
   pair.answer.contacts_complete = false;
   if (is_flush) {
-    write_flush(meshes, request, pair, spending);
+    write_flush(meshes, false, request, pair, spending);
   } else {
     write_late(pose_b_in_a, request, pair);
   }
   work(pose_b_in_a, request, pair, spending);
   return true;
+}
+
+bool answer_by_flat_faces(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, bool whole, const Request& request,
+                          Pair::Implementation& pair, Spending& spending) noexcept {
+  if (!request.late_contacts || request.max_contacts <= 1 || !pair.flush.may_be()) return false;
+  if (!(spending.left_us() > of_flush_us)) return false;
+  move_flush(pose_b_in_a, whole, pair, spending);
+  const bool is_flush =
+      whole ? is_all_flush(pair.answer.contacts, pose_b_in_a, pair, spending) : see_flush(meshes, pair, spending);
+  if (is_flush) write_flush(meshes, whole, request, pair, spending);
+  return is_flush;
 }
 
 void judge_by_flat_faces(const PosedMeshes& meshes, const Request& request, Pair::Implementation& pair,
@@ -297,7 +320,7 @@ void judge_by_flat_faces(const PosedMeshes& meshes, const Request& request, Pair
   if (!pair.flush.is_certain()) return;
   answer.verdict = Verdict::hit;
   answer.probability = std::max(answer.probability, tolerances::flush_probability);
-  if (request.max_contacts > 0 && has_time(of_a_pair_us)) write_flush(meshes, request, pair, spending);
+  if (request.max_contacts > 0 && has_time(of_a_pair_us)) write_flush(meshes, false, request, pair, spending);
 }
 
 void settle_late(const Request& request, Pair::Implementation& pair, Spending& spending) noexcept {
@@ -318,7 +341,7 @@ void make_contacts_over_runs(const PosedMeshes& meshes, const math::Pose& pose_b
   ++pair.hasty_runs;
   begin_haste(pose_b_in_a, pair);
   if (see_flush(meshes, pair, spending)) {
-    write_flush(meshes, request, pair, spending);
+    write_flush(meshes, false, request, pair, spending);
     pair.carried.keep_proofs(pair.hits.pairs());
   } else if (serves_late(pose_b_in_a, pair)) {
     write_late(pose_b_in_a, request, pair);

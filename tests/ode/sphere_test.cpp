@@ -70,6 +70,32 @@ TEST_F(SphereTest, RotatedAndMovedMeshesAnswerTheSame) {
   EXPECT_GT(hits, 100);
 }
 
+TEST_F(SphereTest, OneThatOnlyTouchesHasAContactWithoutDepthForEachTriangleAsOdes) {
+  const dGeomID square =
+      mesh_geom(shape_from({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}), space);
+  const dGeomID sphere = dCreateSphere(space, 4.0);
+  const auto expect = [&](std::size_t count, const Vec3& normal) {
+    const auto contacts = collide(square, sphere);
+    ASSERT_EQ(contacts.size(), count);
+    for (const dContactGeom& contact : contacts) {
+      EXPECT_EQ(contact.depth, 0.0);
+      EXPECT_EQ(normal_of(contact), normal);
+    }
+    if (count == 2) {
+      EXPECT_NE(contacts[0].side1, contacts[1].side1);
+    }
+  };
+  dGeomSetPosition(sphere, 0, 0, 4);  // the diagonal, which two triangles share
+  expect(2, -Vec3::UnitZ());
+  dGeomSetPosition(sphere, 0.5, -0.25, 4);
+  expect(1, -Vec3::UnitZ());
+  dGeomSetPosition(square, 10, 30, 40);
+  dGeomSetPosition(sphere, 10, 30, 44);
+  expect(2, -Vec3::UnitZ());
+  dGeomSetPosition(sphere, 10, 30, std::nextafter(44.0, 45.0));
+  EXPECT_TRUE(collide(square, sphere).empty());
+}
+
 TEST_F(SphereTest, RollingOverATessellatedFloorMeetsNoInternalEdge) {
   const dGeomID floor = mesh_geom(box_shape(2, 2, 0.2, 16), space);
   const dGeomID sphere = dCreateSphere(space, 0.1);

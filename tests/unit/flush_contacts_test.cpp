@@ -33,8 +33,8 @@ struct Flush : FlushContacts {
       : FlushContacts(*a, *b), of_a(std::move(a)), of_b(std::move(b)) {}
   std::shared_ptr<const std::vector<mesh::FlatFace>> of_a, of_b;
 
-  void move_to(const math::Pose& pose, double of_size = size) {
-    FlushContacts::move_to(pose, of_size, [] { return true; });
+  void move_to(const math::Pose& pose, double of_size = size, bool measured = false) {
+    FlushContacts::move_to(pose, of_size, measured, [] { return true; });
   }
   /// Faces that look up and down, as of a body that stands on another one.
   [[nodiscard]] bool explains_at(const Vec3& place, const Vec3& up = Vec3::UnitZ()) {
@@ -291,7 +291,7 @@ TEST(FlushContacts, WithoutTimeForAllDoNotServe) {
   std::vector<Contact> contacts(8);
   EXPECT_EQ(flush.write(contacts, [] { return false; }), 4U) << "of one foot";
   flush.begin();
-  flush.FlushContacts::move_to(pose, size, [] { return false; });
+  flush.FlushContacts::move_to(pose, size, false, [] { return false; });
   EXPECT_FALSE(flush.serves()) << "where the other one stands is not known";
   flush.begin();
   flush.move_to(pose);

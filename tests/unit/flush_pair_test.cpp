@@ -65,6 +65,59 @@ TEST(FlushPair, OfARunAreThoseOfAPatchWithoutALimit) {
   }
 }
 
+// A patch of all there is says whether anything else touches; then flat faces say where, whatever the budget.
+TEST(FlushPair, TakeThePlaceOfAWholePatch) {
+  const auto brick = shape_of(slab(10));
+  realtime::ManualClock clock(1);
+  Request in_time = short_request(clock, 200.0);
+  in_time.carry_motion = 1e-5;
+  Request in_work = in_time;
+  in_work.budget = Budget::work(4000);
+  Request unlimited = in_time;
+  unlimited.budget = {};
+  for (const Request& request : {in_time, in_work, unlimited}) {
+    Pair pair = late_pair(brick, brick);
+    for (int run = 0; run < 20; ++run) {
+      math::Pose pose = below(1e-3, 0.3);
+      pose.translation.x() = 0.2 + 0.001 * run;
+      const Answer& answer = pair.run(pose, request);
+      EXPECT_TRUE(answer.contacts_flush && answer.contacts_complete) << run;
+      EXPECT_FALSE(answer.contacts_late);
+      ASSERT_EQ(answer.contacts.size(), 4U);
+      for (const Contact& contact : answer.contacts) {
+        EXPECT_NEAR(contact.depth, 1e-3, 1e-12) << "all of it, at once: it was measured";
+        EXPECT_GT(contact.normal.z(), 0.999999);
+      }
+      const std::vector<Contact> made(answer.contacts.begin(), answer.contacts.end());
+      pose.translation.z() -= 1e-7;
+      const Answer& later = pair.run(pose, request);
+      EXPECT_TRUE(later.contacts_carried) << "of a body at rest they stay where they are";
+      ASSERT_EQ(later.contacts.size(), 4U);
+      for (std::size_t i = 0; i < 4; ++i) EXPECT_LT((later.contacts[i].position - made[i].position).norm(), 2e-7);
+    }
+    Request springs = request;
+    springs.late_contacts = false;
+    EXPECT_FALSE(pair.run(below(1e-3, 0.1), springs).contacts_flush) << "what each run has seen itself";
+  }
+}
+
+TEST(FlushPair, OfAWholePatchThatSaysMoreAreNotAll) {
+  const auto ground = shape_of(made_mesh("made:box:x=4,y=4,z=0.2,cells=4"));
+  const Vec3 place(1.0, 0.0, 0.0);
+  const auto both =
+      shape_of(testing::joined(made_mesh("made:box:x=1,y=1,z=0.2,cells=6"),
+                               made_mesh("made:icosphere:frequency=12,radius=0.1"), place + Vec3(0.0, 0.0, -0.001)));
+  Pair pair = late_pair(both, ground);
+  Request request;
+  request.max_contacts = 8;
+  for (int run = 0; run < 20; ++run) {
+    const Answer& answer = pair.run(below(1e-4, 0.01 * run), request);
+    EXPECT_FALSE(answer.contacts_flush);
+    EXPECT_TRUE(std::any_of(answer.contacts.begin(), answer.contacts.end(),
+                            [&](const Contact& contact) { return (contact.position - place).head<2>().norm() < 0.1; }));
+  }
+}
+
 TEST(FlushPair, OfARunWithoutAProofAreGivenAllTheSame) {
   const auto brick = shape_of(slab(10));
   realtime::ManualClock clock(50);

@@ -86,8 +86,8 @@ struct Answer {
   /// They were made with care, but for a pose some runs ago, for a short budget had no time for them at once; moved
   /// along with the bodies since, the deepest first (Request::late_contacts). Then contacts_complete is false.
   bool contacts_late = false;
-  /// They are of flat faces that lie on each other, as polygons, at the pose of this run, which had no time for a patch
-  /// (Request::late_contacts): all that is known of, but something else may touch. Then contacts_complete is false.
+  /// They are of flat faces that lie on each other, as polygons, at the pose of this run (Request::late_contacts).
+  /// Where contacts_complete is false, it had no time for a patch: all that is known of, but something else may touch.
   bool contacts_flush = false;
   bool has_cell_pair = false;  ///< whether `cell_pair` is set: some pair of nodes remained undecided
   Contact cell_pair;           ///< where the surfaces most probably meet: centroids, mean normals, depth estimate
