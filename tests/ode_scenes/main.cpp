@@ -23,14 +23,16 @@ struct Options {
 constexpr double least_budget_us = 0.1;
 
 using Scene = Section (*)(const Plan&);
-constexpr std::pair<const char*, Scene> all[] = {{"stacks", &stacks},     {"peg", &peg_in_hole}, {"gears", &gears},
-                                                 {"bolt", &bolt_and_nut}, {"drag", &drag},       {"crowd", &crowd}};
+constexpr std::pair<const char*, Scene> all[] = {{"stacks", &stacks},        {"peg", &peg_in_hole}, {"gears", &gears},
+                                                 {"bolt", &bolt_and_nut},    {"drag", &drag},       {"crowd", &crowd},
+                                                 {"behaviours", &behaviours}};
 
 int usage() {
   fmt::print(
       stderr,
-      "usage: odds_ode_scenes [--out FOLDER] [--only stacks|peg|gears|bolt|drag|crowd] [--quick] [--seconds S]\n"
-      "                       [--budgets US,US,...] [--work] [--bricks N,N,...] [--gaps MM,MM,...] [--ours] "
+      "usage: odds_ode_scenes [--out FOLDER] [--only stacks|peg|gears|bolt|drag|crowd|behaviours] [--quick]\n"
+      "                       [--seconds S] [--budgets US,US,...] [--work] [--bricks N,N,...] [--gaps MM,MM,...] "
+      "[--ours] "
       "[--gimpact]\n"
       "       odds_ode_scenes --soak [--seconds S] [--out FOLDER]   (stacks of five, ten minutes)\n"
       "--quick: ten seconds, one gap, stacks of 2 and 5; --bricks, --gaps: of stacks, else 2,5,10 and 0,0.1,0.5,1 mm;\n"
