@@ -203,8 +203,10 @@ std::size_t PatchBuilder::Scratch::probe(const PatchInput& input, const Vec3& ce
     measured[count++] = w;
   }
   Witness deepest = patch::deepest_of({measured.data(), count}, frame, centre, 0.25 * reach);
-  // The last run's summit is near this one's; starting from it, the climb follows one summit and does not flicker.
+  // The last run's summit is near this one's; starting from it, the climb follows one summit and does not flicker. That
+  // of another side is not in this overlap.
   if (input.previous_position != nullptr && (*input.previous_position - centre).norm() < 0.5 * reach &&
+      input.previous_normal != nullptr && input.previous_normal->dot(frame.normal) > tolerances::same_as_before &&
       measure(*input.previous_position, inside) && inside.depth > deepest.depth) {
     deepest = inside;
     measured[count++] = inside;

@@ -38,9 +38,12 @@ class FlushContacts {
   }
 
   /// Whether there are faces that might lie on each other.
-  [[nodiscard]] bool may_be() const noexcept { return !faces_a_.empty() && !faces_b_.empty() && !too_many_; }
+  [[nodiscard]] bool may_be() const noexcept { return !faces_a_.empty() && !faces_b_.empty() && crowded_ == 0; }
   /// A run begins.
-  void begin() noexcept { is_placed_ = false; }
+  void begin() noexcept {
+    is_placed_ = false;
+    if (crowded_ > 0) --crowded_;
+  }
   /// It may need them, with B's mesh frame at `pose`: what no longer lies on each other is forgotten. `may_go_on()` is
   /// asked before every pair of faces, some 0.3 us each; where it is false they do not serve this run. `measured`: a
   /// patch of all there is has been made at this pose, and faces that are found in it are given as deep as they are.
@@ -64,7 +67,8 @@ class FlushContacts {
   /// Whether two triangles cross at `place` because of a pair of faces that is known, or is found now. Their normals
   /// are unit, in A's frame.
   [[nodiscard]] bool explains_crossing(const Vec3& place, const Vec3& normal_a, const Vec3& normal_b) noexcept;
-  /// The same of a contact that a patch has found with B's mesh frame at `pose`, near to where it is now.
+  /// The same of a contact that a patch has found with B's mesh frame at `pose`, near to where it is now; it is no
+  /// deeper than the faces are there.
   [[nodiscard]] bool explains(const Contact& contact, const math::Pose& pose) noexcept;
   /// A guess of where such faces are near each other has their normal; they are looked at from then on.
   void straighten(Contact& guess) noexcept;
@@ -83,30 +87,39 @@ class FlushContacts {
     believe_again();
   }
 
+  /// Whether some faces overlap now, whatever else touches.
+  [[nodiscard]] bool overlap() const noexcept { return is_placed_ && deepest() > 0.0; }
   /// Whether all that was seen of the bodies' contact was explained, and some of it overlaps now.
-  [[nodiscard]] bool serves() const noexcept { return is_placed_ && !is_denied_ && doubt_ == 0 && deepest() > 0.0; }
+  [[nodiscard]] bool serves() const noexcept { return overlap() && !is_denied_ && doubt_ == 0; }
+  /// Whether something else was seen to touch that no patch has seen yet.
+  [[nodiscard]] bool are_surprised() const noexcept { return overlap() && !is_denied_ && doubt_ > 0; }
+  /// Whether a contact, as it is now, is one of those.
+  [[nodiscard]] bool have(const Contact& contact) const noexcept;
   /// Whether their depths are given in full.
   [[nodiscard]] bool gives_all() const noexcept;
-  /// Whether they serve, and overlap by more than they are uneven: then the surfaces meet.
+  /// Whether some overlap by more than they are uneven: then the surfaces meet.
   [[nodiscard]] bool is_certain() const noexcept;
 
-  /// Writes the contacts, of the deepest pair of faces first, and of each the deepest first. `may_go_on()` is asked
-  /// before every pair but the first; where it is false the others are left out. Returns how many.
+  /// Writes the contacts: faces with one normal have theirs together, those that span the largest area; of several
+  /// normals that of the deepest first. `may_go_on()` is asked before every normal but the first; where it is false the
+  /// others are left out. Returns how many.
   template <class MayGoOn>
   [[nodiscard]] std::size_t write(std::span<Contact> contacts, MayGoOn may_go_on) noexcept {
-    const Order order = by_depth();
+    const Groups groups = by_normal();
     std::array<patch::Chosen, most_entries> chosen;
-    std::size_t pairs = 0;
-    for (; pairs < order.count && (pairs == 0 || may_go_on()); ++pairs) {
-      chosen[pairs] = choose(entries_[order.entry[pairs]], most_of_each(contacts.size(), order.count));
+    std::size_t made = 0;
+    for (; made < groups.count && (made == 0 || may_go_on()); ++made) {
+      chosen[made] = choose(groups.group[made], most_of_each(contacts.size(), groups.count));
     }
-    return interleave({order.entry.data(), pairs}, chosen, contacts);
+    return interleave(std::span(groups.group).first(made), chosen, contacts);
   }
 
  private:
   static constexpr std::size_t most_points = 2 * mesh::FlatFace::most_corners + 2;
   /// Runs of five microseconds within which a patch of all there is comes late.
   static constexpr std::uint32_t longest_doubt = 64;
+  /// After which it is looked whether there are fewer pairs of faces now.
+  static constexpr std::uint32_t longest_crowd = 512;
 
   /// Two faces, and where they overlap.
   struct Entry {
@@ -119,13 +132,20 @@ class FlushContacts {
     std::array<patch::Witness, most_points> points;  ///< corners of the overlap
     std::size_t point_count = 0;
   };
-  struct Order {
+  /// Entries that overlap and have one normal, the deepest first.
+  struct Group {
     std::array<std::size_t, most_entries> entry;
+    std::size_t count = 0;
+
+    [[nodiscard]] std::span<const std::size_t> entries() const noexcept { return std::span(entry).first(count); }
+  };
+  struct Groups {
+    std::array<Group, most_entries> group;
     std::size_t count = 0;
   };
 
   void believe_again() noexcept {
-    too_many_ = false;
+    crowded_ = 0;
     is_denied_ = false;
     doubt_ = 0;
   }
@@ -135,15 +155,20 @@ class FlushContacts {
   [[nodiscard]] bool place(Entry& entry) const noexcept;
   /// The same, and how much of the depth is given.
   [[nodiscard]] bool follow(Entry& entry) const noexcept;
-  /// Where something was seen.
+  /// Where something was seen: how far beside a face, and above it, it may be, and how deep the bodies are there, if
+  /// that is known.
   struct Place {
     Vec3 on_a;  ///< in A's mesh frame
     Vec3 on_b;  ///< the same in B's
-    double slack;
+    double beside;
+    double above;
+    double depth = 0.0;
   };
-  [[nodiscard]] Place place_at(const Vec3& place, const math::Pose& pose, double slack) const noexcept {
-    return {place, pose.inverse() * place, slack};
+  [[nodiscard]] Place place_at(const Vec3& place, const math::Pose& pose) const noexcept {
+    return {place, pose.inverse() * place, tolerances::hasty_slack * size_, tolerances::unmeasured_depth * size_};
   }
+  /// Whether faces are as deep in each other at a place as was seen.
+  [[nodiscard]] bool reach(const mesh::FlatFace& a, const mesh::FlatFace& b, const Place& place) const noexcept;
   /// The faces known at a place, or found now, whose normal, into A, `agrees`; null: there are none, or no room for
   /// them.
   template <class Agrees>
@@ -156,27 +181,30 @@ class FlushContacts {
     std::size_t count = 0;
   };
   [[nodiscard]] FacesThere faces_at(std::span<const mesh::FlatFace> faces, const Vec3& point,
-                                    double slack) const noexcept;
-  /// Whether a point lies within `slack` of a face, or no deeper under it than faces lie in each other.
-  [[nodiscard]] bool covers(const mesh::FlatFace& face, const Vec3& point, double slack) const noexcept;
-  [[nodiscard]] Order by_depth() const noexcept;
-  /// No more than are used where several pairs of faces share the room.
-  [[nodiscard]] static std::size_t most_of_each(std::size_t room, std::size_t pairs) noexcept {
-    return pairs < 2 ? most_contacts : std::min<std::size_t>(most_contacts, 2 * ((room + pairs - 1) / pairs));
+                                    const Place& place) const noexcept;
+  /// Whether a point lies over a face, no higher than `place.above`, or no deeper under it than faces lie in each
+  /// other.
+  [[nodiscard]] bool covers(const mesh::FlatFace& face, const Vec3& point, const Place& place) const noexcept;
+  [[nodiscard]] Groups by_normal() const noexcept;
+  /// No more than are used where several normals share the room.
+  [[nodiscard]] static std::size_t most_of_each(std::size_t room, std::size_t groups) noexcept {
+    return groups < 2 ? std::min<std::size_t>(most_contacts, room)
+                      : std::min<std::size_t>(most_contacts, 2 * ((room + groups - 1) / groups));
   }
-  [[nodiscard]] static patch::Chosen choose(Entry& entry, std::size_t most) noexcept;
-  [[nodiscard]] std::size_t interleave(std::span<const std::size_t> order, std::span<const patch::Chosen> chosen,
+  [[nodiscard]] patch::Chosen choose(const Group& group, std::size_t most) noexcept;
+  [[nodiscard]] const Entry& entry_of(const patch::Witness& witness, const Group& group) const noexcept;
+  [[nodiscard]] std::size_t interleave(std::span<const Group> groups, std::span<const patch::Chosen> chosen,
                                        std::span<Contact> contacts) const noexcept;
 
   std::span<const mesh::FlatFace> faces_a_;
   std::span<const mesh::FlatFace> faces_b_;
   std::array<Entry, most_entries> entries_;
   std::size_t count_ = 0;
-  bool too_many_ = false;
-  bool is_placed_ = false;   ///< in this run
-  bool measured_ = false;    ///< in this run
-  bool is_denied_ = false;   ///< by a run that saw all
-  std::uint32_t doubt_ = 0;  ///< runs
+  std::uint32_t crowded_ = 0;  ///< runs in which there are more pairs than entries
+  bool is_placed_ = false;     ///< in this run
+  bool measured_ = false;      ///< in this run
+  bool is_denied_ = false;     ///< by a run that saw all
+  std::uint32_t doubt_ = 0;    ///< runs
   math::Pose pose_;
   double size_ = 0.0;
 };

@@ -119,7 +119,7 @@ void LateContacts::ask(const math::Pose& pose_b_in_a, const Request& request, co
                        double press) noexcept {
   worker_->scratch.use(scratch_);
   pose_ = pose_b_in_a;
-  pressed_ = press > 0.0 && rest(pair.answer.contacts, std::min(pair.a->mesh().size(), pair.b->mesh().size()));
+  pressed_ = press > 0.0 && rest(pair.answer.contacts, smaller_size(pair));
   if (pressed_) pose_.translation += press * pair.answer.contacts.front().normal;
   place_on_b_ = pose_.inverse() *
                 (pair.answer.contacts.empty() ? Vec3(Vec3::Zero()) : Vec3(pair.answer.contacts.front().position));
@@ -141,7 +141,7 @@ void LateContacts::ask(const math::Pose& pose_b_in_a, const Request& request, co
 
 bool LateContacts::work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair,
                         Spending& spending, double press) noexcept {
-  const double size = std::min(pair.a->mesh().size(), pair.b->mesh().size());
+  const double size = smaller_size(pair);
   if (!spending.may_make_contacts()) {
     note_starved();
     return false;

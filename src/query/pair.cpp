@@ -7,6 +7,7 @@
 
 #include "odds/math/tolerances.hpp"
 #include "query/answer_odds_table.hpp"
+#include "query/flush_answer.hpp"
 #include "query/likeliest_place.hpp"
 #include "query/near_contacts.hpp"
 #include "query/pair_contacts.hpp"
@@ -284,7 +285,7 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
   answer = {};
   pair.hits.clear();
   pair.flush.begin();
-  if (pair.late) pair.late->age(pose_b_in_a, std::min(pair.a->mesh().size(), pair.b->mesh().size()));
+  if (pair.late) pair.late->age(pose_b_in_a, smaller_size(pair));
   const PosedMeshes meshes(pair.a->mesh(), pair.b->mesh(), a.origin(), b.origin(), pose_b_in_a);
   forget_if_elsewhere(meshes, pair);
   search_and_answer(a, b, meshes, pose_b_in_a, request, pair, spending);

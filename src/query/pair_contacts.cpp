@@ -6,6 +6,7 @@
 
 #include "odds/math/tolerances.hpp"
 #include "odds/query/ray.hpp"
+#include "query/flush_answer.hpp"
 #include "query/rough_contacts.hpp"
 #include "query/short_budget.hpp"
 
@@ -62,7 +63,7 @@ void keep(std::span<const Contact> made, Pair::Implementation& pair) noexcept {
 
 /// Metres: what nobody need have measured.
 double unmeasured_depth(const Pair::Implementation& pair) noexcept {
-  return tolerances::unmeasured_depth * std::min(pair.a->mesh().size(), pair.b->mesh().size());
+  return tolerances::unmeasured_depth * smaller_size(pair);
 }
 
 /// From a part of the rim a depth may be anything: a few pieces of a rim may be taken for one lump, which reaches from
@@ -119,8 +120,7 @@ void make_rough_contacts(const PosedMeshes& meshes, const Vec3* known_normal, bo
   const Vec3 towards_a =
       pair.previous_normal.isZero() ? Vec3(by_place + tolerances::came_side * pair.came) : pair.previous_normal;
   spending.reserve_for_contacts(pair.endings.rough);
-  const auto room =
-      std::span(pair.contacts).first(std::min(static_cast<std::size_t>(request.max_contacts), pair.contacts.size()));
+  const std::span<Contact> room = room_for_contacts(request, pair);
   const std::size_t count = rough_contacts(meshes, pair.hits.pairs(), pair.a->is_solid() && pair.b->is_solid(),
                                            towards_a, known_normal, room, [&] { return spending.may_make_contacts(); });
   pair.answer.contacts = room.first(count);
@@ -156,7 +156,7 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   const Vec3 centre_b = meshes.pose().translation + meshes.origin_a();
   const bool single = request.max_contacts <= 1;
   spending.reserve_for_contacts(single ? pair.endings.single : pair.endings.patch, single ? hasty_single_ns : hasty_ns);
-  const double smaller = std::min(pair.a->mesh().size(), pair.b->mesh().size());
+  const double smaller = smaller_size(pair);
   const Vec3* known_normal = pair.known_direction.at(pose_b_in_a, smaller);
   const bool moved_little = most_depth - pair.known_depth.depth() <= tolerances::coherent_motion * smaller;
   note_side(meshes, pair);
@@ -220,7 +220,7 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   } else if (!whole) {  // a single contact, or one far from where the depth was known
     for (Contact& contact : own_contacts(pair)) contact.depth = std::min(contact.depth, most_depth);
   }
-  const bool flush = answer_by_flat_faces(meshes, pose_b_in_a, whole, request, pair, spending);
+  const bool flush = answer_by_flat_faces(meshes, pose_b_in_a, request, pair, spending);
   if (patches.finished() && request.max_contacts > 1) {
     const Contact& first = pair.answer.contacts.front();
     pair.known_direction.note(first.position, first.normal, pose_b_in_a, smaller, pair.answer.contacts_complete);
@@ -234,7 +234,8 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
       pair.carried.rests(pair.answer.contacts.front().position, pose_b_in_a, request.carry_motion * smaller, smaller);
   const bool as_known = rests && known_normal != nullptr && patches.finished() &&
                         std::all_of(pair.answer.contacts.begin(), pair.answer.contacts.end(), is_known);
-  if (pair.answer.contacts_complete || (as_known && request.max_contacts > 1)) {
+  const bool held_back = flush && !pair.flush.gives_all();
+  if (!held_back && (pair.answer.contacts_complete || (as_known && request.max_contacts > 1))) {
     pair.carried.keep(pair.answer.contacts, request.max_contacts, pair.hits.pairs(), pose_b_in_a,
                       pair.answer.contacts_complete ? 0 : pair.answer.contact_pairs);
   }
@@ -272,7 +273,7 @@ bool prove_carried(const PosedMeshes& meshes, Pair::Implementation& pair, Spendi
 bool carry_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request,
                     Pair::Implementation& pair, Spending& spending) noexcept {
   if (request.max_contacts <= 1 || request.polygon_free) return false;
-  const double size = std::min(pair.a->mesh().size(), pair.b->mesh().size());
+  const double size = smaller_size(pair);
   if (!pair.carried.serve(pose_b_in_a, request.max_contacts, request.carry_motion * size, size)) return false;
   if (!prove_carried(meshes, pair, spending)) return false;
   pair.answer.contacts = std::span(pair.contacts).first(pair.carried.write(pose_b_in_a, pair.contacts));

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "odds/query/pair.hpp"
 #include "query/bottom_slice.hpp"
@@ -93,6 +94,16 @@ struct Pair::Implementation {
   std::array<Contact, most_contacts> contacts;  ///< the answer's
   Answer answer;
 };
+
+/// Of both bodies, metres.
+[[nodiscard]] inline double smaller_size(const Pair::Implementation& pair) noexcept {
+  return std::min(pair.a->mesh().size(), pair.b->mesh().size());
+}
+
+/// The pair's memory for as many contacts as are asked for.
+[[nodiscard]] inline std::span<Contact> room_for_contacts(const Request& request, Pair::Implementation& pair) noexcept {
+  return std::span(pair.contacts).first(std::min(static_cast<std::size_t>(request.max_contacts), pair.contacts.size()));
+}
 
 /// Pair::run of what is private.
 void run_pair(Pair::Implementation& pair, const math::Pose& pose_b_in_a, const Request& request) noexcept;

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "odds/math/tolerances.hpp"
+#include "query/flush_answer.hpp"
 #include "query/pair_contacts.hpp"
 #include "query/rough_contacts.hpp"
 
@@ -21,18 +22,6 @@ constexpr double most_hits = 65536.0;
 constexpr double share_of_a_guess = 0.5;
 /// Hits of the work under way that are tried in a run.
 constexpr std::size_t most_tried = 4;
-/// What contacts of one pair of flat faces take where caches are cold; of it its move takes a third.
-constexpr double of_flush_us = 1.1;
-constexpr double of_a_pair_us = 0.8;  ///< and the choice of contacts the rest
-
-double smaller_size(const Pair::Implementation& pair) noexcept {
-  return std::min(pair.a->mesh().size(), pair.b->mesh().size());
-}
-
-/// Memory for as many contacts as are asked for.
-std::span<Contact> room_for_contacts(const Request& request, Pair::Implementation& pair) noexcept {
-  return std::span(pair.contacts).first(std::min(static_cast<std::size_t>(request.max_contacts), pair.contacts.size()));
-}
 
 /// A search that ends early has found hits on one side only. Some of those of the work under way, which has looked
 /// everywhere, still are hits.
@@ -77,13 +66,13 @@ Sample sample_of(const PosedMeshes& meshes, std::span<const TrianglePair> hits, 
 /// What a crossing says of the direction in which the bodies part.
 class Judge {
  public:
-  Judge(const PosedMeshes& meshes, const Pair::Implementation& pair) noexcept
+  /// `anew`: whatever is known of other places.
+  Judge(const PosedMeshes& meshes, const Pair::Implementation& pair, bool anew) noexcept
       : both_solid_(pair.a->is_solid() && pair.b->is_solid()),
-        expected_(pair.previous_normal),
+        expected_(anew ? Vec3(Vec3::Zero()) : pair.previous_normal),
         little_(tolerances::hasty_alike * smaller_size(pair)) {
     const Vec3 by_place = (-meshes.pose().translation).stableNormalized();
-    towards_a_ =
-        pair.previous_normal.isZero() ? Vec3(by_place + tolerances::came_side * pair.came) : pair.previous_normal;
+    towards_a_ = expected_.isZero() ? Vec3(by_place + tolerances::came_side * pair.came) : expected_;
   }
 
   [[nodiscard]] Vote vote_of(const Crossing& crossing) const noexcept {
@@ -110,20 +99,52 @@ class Judge {
   Vec3 towards_a_;
 };
 
+/// What flat faces that lie on each other do not explain. A body that slides along a wall may come down on the floor:
+/// they are learnt from every place that is seen.
+void leave_out_flush(const PosedMeshes& meshes, Sample& sample, Pair::Implementation& pair,
+                     Spending& spending) noexcept {
+  if (!pair.flush.may_be()) return;
+  std::size_t left = 0;
+  for (std::size_t i = 0; i < sample.count; ++i) {
+    const Crossing& crossing = sample.crossings[i];
+    const Vec3 place = crossing.middle() + meshes.origin_a();
+    if (spending.may_make_contacts() && pair.flush.explains_crossing(place, crossing.normal_a, crossing.normal_b) &&
+        pair.flush.overlap()) {
+      continue;
+    }
+    sample.hits[left] = sample.hits[i];
+    sample.crossings[left++] = crossing;
+  }
+  sample.count = left;
+}
+
 /// Contacts from single pairs of triangles. They hold, but hardly push: a wrong one moves a body by no more than what
 /// nobody need have measured.
 void guess_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Vec3* known_normal,
                     const Request& request, Pair::Implementation& pair, Spending& spending) noexcept {
   const double kept_us = (1.0 - share_of_a_guess) * spending.left_us();
-  const Sample sample = sample_of(meshes, pair.hits.pairs(), pair.hasty_runs,
-                                  [&] { return spending.may_make_contacts() && spending.left_us() >= kept_us; });
-  const Judge judge(meshes, pair);
+  Sample sample = sample_of(meshes, pair.hits.pairs(), pair.hasty_runs,
+                            [&] { return spending.may_make_contacts() && spending.left_us() >= kept_us; });
+  leave_out_flush(meshes, sample, pair, spending);
+  pair.answer.contacts = {};
+  if (sample.count == 0) return;
+  // Beside such faces the rest has a direction of its own, of which nothing is known.
+  const bool beside = pair.flush.overlap();
+  if (beside) known_normal = nullptr;
+  const Judge judge(meshes, pair, beside);
   for (const Crossing& crossing : sample.made()) {
+    if (beside) break;
+    // A body that slides along a wall may come down on the floor: faces are learnt from every place that is seen.
+    if (pair.flush.may_be() && spending.may_make_contacts()) {
+      static_cast<void>(
+          pair.flush.explains_crossing(crossing.middle() + meshes.origin_a(), crossing.normal_a, crossing.normal_b));
+    }
     const Vote vote = judge.vote_of(crossing);
     pair.haste.see(vote.weight * vote.direction, vote.weight);
   }
-  const bool each_its_own = known_normal == nullptr && pair.haste.has_seen() && !pair.haste.is_of_one_mind();
-  const Vec3 direction = known_normal != nullptr ? *known_normal : judge.direction_of(sample.made(), pair.haste);
+  const bool each_its_own = !beside && known_normal == nullptr && pair.haste.has_seen() && !pair.haste.is_of_one_mind();
+  const Vec3 direction =
+      known_normal != nullptr ? *known_normal : judge.direction_of(sample.made(), beside ? HastyMemory() : pair.haste);
   const double size = smaller_size(pair);
   // A corner that has just come through is not deeper than its rim is wide, though the triangles reach on.
   const double most_depth = std::min(tolerances::unmeasured_depth * size, extent_of(sample.made()));
@@ -140,7 +161,8 @@ void guess_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, co
                sample.hits[i].a, sample.hits[i].b};
   }
   const double near = tolerances::hasty_spacing * size;
-  const std::size_t all = pair.haste.add_to(room, count, each_its_own ? nullptr : &direction, pose_b_in_a, near);
+  const std::size_t all =
+      pair.haste.add_to(room, count, each_its_own || beside ? nullptr : &direction, pose_b_in_a, near);
   double deepest = 0.0;
   for (Contact& contact : room.first(all)) {
     contact.depth = std::min(contact.depth, tolerances::unmeasured_depth * size);
@@ -167,9 +189,10 @@ void begin_haste(const math::Pose& pose_b_in_a, Pair::Implementation& pair) noex
   pair.haste.begin(pose_b_in_a, tolerances::hasty_slack * size, tolerances::coherent_motion * size);
 }
 
-/// Whether the contacts of earlier poses are of use now, far as the bodies may have moved.
+/// Whether the contacts of earlier poses are of use now, far as the bodies may have moved. Of a wall that a body has
+/// come to since they know nothing.
 bool serves_late(const math::Pose& pose_b_in_a, const Pair::Implementation& pair) noexcept {
-  return pair.late->manifold().serves(pose_b_in_a, smaller_size(pair));
+  return !pair.flush.are_surprised() && pair.late->manifold().serves(pose_b_in_a, smaller_size(pair));
 }
 
 /// Those of them that overlap.
@@ -185,57 +208,6 @@ void write_late(const math::Pose& pose_b_in_a, const Request& request, Pair::Imp
   pair.answer.contact_pairs = manifold.made_from();
 }
 
-/// The contacts of flat faces that lie on each other. `all`: nothing else touches now.
-void write_flush(const PosedMeshes& meshes, bool all, const Request& request, Pair::Implementation& pair,
-                 Spending& spending) noexcept {
-  const std::span<Contact> room = room_for_contacts(request, pair);
-  const auto may_go_on = [&spending] { return spending.left_us() > of_a_pair_us; };
-  pair.answer.contacts = room.first(pair.flush.write(room, may_go_on));
-  pair.answer.contacts_flush = true;
-  pair.answer.contacts_complete = all;
-  pair.answer.contact_pairs = static_cast<std::uint32_t>(pair.answer.contacts.size());
-  double deepest = 0.0;
-  for (const Contact& contact : pair.answer.contacts) deepest = std::max(deepest, contact.depth);
-  pair.known_depth.note(meshes.pose(), deepest);
-}
-
-/// What is known of faces that lie on each other, as they lie now. `measured`: by a patch of all there is.
-void move_flush(const math::Pose& pose_b_in_a, bool measured, Pair::Implementation& pair, Spending& spending) noexcept {
-  pair.flush.move_to(pose_b_in_a, smaller_size(pair), measured,
-                     [&spending] { return spending.left_us() > of_flush_us; });
-}
-
-/// Whether the pair's hits are where faces lie on each other; some of them are looked at, from all over their list.
-bool see_flush(const PosedMeshes& meshes, Pair::Implementation& pair, Spending& spending) noexcept {
-  constexpr std::size_t most_seen = 3;
-  if (!pair.flush.may_be()) return false;
-  const std::span<const TrianglePair> hits = pair.hits.pairs();
-  const std::size_t seen = std::min(hits.size(), most_seen);
-  for (std::size_t i = 0; i < seen && (i == 0 || spending.may_make_contacts()); ++i) {
-    const Crossing crossing = Crossing::of(meshes, hits[i * hits.size() / seen]);
-    const bool explained =
-        pair.flush.explains_crossing(crossing.middle() + meshes.origin_a(), crossing.normal_a, crossing.normal_b);
-    pair.flush.note(explained, false);
-    if (!explained) return false;
-  }
-  return pair.flush.serves();
-}
-
-/// Whether the contacts that a patch of all there is has made, at `pose`, are all where faces lie on each other;
-/// without time to look at all of them, whether those before were.
-bool is_all_flush(std::span<const Contact> contacts, const math::Pose& pose, Pair::Implementation& pair,
-                  Spending& spending) noexcept {
-  constexpr double of_a_contact_us = 0.4;
-  if (!pair.flush.may_be()) return false;
-  bool explained = true;
-  for (const Contact& contact : contacts) {
-    if (spending.left_us() < of_a_contact_us) return pair.flush.serves();
-    explained = explained && pair.flush.explains(contact, pose);
-  }
-  pair.flush.note(explained, true);
-  return pair.flush.serves();
-}
-
 /// For what time is left.
 void work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair,
           Spending& spending) noexcept {
@@ -246,9 +218,10 @@ void work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implement
   spending.reserve_for_contacts(pair.endings.late);
   const double press = request.budget.microseconds < short_us ? tolerances::late_press * smaller_size(pair) : 0.0;
   if (!pair.late->work(pose_b_in_a, request, pair, spending, press)) return;
-  if (!is_all_flush(pair.late->contacts(), pair.late->pose(), pair, spending)) {
-    if (serves_late(pose_b_in_a, pair)) write_late(pose_b_in_a, request, pair);
-    return;
+  if (!is_all_flush(pair.late->contacts(), pair.late->pose(), true, pair, spending)) {
+    if (!serves_late(pose_b_in_a, pair)) return;
+    write_late(pose_b_in_a, request, pair);
+    return add_flush(request, pair, spending);
   }
   // Contacts of both kinds by turns would be as good as a tremor.
   const bool carries = pair.late->gave_all() && pair.answer.contacts_flush && pair.flush.gives_all();
@@ -290,37 +263,13 @@ bool carry_late_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_
   pair.answer.contacts_complete = false;
   if (is_flush) {
     write_flush(meshes, false, request, pair, spending);
+    learn_from_work(meshes, pair, spending);
   } else {
     write_late(pose_b_in_a, request, pair);
+    add_flush(request, pair, spending);
   }
   work(pose_b_in_a, request, pair, spending);
   return true;
-}
-
-bool answer_by_flat_faces(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, bool whole, const Request& request,
-                          Pair::Implementation& pair, Spending& spending) noexcept {
-  if (!request.late_contacts || request.max_contacts <= 1 || !pair.flush.may_be()) return false;
-  if (!(spending.left_us() > of_flush_us)) return false;
-  move_flush(pose_b_in_a, whole, pair, spending);
-  const bool is_flush =
-      whole ? is_all_flush(pair.answer.contacts, pose_b_in_a, pair, spending) : see_flush(meshes, pair, spending);
-  if (is_flush) write_flush(meshes, whole, request, pair, spending);
-  return is_flush;
-}
-
-void judge_by_flat_faces(const PosedMeshes& meshes, const Request& request, Pair::Implementation& pair,
-                         Spending& spending) noexcept {
-  // What is kept back for such an ending learns what this takes, but of a very short time it cannot be enough.
-  constexpr double enough_us = 3.0;
-  const auto has_time = [&](double takes_us) {
-    return request.budget.microseconds >= enough_us || spending.left_us() > takes_us;
-  };
-  Answer& answer = pair.answer;
-  if (answer.has_cell_pair && has_time(0.5 * of_a_pair_us)) pair.flush.straighten(answer.cell_pair);
-  if (!pair.flush.is_certain()) return;
-  answer.verdict = Verdict::hit;
-  answer.probability = std::max(answer.probability, tolerances::flush_probability);
-  if (request.max_contacts > 0 && has_time(of_a_pair_us)) write_flush(meshes, false, request, pair, spending);
 }
 
 void settle_late(const Request& request, Pair::Implementation& pair, Spending& spending) noexcept {
@@ -351,6 +300,7 @@ void make_contacts_over_runs(const PosedMeshes& meshes, const math::Pose& pose_b
     guess_contacts(meshes, pose_b_in_a, known_normal, request, pair, spending);
     pair.late->keep_guess(pair.answer.contacts, pose_b_in_a);
   }
+  if (!pair.answer.contacts_flush) add_flush(request, pair, spending);
   work(pose_b_in_a, request, pair, spending);
 }
 

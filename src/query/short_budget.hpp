@@ -28,17 +28,6 @@ void note_unfinished(const Request& request, Pair::Implementation& pair) noexcep
 void make_contacts_over_runs(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Vec3* known_normal,
                              const Request& request, Pair::Implementation& pair, Spending& spending) noexcept;
 
-/// The contacts of flat faces that lie on each other in place of those of a patch, if it has found nothing else.
-/// `whole`: it is one of all there is. False: the patch's remain.
-[[nodiscard]] bool answer_by_flat_faces(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, bool whole,
-                                        const Request& request, Pair::Implementation& pair,
-                                        Spending& spending) noexcept;
-
-/// After a search that its budget has ended without a hit: where flat faces overlap that lie on each other, the
-/// surfaces meet, and have contacts if there is time; a guess beside such faces has their normal.
-void judge_by_flat_faces(const PosedMeshes& meshes, const Request& request, Pair::Implementation& pair,
-                         Spending& spending) noexcept;
-
 /// At the end of a run: what has become of no use is dropped, where there is time, for others to use its memory.
 void settle_late(const Request& request, Pair::Implementation& pair, Spending& spending) noexcept;
 

@@ -101,21 +101,100 @@ TEST(FlushPair, TakeThePlaceOfAWholePatch) {
   }
 }
 
-TEST(FlushPair, OfAWholePatchThatSaysMoreAreNotAll) {
-  const auto ground = shape_of(made_mesh("made:box:x=4,y=4,z=0.2,cells=4"));
-  const Vec3 place(1.0, 0.0, 0.0);
-  const auto both =
-      shape_of(testing::joined(made_mesh("made:box:x=1,y=1,z=0.2,cells=6"),
-                               made_mesh("made:icosphere:frequency=12,radius=0.1"), place + Vec3(0.0, 0.0, -0.001)));
-  Pair pair = late_pair(both, ground);
+TEST(FlushPair, OfAPatchThatSaysMoreAreNotAll) {
+  // Also of a part of the rim: of so many cells more pairs of triangles meet than are kept.
+  for (const int cells : {6, 90}) {
+    const auto ground = shape_of(made_mesh("made:box:x=4,y=4,z=0.2,cells=" + std::to_string(2 + cells / 2)));
+    const Vec3 place(-0.7, -0.7, 0.0);
+    const auto both =
+        shape_of(testing::joined(made_mesh("made:box:x=1,y=1,z=0.2,cells=" + std::to_string(cells)),
+                                 made_mesh("made:icosphere:frequency=12,radius=0.1"), place + Vec3(0, 0, -0.001)));
+    Pair pair = late_pair(both, ground);
+    Pair plain = std::move(Pair::make(both, ground)).value();
+    Request request;
+    request.max_contacts = 8;
+    int of_ball = 0;
+    int of_ball_without = 0;
+    const auto has_ball = [&](const Answer& answer) {
+      return std::any_of(answer.contacts.begin(), answer.contacts.end(),
+                         [&](const Contact& contact) { return (contact.position - place).head<2>().norm() < 0.1; });
+    };
+    for (int run = 0; run < 40; ++run) {
+      of_ball += has_ball(pair.run(below(1e-4, 0.01 * run), request)) ? 1 : 0;
+      of_ball_without += has_ball(plain.run(below(1e-4, 0.01 * run), request)) ? 1 : 0;
+    }
+    EXPECT_EQ(of_ball, of_ball_without) << cells;
+    EXPECT_GT(of_ball, 25) << cells;
+  }
+}
+
+// What is called complete has all feet, wherever the time runs out.
+TEST(FlushPair, AreCompleteWithAllFeetOnly) {
+  mesh::TriangleMesh table = made_mesh("made:box:x=1,y=1,z=0.1,cells=2");
+  for (const double x : {-0.45, 0.45}) {
+    for (const double y : {-0.45, 0.45}) {
+      table = testing::joined(table, made_mesh("made:box:x=0.1,y=0.1,z=0.1,cells=2"), Vec3(x, y, -0.08));
+    }
+  }
+  const auto floor = shape_of(made_mesh("made:box:x=4,y=4,z=0.2,cells=4"));
+  Pair pair = late_pair(shape_of(std::move(table)), floor);
   Request request;
   request.max_contacts = 8;
-  for (int run = 0; run < 20; ++run) {
-    const Answer& answer = pair.run(below(1e-4, 0.01 * run), request);
-    EXPECT_FALSE(answer.contacts_flush);
-    EXPECT_TRUE(std::any_of(answer.contacts.begin(), answer.contacts.end(),
-                            [&](const Contact& contact) { return (contact.position - place).head<2>().norm() < 0.1; }));
+  request.carry_motion = 1e-5;
+  request.method = Method::exact;
+  const auto at = [](int run) {
+    math::Pose pose;
+    pose.translation = {1e-3 * (run % 50), 0.0, -0.23 + 1e-4};
+    return pose;
+  };
+  realtime::ManualClock clock(200);
+  for (int run = 0; run < 1500; ++run) {  // patches that do not end teach the reserve
+    request.late_contacts = false;
+    request.budget = Budget::time(50.0 + 0.5 * (run % 300));
+    request.budget.clock = clock.clock();
+    static_cast<void>(pair.run(at(run), request));
   }
+  request.late_contacts = true;
+  int complete = 0;
+  for (int run = 0; run < 3000; ++run) {
+    pair.reset();
+    request.budget = {};
+    static_cast<void>(pair.run(at(-2), request));
+    request.budget = Budget::time(50.0 + 0.1 * run);
+    request.budget.clock = clock.clock();
+    const Answer& answer = pair.run(at(run), request);
+    if (!answer.contacts_flush || !answer.contacts_complete) continue;
+    ++complete;
+    bool feet[2][2] = {};
+    for (const Contact& contact : answer.contacts) feet[contact.position.x() > 0.0][contact.position.y() > 0.0] = true;
+    EXPECT_TRUE(feet[0][0] && feet[0][1] && feet[1][0] && feet[1][1]) << run;
+  }
+  EXPECT_GT(complete, 300);
+}
+
+// A crate on the floor at a wall, both of one mesh: while the wall's contacts are guessed or late, the floor's hold.
+TEST(FlushPair, HoldBesideWhatElseTouches) {
+  const auto room = shape_of(testing::joined(made_mesh("made:box:x=2,y=1,z=0.2,cells=4"),
+                                             made_mesh("made:box:x=0.1,y=1,z=0.6,cells=4"), Vec3(0.6, 0, 0.25)));
+  const auto crate = shape_of(made_mesh("made:box:x=0.2,y=0.2,z=0.2,cells=4"));
+  realtime::ManualClock clock(100);
+  Pair pair = late_pair(room, crate);
+  Request request = short_request(clock, 20.0);
+  request.max_contacts = 8;
+  int floor = 0;
+  constexpr int runs = 400;
+  for (int run = 0; run < runs; ++run) {
+    // It comes to the wall with an edge ahead, and turns there.
+    const double yaw = 0.3 + 1e-3 * run;
+    const double reach = 0.1 * (std::cos(yaw) + std::sin(yaw));
+    math::Pose pose;
+    pose.rotation = Eigen::AngleAxisd(yaw, Vec3::UnitZ()).toRotationMatrix();
+    pose.translation = {std::min(0.45 + 1e-3 * run, 0.55 - reach + 1e-4), 0.1, 0.2 - 1e-5};
+    const Answer& answer = pair.run(pose, request);
+    const auto bears = [](const Contact& contact) { return contact.normal.z() < -0.99 && contact.depth > 0.0; };
+    floor += std::count_if(answer.contacts.begin(), answer.contacts.end(), bears) >= 3 ? 1 : 0;
+  }
+  EXPECT_GT(floor, runs - 20);
 }
 
 TEST(FlushPair, OfARunWithoutAProofAreGivenAllTheSame) {
@@ -257,6 +336,26 @@ TEST(FlushPair, TakeNoMemoryInARun) {
   const support::AllocationCounter counter;
   for (int run = 0; run < 50; ++run) static_cast<void>(pair.run(below(1e-5, 0.01 * run), short_request(clock, 5.0)));
   EXPECT_EQ(counter.allocations(), 0U);
+}
+
+// Where the contact of the run before was one with the floor, the wall's is not measured there, through the floor.
+TEST(FlushPair, AContactAtAWallIsNotAsDeepAsTheFloorIsLong) {
+  const auto room = shape_of(testing::joined(made_mesh("made:box:x=2,y=1,z=0.2,cells=4"),
+                                             made_mesh("made:box:x=0.1,y=1,z=0.6,cells=4"), Vec3(0.6, 0, 0.405)));
+  const auto crate = shape_of(made_mesh("made:box:x=0.2,y=0.2,z=0.2,cells=4"));
+  for (const double depth : {6e-11, 1e-8, 1e-5, 1e-4}) {
+    Pair pair = std::move(Pair::make(room, crate)).value();
+    Request request;
+    request.max_contacts = 8;
+    const double yaw = 0.65;
+    const double reach = 0.1 * (std::cos(yaw) + std::sin(yaw));
+    math::Pose pose;
+    pose.rotation = Eigen::AngleAxisd(yaw, Vec3::UnitZ()).toRotationMatrix();
+    for (const double into_wall : {-1e-3, -4.5e-4, 1e-4}) {
+      pose.translation = {0.55 - reach + into_wall, 0.1, 0.2 - depth};
+      for (const Contact& contact : pair.run(pose, request).contacts) EXPECT_LT(contact.depth, 2e-4) << depth;
+    }
+  }
 }
 
 }  // namespace
