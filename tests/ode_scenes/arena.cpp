@@ -202,7 +202,11 @@ void Arena::near(void* self, dGeomID a, dGeomID b) {
       contact.surface.soft_erp = arena.physics_.soft_erp;
     }
     oddsMakeSpeculative(&contact, step_s);
-    dJointAttach(dJointCreateContact(arena.world_, arena.joints_, &contact), body_a, body_b);
+    const dJointID joint = dJointCreateContact(arena.world_, arena.joints_, &contact);
+    dJointAttach(joint, body_a, body_b);
+    // ODE makes the only body of a joint its first.
+    arena.of_contacts_.push_back({body_a != nullptr ? body_a : body_b, body_a != nullptr ? body_b : nullptr, {}});
+    dJointSetFeedback(joint, &arena.of_contacts_.back().forces);
   }
 }
 
@@ -213,10 +217,65 @@ void Arena::step() {
   } else {
     dSpaceCollide(space_, this, &Arena::near);
   }
+  const double measuring = thread_us();
+  note_velocities(before_);
+  const double measured = thread_us();
   dWorldQuickStep(world_, step_s);
+  const double stepped = thread_us();
+  add_work_of_contacts();
+  const double worked = thread_us();
   dJointGroupEmpty(joints_);
-  frame_us.push_back(thread_us() - before);
+  frame_us.push_back(thread_us() - before - (measured - measuring) - (worked - stepped));
   ++steps_;
+  if (steps_ % 10 == 0) look_at_depths();
+}
+
+void Arena::look_at_depths() {
+  for (std::size_t i = 0; i < items_.size(); ++i) {
+    for (std::size_t j = i + 1; j < items_.size(); ++j) {
+      const Item& a = items_[i];
+      const Item& b = items_[j];
+      if (!a.mesh || !b.mesh || (dGeomGetBody(a.geom) == nullptr && dGeomGetBody(b.geom) == nullptr)) continue;
+      dReal box_a[6];
+      dReal box_b[6];
+      dGeomGetAABB(a.geom, box_a);
+      dGeomGetAABB(b.geom, box_b);
+      bool apart = false;
+      for (int axis = 0; axis < 6; axis += 2) {
+        apart = apart || box_a[axis] > box_b[axis + 1] || box_b[axis] > box_a[axis + 1];
+      }
+      if (apart) continue;
+      truly_deepest_m_ = std::max(truly_deepest_m_, truth_.depth(a.mesh, pose_of(a.geom), b.mesh, pose_of(b.geom)));
+    }
+  }
+}
+
+void Arena::note_velocities(std::vector<Motion>& motions) const {
+  motions.clear();
+  for (const Item& item : items_) {
+    const dBodyID body = dGeomGetBody(item.geom);
+    if (body != nullptr) motions.push_back({body, velocity_of(body), spin_of(body)});
+  }
+}
+
+void Arena::add_work_of_contacts() {
+  note_velocities(after_);
+  // An impulse adds itself times the mean of the velocities before and after, whatever else acts.
+  const auto work_on = [this](dBodyID body, const dVector3 force, const dVector3 torque) {
+    for (std::size_t i = 0; i < after_.size(); ++i) {
+      if (after_[i].body != body) continue;
+      return 0.5 * step_s *
+             (ode::vector_of(force).dot(before_[i].velocity + after_[i].velocity) +
+              ode::vector_of(torque).dot(before_[i].spin + after_[i].spin));
+    }
+    return 0.0;
+  };
+  for (const Joint& joint : of_contacts_) {
+    work_j_ += work_on(joint.first, joint.forces.f1, joint.forces.t1);
+    if (joint.second != nullptr) work_j_ += work_on(joint.second, joint.forces.f2, joint.forces.t2);
+  }
+  of_contacts_.clear();
+  most_work_j_ = std::max(most_work_j_, work_j_);
 }
 
 double Arena::kinetic_energy() const {

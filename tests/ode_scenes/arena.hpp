@@ -4,6 +4,7 @@
 #include <ode/ode.h>
 
 #include <cstdint>
+#include <deque>
 #include <limits>
 #include <memory>
 #include <string>
@@ -13,6 +14,7 @@
 #include "odds/mesh/triangle_mesh.hpp"
 #include "odds/ode/odds_frame.h"
 #include "odds/ode/odds_ode.h"
+#include "ode_scenes/truth.hpp"
 
 namespace odds::ode_scenes {
 
@@ -89,6 +91,14 @@ class Arena {
   [[nodiscard]] double time_s() const noexcept { return 0.001 * static_cast<double>(steps_); }
 
   ContactCounts counts;
+  /// Joule: what the impulses of all contacts have added to the bodies' energy since the start, at most. Contacts that
+  /// push apart what was pushed together give back what they took: on balance they add none.
+  [[nodiscard]] double most_work_of_contacts() const noexcept { return most_work_j_; }
+  /// The same, at the end.
+  [[nodiscard]] double work_of_contacts() const noexcept { return work_j_; }
+  /// Metres: how deep meshes really lay in each other, at most, looked at in every tenth step.
+  [[nodiscard]] double truly_deepest_m() const noexcept { return truly_deepest_m_; }
+
   std::vector<double> collide_us;  ///< thread time of each dCollide between two meshes that gave contacts
   std::vector<double> frame_us;    ///< thread time of each step: spaces, contacts, solver
   double damping_per_s = 0.0;      ///< of all bodies' velocities
@@ -103,6 +113,12 @@ class Arena {
   struct Data;
   static void near(void* self, dGeomID a, dGeomID b);
   int collide(dGeomID a, dGeomID b, dContact* contacts) const;
+  struct Motion;
+  /// Of all bodies, in the order of their geoms.
+  void note_velocities(std::vector<Motion>& motions) const;
+  /// By the contacts of this step, whose joints are still there.
+  void add_work_of_contacts();
+  void look_at_depths();
   Data& data_of(const Mesh& mesh);
 
   Collider collider_;
@@ -115,6 +131,22 @@ class Arena {
   std::vector<Item> items_;
   std::unique_ptr<Bullet> bullet_;
   std::unique_ptr<oddsFrameBudget, decltype(&oddsFrameBudgetDestroy)> frame_{nullptr, &oddsFrameBudgetDestroy};
+  struct Motion {
+    dBodyID body;
+    Vec3 velocity;
+    Vec3 spin;
+  };
+  struct Joint {
+    dBodyID first;   ///< that of the feedback's f1; never null
+    dBodyID second;  ///< null: the world
+    dJointFeedback forces;
+  };
+  std::vector<Motion> before_, after_;
+  std::deque<Joint> of_contacts_;  ///< ODE keeps pointers to them
+  double work_j_ = 0.0;
+  double most_work_j_ = 0.0;
+  Truth truth_;
+  double truly_deepest_m_ = 0.0;
   std::uint64_t steps_ = 0;
 };
 

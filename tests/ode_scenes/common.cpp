@@ -21,6 +21,9 @@ void add_common(Run& run, Arena& arena) {
   run.figures.push_back(
       {"most", static_cast<double>(counts.most), "", run.ours ? std::optional<double>(8.0) : std::nullopt});
   run.figures.push_back({"deepest", 1e3 * counts.deepest_m, "mm"});
+  run.figures.push_back({"truly deepest", 1e3 * arena.truly_deepest_m(), "mm"});
+  run.figures.push_back({"most work of contacts", 1e3 * arena.most_work_of_contacts(), "mJ"});
+  run.figures.push_back({"in all", 1e3 * arena.work_of_contacts(), "mJ"});
   run.figures.push_back({"collision, p50", percentile(arena.collide_us, 0.5), "µs"});
   run.figures.push_back({"p99", percentile(arena.collide_us, 0.99), "µs"});
   run.figures.push_back({"p99.9", percentile(arena.collide_us, 0.999), "µs"});
