@@ -97,7 +97,7 @@ std::size_t LateContacts::write_guess(const math::Pose& pose_b_in_a, double size
 void LateContacts::drop() noexcept {
   if (!is_at_work()) return;
   dropped_ = true;
-  scratch_->fiber->resume();  // its clock says that its time is up, and asks nobody
+  if (!scratch_->fiber->is_done()) scratch_->fiber->resume();  // its clock says that its time is up, and asks nobody
   end();
 }
 
@@ -148,16 +148,20 @@ bool LateContacts::work(const math::Pose& pose_b_in_a, const Request& request, P
   }
   if (is_at_work() && is_far(pose_b_in_a, size) && spending.left_us() > enough_to_drop_us) drop();
   if (!is_at_work()) {
+    if (!(spending.left_us() > enough_to_ask_us)) return false;
     scratch_ = pool_->take(last_);
     if (scratch_ == nullptr) return false;
     ask(pose_b_in_a, request, pair, press);
   }
-  spending_ = &spending;
-  const double left_us = spending.left_us();
-  scratch_->fiber->resume();
-  worked_us_ += left_us - spending.left_us();
-  spending_ = nullptr;
-  if (!scratch_->fiber->is_done()) return false;
+  if (!scratch_->fiber->is_done()) {
+    spending_ = &spending;
+    const double left_us = spending.left_us();
+    scratch_->fiber->resume();
+    worked_us_ += left_us - spending.left_us();
+    spending_ = nullptr;
+  }
+  // What was found is taken over by a run that has time for it.
+  if (!scratch_->fiber->is_done() || !(spending.left_us() > enough_to_take_over_us)) return false;
   end();
   note_duration(request);
   const Answer& answer = worker_->answer;

@@ -52,6 +52,10 @@ class LateContacts {
   [[nodiscard]] bool is_wanted() const noexcept { return is_wanted_; }
   /// What is dropped ends like any query that its budget ends, a contact patch perhaps.
   static constexpr double enough_to_drop_us = 8.0;
+  /// A question is copied to where it is worked on, before its work looks at the time.
+  static constexpr double enough_to_ask_us = 1.8;
+  /// What is found is copied, compared with what was known, and looked at.
+  static constexpr double enough_to_take_over_us = 1.2;
   /// Drops the question that is being worked on, if any.
   void drop() noexcept;
   /// This run has left no time for the work.

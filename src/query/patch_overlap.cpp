@@ -28,9 +28,10 @@ bool leaves_through(const Probed& body, std::uint32_t triangle, const Vec3& outw
   return normal.dot(outwards) > tolerances::along_a_face * normal.norm();
 }
 
-/// Signed distance from `point` along `outwards` to the surface where a line in that direction leaves the body.
-bool exit_along(const Probed& body, const Vec3& point, const Vec3& outwards, double reach, double* distance,
-                std::uint32_t* triangle) noexcept {
+/// Signed distance from `point` along `outwards` to the surface where a line in that direction leaves the body. False:
+/// it does not, or the time was up between two rays.
+bool exit_along(const Probed& body, const Vec3& point, const Vec3& outwards, double reach, Watch& watch,
+                double* distance, std::uint32_t* triangle) noexcept {
   const double limit = body.solid ? std::numeric_limits<double>::max() / 4 : reach;
   double ahead = 0.0;
   std::uint32_t triangle_ahead = no_feature;
@@ -40,6 +41,7 @@ bool exit_along(const Probed& body, const Vec3& point, const Vec3& outwards, dou
     *triangle = triangle_ahead;
     return true;
   }
+  if (watch.late()) return false;
   double behind = 0.0;
   std::uint32_t triangle_behind = no_feature;
   const Vec3 backwards = -outwards;
@@ -87,9 +89,10 @@ Probing probe_line(const PatchInput& input, const Vec3& point, const Vec3& norma
   double down = 0.0;
   double up = 0.0;
   Witness found;
-  if (watch.late() || !exit_along(a, point, -normal, reach, &down, &found.triangle_a)) return Probing::unknown;
+  if (watch.late() || !exit_along(a, point, -normal, reach, watch, &down, &found.triangle_a)) return Probing::unknown;
   if (watch.late()) return Probing::unknown;
-  if (!exit_along(b, to_b * (point - input.pose_b_in_a.translation), to_b * normal, reach, &up, &found.triangle_b)) {
+  if (!exit_along(b, to_b * (point - input.pose_b_in_a.translation), to_b * normal, reach, watch, &up,
+                  &found.triangle_b)) {
     return Probing::unknown;
   }
   found.depth = up + down;

@@ -15,6 +15,8 @@ namespace {
 
 /// Budgets of less have no time for a patch beside the search.
 constexpr double short_us = 50.0;
+/// Of less there is nothing left for work on contacts beside those of flat faces.
+constexpr double least_us_of_work = 3.0;
 /// Of a longer one a guess is made from these hits: the first that are found lie on one side.
 constexpr double hits_per_microsecond = 1.0;
 constexpr double most_hits = 65536.0;
@@ -257,6 +259,8 @@ bool carry_late_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_
   if (!is_short(request, pair)) return false;
   move_flush(pose_b_in_a, false, pair, spending);
   const bool is_flush = pair.flush.serves();
+  // Where there is never time for work on contacts, only a search sees what else has come to touch.
+  if (is_flush && request.budget.microseconds < least_us_of_work && ++pair.hasty_runs % 2 == 0) return false;
   if (!is_flush && !serves_late(pose_b_in_a, pair)) return false;
   if (!prove_carried(meshes, pair, spending)) return false;
   begin_haste(pose_b_in_a, pair);
