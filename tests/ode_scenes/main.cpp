@@ -23,14 +23,14 @@ struct Options {
 constexpr double least_budget_us = 0.1;
 
 using Scene = Section (*)(const Plan&);
-constexpr std::pair<const char*, Scene> all[] = {{"stacks", &stacks},        {"peg", &peg_in_hole}, {"gears", &gears},
-                                                 {"bolt", &bolt_and_nut},    {"drag", &drag},       {"crowd", &crowd},
-                                                 {"behaviours", &behaviours}};
+constexpr std::pair<const char*, Scene> all[] = {
+    {"stacks", &stacks}, {"peg", &peg_in_hole}, {"gears", &gears}, {"bolt", &bolt_and_nut},
+    {"drag", &drag},     {"crowd", &crowd},     {"wall", &wall},   {"behaviours", &behaviours}};
 
 int usage() {
   fmt::print(
       stderr,
-      "usage: odds_ode_scenes [--out FOLDER] [--only stacks|peg|gears|bolt|drag|crowd|behaviours] [--quick]\n"
+      "usage: odds_ode_scenes [--out FOLDER] [--only stacks|peg|gears|bolt|drag|crowd|wall|behaviours] [--quick]\n"
       "                       [--seconds S] [--budgets US,US,...] [--work] [--bricks N,N,...] [--gaps MM,MM,...] "
       "[--ours] "
       "[--gimpact]\n"

@@ -23,6 +23,7 @@ struct Plan {
 [[nodiscard]] Section bolt_and_nut(const Plan& plan);
 [[nodiscard]] Section drag(const Plan& plan);
 [[nodiscard]] Section crowd(const Plan& plan);
+[[nodiscard]] Section wall(const Plan& plan);
 [[nodiscard]] Section behaviours(const Plan& plan);
 /// A stack for ten minutes: does it drift on?
 [[nodiscard]] Section soak(double seconds);
