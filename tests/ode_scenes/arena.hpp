@@ -3,6 +3,7 @@
 
 #include <ode/ode.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <limits>
@@ -61,6 +62,14 @@ struct ContactCounts {
   std::uint64_t sideways = 0;  ///< |n.z| < 0.99, in scenes whose true normals are vertical
   int most = 0;                ///< of one collision
   double deepest_m = 0.0;
+
+  [[nodiscard]] double sideways_percent() const noexcept {
+    return 100.0 * static_cast<double>(sideways) / std::max(1.0, static_cast<double>(contacts));
+  }
+  /// Of a collision.
+  [[nodiscard]] double mean() const noexcept {
+    return static_cast<double>(contacts) / std::max(1.0, static_cast<double>(collisions));
+  }
 };
 
 class Bullet;  // meshes of Bullet beside ODE's; only where Bullet is installed

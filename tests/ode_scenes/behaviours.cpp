@@ -16,14 +16,6 @@ Run run_of(const char* variant, const Collider& collider) {
   return {variant, collider.name(), {}, {}, {}, {}, collider.ours()};
 }
 
-double share_sideways(const Arena& arena) {
-  return 100.0 * static_cast<double>(arena.counts.sideways) / std::max(1.0, static_cast<double>(arena.counts.contacts));
-}
-
-double mean_contacts(const Arena& arena) {
-  return static_cast<double>(arena.counts.contacts) / std::max(1.0, static_cast<double>(arena.counts.collisions));
-}
-
 Run bricks(const Collider& collider) {
   Arena arena(collider, plain);
   constexpr double height = 0.248;
@@ -42,9 +34,9 @@ Run bricks(const Collider& collider) {
   }
   Run run = run_of("two bricks of 12 triangles on a mesh, 1 s", collider);
   run.figures = {{"moved", 1e3 * moved, "mm", 1.0},
-                 {"contacts of a collision", mean_contacts(arena), ""},
-                 {"sideways", share_sideways(arena), "%", 0.0}};
-  run.note = fmt::format("moved {:.4g} mm, {:.3g} % sideways", 1e3 * moved, share_sideways(arena));
+                 {"contacts of a collision", arena.counts.mean(), ""},
+                 {"sideways", arena.counts.sideways_percent(), "%", 0.0}};
+  run.note = fmt::format("moved {:.4g} mm, {:.3g} % sideways", 1e3 * moved, arena.counts.sideways_percent());
   return run;
 }
 
@@ -79,9 +71,9 @@ Run slide(const Collider& collider) {
   const double lost = 100.0 * std::abs(velocity_of(dGeomGetBody(slab)).x() - speed) / speed;
   Run run = run_of("a slab of 768 triangles slides over 19,200 without friction, 2 s", collider);
   run.figures = {{"speed changed", lost, "%", 1.0},
-                 {"contacts of a collision", mean_contacts(arena), ""},
-                 {"sideways", share_sideways(arena), "%", 0.0}};
-  run.note = fmt::format("speed changed by {:.3g} %, {:.3g} % sideways", lost, share_sideways(arena));
+                 {"contacts of a collision", arena.counts.mean(), ""},
+                 {"sideways", arena.counts.sideways_percent(), "%", 0.0}};
+  run.note = fmt::format("speed changed by {:.3g} %, {:.3g} % sideways", lost, arena.counts.sideways_percent());
   return run;
 }
 

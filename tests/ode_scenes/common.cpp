@@ -16,8 +16,7 @@ std::vector<Collider> colliders(const Plan& plan, bool primitive) {
 
 void add_common(Run& run, Arena& arena) {
   const ContactCounts& counts = arena.counts;
-  const double collisions = std::max(1.0, static_cast<double>(counts.collisions));
-  run.figures.push_back({"contacts, mean", static_cast<double>(counts.contacts) / collisions, ""});
+  run.figures.push_back({"contacts, mean", counts.mean(), ""});
   run.figures.push_back(
       {"most", static_cast<double>(counts.most), "", run.ours ? std::optional<double>(8.0) : std::nullopt});
   run.figures.push_back({"deepest", 1e3 * counts.deepest_m, "mm"});

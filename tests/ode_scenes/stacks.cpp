@@ -100,12 +100,10 @@ Run run_stack(const Stack& stack, const Collider& collider, double seconds, bool
   const Watched w = watch(arena, bodies, seconds, run.traces[0]);
   const bool stands = w.fell_s < 0.0;
   run.note = stands ? "stands" : fmt::format("falls after {:.2f} s", w.fell_s);
-  const double sideways =
-      100.0 * static_cast<double>(arena.counts.sideways) / std::max(1.0, static_cast<double>(arena.counts.contacts));
   run.figures.push_back({"falls", stands ? 0.0 : 1.0, "", 0.0});
   run.figures.push_back({"drift", w.drift_mm, "mm", most_drift_mm});
   run.figures.push_back({"tilt", w.tilt_deg, "deg"});
-  run.figures.push_back({"sideways", sideways, "%", 0.0});
+  run.figures.push_back({"sideways", arena.counts.sideways_percent(), "%", 0.0});
   run.figures.push_back({"sunk", w.sunk_mm, "mm"});
   run.figures.push_back({"energy gained", w.energy_gain_j, "J"});
   run.figures.push_back({"fastest after 2 s", 1e3 * w.fastest_later, "mm/s"});
