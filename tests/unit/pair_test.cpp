@@ -12,6 +12,7 @@
 #include "support/all_kinds.hpp"
 #include "support/by_queue.hpp"
 #include "support/shapes.hpp"
+#include "support/slabs.hpp"
 
 namespace odds::query {
 namespace {
@@ -310,6 +311,30 @@ TEST(Pair, SaysAQuickEstimatedHitOnlyIfAsked) {
   const Answer& answer = pair.run({Mat3::Identity(), {1.0, 0, 0}}, request);
   EXPECT_EQ(answer.basis, Basis::estimated);
   EXPECT_EQ(answer.verdict, Verdict::hit);
+}
+
+// Where the contact of the run before was one with the floor, the wall's is not measured there, through the floor.
+TEST(Pair, AContactAtAWallIsNotAsDeepAsTheFloorIsLong) {
+  using testing::made_mesh;
+  const auto solid = [](mesh::TriangleMesh mesh) {
+    return Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(mesh))).value();
+  };
+  const auto room = solid(testing::joined(made_mesh("made:box:x=2,y=1,z=0.2,cells=4"),
+                                          made_mesh("made:box:x=0.1,y=1,z=0.6,cells=4"), Vec3(0.6, 0, 0.405)));
+  const auto crate = solid(made_mesh("made:box:x=0.2,y=0.2,z=0.2,cells=4"));
+  for (const double depth : {6e-11, 1e-8, 1e-5, 1e-4}) {
+    Pair pair = std::move(Pair::make(room, crate)).value();
+    Request request;
+    request.max_contacts = 8;
+    const double yaw = 0.65;
+    const double reach = 0.1 * (std::cos(yaw) + std::sin(yaw));
+    math::Pose pose;
+    pose.rotation = Eigen::AngleAxisd(yaw, Vec3::UnitZ()).toRotationMatrix();
+    for (const double into_wall : {-1e-3, -4.5e-4, 1e-4}) {
+      pose.translation = {0.55 - reach + into_wall, 0.1, 0.2 - depth};
+      for (const Contact& contact : pair.run(pose, request).contacts) EXPECT_LT(contact.depth, 2e-4) << depth;
+    }
+  }
 }
 
 }  // namespace
