@@ -4,7 +4,6 @@
 #include <array>
 
 #include "odds/math/tolerances.hpp"
-#include "query/rough_contacts.hpp"
 
 namespace odds::query {
 namespace {
@@ -16,11 +15,14 @@ constexpr double of_a_contact_us = 0.4;  ///< to look whether it is one of flat 
 
 /// What is kept back for an ending learns what this takes, but of a very short time it cannot be enough.
 bool has_time(double takes_us, const Request& request, Spending& spending) noexcept {
-  constexpr double enough_us = 3.0;
-  return request.budget.microseconds >= enough_us || spending.left_us() > takes_us;
+  return request.budget.microseconds >= very_short_us || spending.left_us() > takes_us;
 }
 
 }  // namespace
+
+bool is_of_flat_faces(const PosedMeshes& meshes, const Crossing& crossing, Pair::Implementation& pair) noexcept {
+  return pair.flush.explains_crossing(crossing.middle() + meshes.origin_a(), crossing.normal_a, crossing.normal_b);
+}
 
 void write_flush(const PosedMeshes& meshes, bool all, const Request& request, Pair::Implementation& pair,
                  Spending& spending) noexcept {
@@ -46,11 +48,8 @@ bool see_flush(const PosedMeshes& meshes, Pair::Implementation& pair, Spending& 
   const std::span<const TrianglePair> hits = pair.hits.pairs();
   const std::size_t seen = std::min(hits.size(), most_seen);
   for (std::size_t i = 0; i < seen && (i == 0 || spending.may_make_contacts()); ++i) {
-    const Crossing crossing = Crossing::of(meshes, hits[i * hits.size() / seen]);
-    // What is not explained does not end it: other faces may be known from the next one.
-    pair.flush.note(
-        pair.flush.explains_crossing(crossing.middle() + meshes.origin_a(), crossing.normal_a, crossing.normal_b),
-        false);
+    // What is not of them does not end it: other faces may be known from the next one.
+    pair.flush.note(is_of_flat_faces(meshes, Crossing::of(meshes, hits[i * hits.size() / seen]), pair), false);
   }
   return pair.flush.serves();
 }
@@ -73,7 +72,7 @@ void add_flush(const Request& request, Pair::Implementation& pair, Spending& spe
   std::array<Contact, most_contacts> others;
   std::size_t other_count = 0;
   for (const Contact& contact : pair.answer.contacts) {
-    if (!pair.flush.have(contact)) others[other_count++] = contact;
+    if (!pair.flush.include(contact)) others[other_count++] = contact;
   }
   std::array<Contact, most_contacts> flush;
   const std::size_t flush_count = pair.flush.write(std::span(flush).first(room.size()), [] { return true; });
@@ -92,11 +91,7 @@ void learn_from_work(const PosedMeshes& meshes, Pair::Implementation& pair, Spen
   for (std::size_t i = 0; i < std::min(most_seen, hits.size()) && spending.left_us() > of_flush_us; ++i) {
     const TrianglePair& hit = hits[++pair.hasty_runs * stride % hits.size()];
     spending.spend_triangle_pairs(1);
-    if (!meshes.meet(hit)) continue;
-    const Crossing crossing = Crossing::of(meshes, hit);
-    pair.flush.note(
-        pair.flush.explains_crossing(crossing.middle() + meshes.origin_a(), crossing.normal_a, crossing.normal_b),
-        false);
+    if (meshes.meet(hit)) pair.flush.note(is_of_flat_faces(meshes, Crossing::of(meshes, hit), pair), false);
   }
 }
 
@@ -122,8 +117,10 @@ void judge_by_flat_faces(const PosedMeshes& meshes, const Request& request, Pair
   if (!pair.flush.is_certain()) return;
   answer.verdict = Verdict::hit;
   answer.probability = std::max(answer.probability, tolerances::flush_probability);
-  if (request.max_contacts > 0 && has_time(of_a_pair_us, request, spending))
+  // Where something else is known to touch, a caller's contacts of the last run say more than these alone.
+  if (request.max_contacts > 0 && pair.flush.serves() && has_time(of_a_pair_us, request, spending)) {
     write_flush(meshes, false, request, pair, spending);
+  }
 }
 
 }  // namespace odds::query

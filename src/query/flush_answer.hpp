@@ -5,9 +5,17 @@
 
 #include "query/pair_memory.hpp"
 #include "query/posed_meshes.hpp"
+#include "query/rough_contacts.hpp"
 #include "query/spending.hpp"
 
 namespace odds::query {
+
+/// Budgets of less have time for contacts of flat faces, but none that is left for anything else.
+inline constexpr double very_short_us = 3.0;
+
+/// Whether a crossing is where faces lie on each other that are known, or are found now.
+[[nodiscard]] bool is_of_flat_faces(const PosedMeshes& meshes, const Crossing& crossing,
+                                    Pair::Implementation& pair) noexcept;
 
 /// What is known of faces that lie on each other, as they lie now. `measured`: by a patch of all there is.
 void move_flush(const math::Pose& pose_b_in_a, bool measured, Pair::Implementation& pair, Spending& spending) noexcept;

@@ -122,9 +122,8 @@ bool FlushContacts::place(Entry& entry) const noexcept {
   const mesh::FlatFace& b = faces_b_[entry.face_b];
   const Vec3 normal_b = pose_.rotation * b.normal;
   if (!(-a.normal.dot(normal_b) > tolerances::flush_faces)) return false;
-  // A round face reaches beyond its polygon, and where it tilts it is deeper there.
   const double tilt = (a.normal + normal_b).norm();
-  if (!(tilt * (a.beyond + b.beyond) <= tolerances::unmeasured_depth * size_)) return false;
+  entry.is_deeper_beyond = tilt * (a.beyond + b.beyond) > tolerances::unmeasured_depth * size_;
   const Facing facing({a.normal, a.offset}, {normal_b, b.offset + normal_b.dot(pose_.translation)}, a.centre);
   entry.normal = facing.normal();
 
@@ -261,7 +260,7 @@ bool FlushContacts::explains(const Contact& contact, const math::Pose& pose) noe
   return find(place, agrees) != nullptr;
 }
 
-bool FlushContacts::have(const Contact& contact) const noexcept {
+bool FlushContacts::include(const Contact& contact) const noexcept {
   Place place = place_at(contact.position, pose_);
   place.above = place.beside;
   return std::any_of(entries().begin(), entries().end(), [&](const Entry& entry) {
@@ -278,6 +277,11 @@ void FlushContacts::straighten(Contact& guess) noexcept {
   place.beside = place.above = tolerances::flush_depth * size_;
   place.depth = -std::numeric_limits<double>::infinity();
   if (const Entry* const entry = find(place, agrees)) guess.normal = entry->normal;
+}
+
+bool FlushContacts::tell_all() const noexcept {
+  return std::none_of(entries().begin(), entries().end(),
+                      [](const Entry& entry) { return entry.depth > 0.0 && entry.is_deeper_beyond; });
 }
 
 double FlushContacts::deepest() const noexcept {

@@ -90,11 +90,11 @@ class FlushContacts {
   /// Whether some faces overlap now, whatever else touches.
   [[nodiscard]] bool overlap() const noexcept { return is_placed_ && deepest() > 0.0; }
   /// Whether all that was seen of the bodies' contact was explained, and some of it overlaps now.
-  [[nodiscard]] bool serves() const noexcept { return overlap() && !is_denied_ && doubt_ == 0; }
-  /// Whether something else was seen to touch that no patch has seen yet.
-  [[nodiscard]] bool are_surprised() const noexcept { return overlap() && !is_denied_ && doubt_ > 0; }
+  [[nodiscard]] bool serves() const noexcept { return overlap() && !is_denied_ && doubt_ == 0 && tell_all(); }
+  /// Whether something was seen to touch beside them that no patch has seen yet.
+  [[nodiscard]] bool something_else_came() const noexcept { return overlap() && !is_denied_ && doubt_ > 0; }
   /// Whether a contact, as it is now, is one of those.
-  [[nodiscard]] bool have(const Contact& contact) const noexcept;
+  [[nodiscard]] bool include(const Contact& contact) const noexcept;
   /// Whether their depths are given in full.
   [[nodiscard]] bool gives_all() const noexcept;
   /// Whether some overlap by more than they are uneven: then the surfaces meet.
@@ -126,6 +126,8 @@ class FlushContacts {
     std::uint32_t face_a = 0;
     std::uint32_t face_b = 0;
     double depth = 0.0;  ///< greatest, in the last run; negative: a gap
+    /// A round face reaches beyond its polygon, and tilts by so much that it is deeper there.
+    bool is_deeper_beyond = false;
     GivenDepth given;
     double radius = 0.0;
     Vec3 normal = Vec3::UnitZ();
@@ -151,6 +153,8 @@ class FlushContacts {
   }
   [[nodiscard]] std::span<const Entry> entries() const noexcept { return std::span(entries_).first(count_); }
   [[nodiscard]] double deepest() const noexcept;
+  /// Whether the faces' polygons say how deep they are.
+  [[nodiscard]] bool tell_all() const noexcept;
   /// How the faces of an entry lie now. False: not on each other.
   [[nodiscard]] bool place(Entry& entry) const noexcept;
   /// The same, and how much of the depth is given.

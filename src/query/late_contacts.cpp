@@ -71,6 +71,10 @@ std::span<const TrianglePair> LateContacts::hits() const noexcept {
 
 std::span<const Contact> LateContacts::contacts() const noexcept { return worker_->answer.contacts; }
 
+std::span<const TrianglePair> LateContacts::proofs() const noexcept { return worker_->hits.pairs(); }
+
+const CarriedContacts& LateContacts::carried() const noexcept { return worker_->carried; }
+
 void LateContacts::keep_guess(std::span<const Contact> contacts, const math::Pose& pose_b_in_a) noexcept {
   guesses_ = true;
   guessed_ = std::min(contacts.size(), guess_.size());
@@ -146,9 +150,13 @@ bool LateContacts::work(const math::Pose& pose_b_in_a, const Request& request, P
     note_starved();
     return false;
   }
-  if (is_at_work() && is_far(pose_b_in_a, size) && spending.left_us() > enough_to_drop_us) drop();
+  const bool may_drop = is_at_work() && (scratch_->fiber->is_done() || spending.left_us() > enough_to_drop_us);
+  if (may_drop && is_far(pose_b_in_a, size)) drop();
   if (!is_at_work()) {
-    if (!(spending.left_us() > enough_to_ask_us)) return false;
+    if (!(spending.left_us() > enough_to_ask_us)) {
+      note_starved();
+      return false;
+    }
     scratch_ = pool_->take(last_);
     if (scratch_ == nullptr) return false;
     ask(pose_b_in_a, request, pair, press);
@@ -160,8 +168,11 @@ bool LateContacts::work(const math::Pose& pose_b_in_a, const Request& request, P
     worked_us_ += left_us - spending.left_us();
     spending_ = nullptr;
   }
-  // What was found is taken over by a run that has time for it.
-  if (!scratch_->fiber->is_done() || !(spending.left_us() > enough_to_take_over_us)) return false;
+  if (!scratch_->fiber->is_done()) return false;
+  if (!(spending.left_us() > enough_to_take_over_us)) {  // a run that has time for it does
+    note_starved();
+    return false;
+  }
   end();
   note_duration(request);
   const Answer& answer = worker_->answer;
@@ -170,13 +181,8 @@ bool LateContacts::work(const math::Pose& pose_b_in_a, const Request& request, P
   if (too_many_) return false;
   if (!parted_) copy_what_is_known(*worker_, pair);
   manifold_.keep(answer.contacts, pose_, pose_b_in_a, size, answer.contact_pairs);
-  gave_all_ = !pressed_ && manifold_.gives_all(pose_b_in_a);
-  if (gave_all_) {
-    if (quick_ >= enough_quick) is_wanted_ = false;
-    pair.carried = worker_->carried;
-  } else {  // what is carried would push at once
-    pair.carried.keep_proofs(worker_->hits.pairs());
-  }
+  gives_all_ = !pressed_ && manifold_.gives_all(pose_b_in_a);
+  if (gives_all_ && quick_ >= enough_quick) is_wanted_ = false;
   return true;
 }
 

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "odds/query/pair.hpp"
+#include "query/carried_contacts.hpp"
 #include "query/late_manifold.hpp"
 #include "query/scratch_pool.hpp"
 #include "query/spending.hpp"
@@ -64,17 +65,19 @@ class LateContacts {
   [[nodiscard]] bool is_at_work() const noexcept { return scratch_ != nullptr; }
   /// Goes on with the question while `spending.may_make_contacts()`; without one, asks that of this run first: `pair`
   /// at `pose_b_in_a`, pressed together by `press` (metres) along this run's contacts if they push one way. True: it
-  /// was answered now, and `pair` knows the complete contacts of that pose, to be carried.
+  /// was answered now: contacts() and what follows are of that pose, and `pair` knows what that run knew.
   bool work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair, Spending& spending,
             double press) noexcept;
 
-  /// After work() was true: whether the bodies were not pressed, and nothing is held back: then `pair` carries them.
-  [[nodiscard]] bool gave_all() const noexcept { return gave_all_; }
-
   /// Pairs of triangles that the work has found to meet so far, at the pose that it is about; more than a run finds.
   [[nodiscard]] std::span<const TrianglePair> hits() const noexcept;
-  /// After work() was true: the contacts that it has made, at the pose that it was asked about.
+  /// After work() was true: the contacts that it has made, at the pose that it was asked about, all pairs of triangles
+  /// that meet there, and the contacts to be carried.
   [[nodiscard]] std::span<const Contact> contacts() const noexcept;
+  [[nodiscard]] std::span<const TrianglePair> proofs() const noexcept;
+  [[nodiscard]] const CarriedContacts& carried() const noexcept;
+  /// Whether nothing of their depths is held back, of bodies that were not pressed.
+  [[nodiscard]] bool gives_all() const noexcept { return gives_all_; }
   /// That pose, of B's mesh frame in A's.
   [[nodiscard]] const math::Pose& pose() const noexcept { return pose_; }
   /// Whether this run takes over the last guess, which has left no time for the work.
@@ -108,12 +111,12 @@ class LateContacts {
   std::uint32_t last_ = 0;      ///< in the pool
   Scratch* scratch_ = nullptr;  ///< while a question is being worked on
   Spending* spending_ = nullptr;
-  bool pressed_ = false;   ///< what is being worked on
-  bool gave_all_ = false;  ///< of what was made last
-  bool parted_ = false;    ///< the bodies were apart since it was asked
-  bool too_many_ = false;  ///< the last one had more hits than are kept
-  int clear_runs_ = 0;     ///< in a row
-  bool dropped_ = false;   ///< it is to end as soon as it can
+  bool pressed_ = false;    ///< what is being worked on
+  bool gives_all_ = false;  ///< of what was made last
+  bool parted_ = false;     ///< the bodies were apart since it was asked
+  bool too_many_ = false;   ///< the last one had more hits than are kept
+  int clear_runs_ = 0;      ///< in a row
+  bool dropped_ = false;    ///< it is to end as soon as it can
   bool is_wanted_ = false;
   int quick_ = 0;           ///< questions in a row
   double worked_us_ = 0.0;  ///< on the one that is being worked on

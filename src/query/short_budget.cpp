@@ -15,8 +15,6 @@ namespace {
 
 /// Budgets of less have no time for a patch beside the search.
 constexpr double short_us = 50.0;
-/// Of less there is nothing left for work on contacts beside those of flat faces.
-constexpr double least_us_of_work = 3.0;
 /// Of a longer one a guess is made from these hits: the first that are found lie on one side.
 constexpr double hits_per_microsecond = 1.0;
 constexpr double most_hits = 65536.0;
@@ -109,11 +107,7 @@ void leave_out_flush(const PosedMeshes& meshes, Sample& sample, Pair::Implementa
   std::size_t left = 0;
   for (std::size_t i = 0; i < sample.count; ++i) {
     const Crossing& crossing = sample.crossings[i];
-    const Vec3 place = crossing.middle() + meshes.origin_a();
-    if (spending.may_make_contacts() && pair.flush.explains_crossing(place, crossing.normal_a, crossing.normal_b) &&
-        pair.flush.overlap()) {
-      continue;
-    }
+    if (spending.may_make_contacts() && is_of_flat_faces(meshes, crossing, pair) && pair.flush.overlap()) continue;
     sample.hits[left] = sample.hits[i];
     sample.crossings[left++] = crossing;
   }
@@ -136,11 +130,6 @@ void guess_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, co
   const Judge judge(meshes, pair, beside);
   for (const Crossing& crossing : sample.made()) {
     if (beside) break;
-    // A body that slides along a wall may come down on the floor: faces are learnt from every place that is seen.
-    if (pair.flush.may_be() && spending.may_make_contacts()) {
-      static_cast<void>(
-          pair.flush.explains_crossing(crossing.middle() + meshes.origin_a(), crossing.normal_a, crossing.normal_b));
-    }
     const Vote vote = judge.vote_of(crossing);
     pair.haste.see(vote.weight * vote.direction, vote.weight);
   }
@@ -194,7 +183,7 @@ void begin_haste(const math::Pose& pose_b_in_a, Pair::Implementation& pair) noex
 /// Whether the contacts of earlier poses are of use now, far as the bodies may have moved. Of a wall that a body has
 /// come to since they know nothing.
 bool serves_late(const math::Pose& pose_b_in_a, const Pair::Implementation& pair) noexcept {
-  return !pair.flush.are_surprised() && pair.late->manifold().serves(pose_b_in_a, smaller_size(pair));
+  return !pair.flush.something_else_came() && pair.late->manifold().serves(pose_b_in_a, smaller_size(pair));
 }
 
 /// Those of them that overlap.
@@ -210,6 +199,23 @@ void write_late(const math::Pose& pose_b_in_a, const Request& request, Pair::Imp
   pair.answer.contact_pairs = manifold.made_from();
 }
 
+/// What runs carry from now on while the bodies rest: the contacts that the work has found, or those of flat faces in
+/// their place, for both kinds by turns would be as good as a tremor. Only such as are given in full: what is carried
+/// pushes at once.
+void carry_found(bool is_flush, const math::Pose& pose_b_in_a, const Request& request,
+                 Pair::Implementation& pair) noexcept {
+  const LateContacts& late = *pair.late;
+  if (is_flush) {
+    const bool all = late.gives_all() && pair.answer.contacts_flush && pair.flush.gives_all();
+    pair.carried.keep(all ? pair.answer.contacts : std::span<const Contact>(), request.max_contacts, late.proofs(),
+                      pose_b_in_a);
+  } else if (late.gives_all()) {
+    pair.carried = late.carried();
+  } else {
+    pair.carried.keep_proofs(late.proofs());
+  }
+}
+
 /// For what time is left.
 void work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair,
           Spending& spending) noexcept {
@@ -220,15 +226,11 @@ void work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implement
   spending.reserve_for_contacts(pair.endings.late);
   const double press = request.budget.microseconds < short_us ? tolerances::late_press * smaller_size(pair) : 0.0;
   if (!pair.late->work(pose_b_in_a, request, pair, spending, press)) return;
-  if (!is_all_flush(pair.late->contacts(), pair.late->pose(), true, pair, spending)) {
-    if (!serves_late(pose_b_in_a, pair)) return;
-    write_late(pose_b_in_a, request, pair);
-    return add_flush(request, pair, spending);
-  }
-  // Contacts of both kinds by turns would be as good as a tremor.
-  const bool carries = pair.late->gave_all() && pair.answer.contacts_flush && pair.flush.gives_all();
-  pair.carried.keep(carries ? pair.answer.contacts : std::span<const Contact>(), request.max_contacts,
-                    pair.carried.proofs(), pose_b_in_a);
+  const bool is_flush = is_all_flush(pair.late->contacts(), pair.late->pose(), true, pair, spending);
+  carry_found(is_flush, pose_b_in_a, request, pair);
+  if (is_flush || !serves_late(pose_b_in_a, pair)) return;
+  write_late(pose_b_in_a, request, pair);
+  add_flush(request, pair, spending);
 }
 
 /// Whether contacts of this pair are allowed to be late.
@@ -260,7 +262,7 @@ bool carry_late_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_
   move_flush(pose_b_in_a, false, pair, spending);
   const bool is_flush = pair.flush.serves();
   // Where there is never time for work on contacts, only a search sees what else has come to touch.
-  if (is_flush && request.budget.microseconds < least_us_of_work && ++pair.hasty_runs % 2 == 0) return false;
+  if (is_flush && request.budget.microseconds < very_short_us && ++pair.hasty_runs % 2 == 0) return false;
   if (!is_flush && !serves_late(pose_b_in_a, pair)) return false;
   if (!prove_carried(meshes, pair, spending)) return false;
   begin_haste(pose_b_in_a, pair);
