@@ -34,6 +34,13 @@ void copy_what_is_known(const Pair::Implementation& from, Pair::Implementation& 
   to.known_direction = from.known_direction;
 }
 
+/// Whether there are contacts, and all push in much the same direction.
+bool push_one_way(std::span<const Contact> contacts) noexcept {
+  return !contacts.empty() && std::all_of(contacts.begin(), contacts.end(), [&contacts](const Contact& contact) {
+    return contact.normal.dot(contacts.front().normal) > tolerances::hasty_agreement;
+  });
+}
+
 }  // namespace
 
 LateContacts::LateContacts(const std::shared_ptr<const Shape>& a, const std::shared_ptr<const Shape>& b,
@@ -51,6 +58,7 @@ LateContacts::~LateContacts() {
 void LateContacts::forget() noexcept {
   drop();
   manifold_.forget();
+  last_asked_ = Lateness::long_ago;
   guessed_ = 0;
   owed_ = 0;
   too_many_ = false;
@@ -63,6 +71,8 @@ void LateContacts::age(const math::Pose& pose_b_in_a, double size) noexcept {
   pose_last_ = pose_now_;
   pose_now_ = pose_b_in_a;
   manifold_.age(pose_b_in_a, size);
+  asked_ = std::min(asked_ + 1, Lateness::long_ago);
+  last_asked_ = std::min(last_asked_ + 1, Lateness::long_ago);
 }
 
 std::span<const TrianglePair> LateContacts::hits() const noexcept {
@@ -106,27 +116,24 @@ void LateContacts::drop() noexcept {
 }
 
 bool LateContacts::is_far(const math::Pose& pose_b_in_a, double size) const noexcept {
-  return !(math::motion_bound_about(place_on_b_, pose_, pose_b_in_a, size) <= tolerances::late_motion * size);
+  return !(math::motion_bound_about(place_on_b_, pose_, pose_b_in_a, size) <=
+           LateManifold::motion_carried(asked_) * size);
 }
 
-bool LateContacts::rest(std::span<const Contact> contacts, double size) const noexcept {
-  if (contacts.empty()) return false;
-  const Contact& first = contacts.front();
-  const Vec3 motion = math::motion_of(first.position, pose_last_, pose_now_);
-  return motion.norm() <= tolerances::late_still * size &&
-         std::all_of(contacts.begin(), contacts.end(), [&first](const Contact& contact) {
-           return contact.normal.dot(first.normal) > tolerances::hasty_agreement;
-         });
+bool LateContacts::slide(const Contact& contact, double size) const noexcept {
+  return math::motion_of(contact.position, pose_last_, pose_now_).norm() > tolerances::late_still * size;
 }
 
 void LateContacts::ask(const math::Pose& pose_b_in_a, const Request& request, const Pair::Implementation& pair,
-                       double press) noexcept {
+                       Press press) noexcept {
   worker_->scratch.use(scratch_);
   pose_ = pose_b_in_a;
-  pressed_ = press > 0.0 && rest(pair.answer.contacts, smaller_size(pair));
-  if (pressed_) pose_.translation += press * pair.answer.contacts.front().normal;
-  place_on_b_ = pose_.inverse() *
-                (pair.answer.contacts.empty() ? Vec3(Vec3::Zero()) : Vec3(pair.answer.contacts.front().position));
+  asked_ = 0;
+  const double size = smaller_size(pair);
+  const std::span<const Contact> contacts = pair.answer.contacts;
+  pressed_ = push_one_way(contacts) && (press == Press::all || slide(contacts.front(), size));
+  if (pressed_) pose_.translation += tolerances::late_press * size * contacts.front().normal;
+  place_on_b_ = pose_.inverse() * (contacts.empty() ? Vec3(Vec3::Zero()) : Vec3(contacts.front().position));
   request_ = {};
   request_.method = Method::exact;
   request_.budget.microseconds = ever_us;
@@ -144,7 +151,7 @@ void LateContacts::ask(const math::Pose& pose_b_in_a, const Request& request, co
 }
 
 bool LateContacts::work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair,
-                        Spending& spending, double press) noexcept {
+                        Spending& spending, Press press) noexcept {
   const double size = smaller_size(pair);
   if (!spending.may_make_contacts()) {
     note_starved();
@@ -180,8 +187,9 @@ bool LateContacts::work(const math::Pose& pose_b_in_a, const Request& request, P
   too_many_ = worker_->hits.size() == worker_->hits.capacity();
   if (too_many_) return false;
   if (!parted_) copy_what_is_known(*worker_, pair);
-  manifold_.keep(answer.contacts, pose_, pose_b_in_a, size, answer.contact_pairs);
-  gives_all_ = !pressed_ && manifold_.gives_all(pose_b_in_a);
+  manifold_.keep(answer.contacts, pose_, pose_b_in_a, size, answer.contact_pairs, {asked_, last_asked_});
+  last_asked_ = asked_;
+  gives_all_ = manifold_.gives_all(pose_b_in_a);
   if (gives_all_ && quick_ >= enough_quick) is_wanted_ = false;
   return true;
 }

@@ -63,11 +63,13 @@ class LateContacts {
   void note_starved() noexcept { owed_ = guesses_ ? most_shared : 0; }
   /// Whether a question is being worked on.
   [[nodiscard]] bool is_at_work() const noexcept { return scratch_ != nullptr; }
+  /// Which bodies are pressed together for a question, for what is about to touch while it is being answered.
+  enum class Press : std::uint8_t { what_slides, all };
   /// Goes on with the question while `spending.may_make_contacts()`; without one, asks that of this run first: `pair`
-  /// at `pose_b_in_a`, pressed together by `press` (metres) along this run's contacts if they push one way. True: it
+  /// at `pose_b_in_a`, pressed together along this run's contacts if they push one way and `press` says so. True: it
   /// was answered now: contacts() and what follows are of that pose, and `pair` knows what that run knew.
   bool work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair, Spending& spending,
-            double press) noexcept;
+            Press press) noexcept;
 
   /// Pairs of triangles that the work has found to meet so far, at the pose that it is about; more than a run finds.
   [[nodiscard]] std::span<const TrianglePair> hits() const noexcept;
@@ -77,7 +79,7 @@ class LateContacts {
   [[nodiscard]] std::span<const TrianglePair> proofs() const noexcept;
   [[nodiscard]] const CarriedContacts& carried() const noexcept;
   /// Whether nothing of their depths is held back, of bodies that were not pressed.
-  [[nodiscard]] bool gives_all() const noexcept { return gives_all_; }
+  [[nodiscard]] bool gives_all() const noexcept { return gives_all_ && !pressed_; }
   /// That pose, of B's mesh frame in A's.
   [[nodiscard]] const math::Pose& pose() const noexcept { return pose_; }
   /// Whether this run takes over the last guess, which has left no time for the work.
@@ -98,9 +100,9 @@ class LateContacts {
 
   [[nodiscard]] bool is_far(const math::Pose& pose_b_in_a, double size) const noexcept;
   void ask(const math::Pose& pose_b_in_a, const Request& request, const Pair::Implementation& pair,
-           double press) noexcept;
-  /// Whether the bodies push each other one way, and hardly move there.
-  [[nodiscard]] bool rest(std::span<const Contact> contacts, double size) const noexcept;
+           Press press) noexcept;
+  /// Whether the bodies move where they touch.
+  [[nodiscard]] bool slide(const Contact& contact, double size) const noexcept;
   static void answer(void* self) noexcept;
   static std::int64_t read_clock(void* self) noexcept;
   void end() noexcept;
@@ -118,8 +120,10 @@ class LateContacts {
   int clear_runs_ = 0;      ///< in a row
   bool dropped_ = false;    ///< it is to end as soon as it can
   bool is_wanted_ = false;
-  int quick_ = 0;           ///< questions in a row
-  double worked_us_ = 0.0;  ///< on the one that is being worked on
+  int quick_ = 0;                        ///< questions in a row
+  int asked_ = 0;                        ///< runs since the question
+  int last_asked_ = Lateness::long_ago;  ///< since the one before whose contacts were kept
+  double worked_us_ = 0.0;               ///< on the one that is being worked on
   LateManifold manifold_;
   std::array<HeldContact, most_contacts> guess_;
   std::size_t guessed_ = 0;

@@ -15,29 +15,36 @@
 
 namespace odds::query {
 
+/// How late contacts are, runs.
+struct Lateness {
+  static constexpr int long_ago = 1 << 20;
+  int asked = 0;        ///< since the pose that they are about
+  int last = long_ago;  ///< since the one before it whose contacts were kept: so long a depth may have come unknown
+};
+
 /// Bodies that rest on each other rock by nanometres, and touch on one edge now, on another one then. A patch that is
 /// late by ten runs knows one of them; so those of the patches before it stay where they have come apart by little, and
 /// push again as soon as they touch. What came deep while nobody knew is pushed out gently (GivenDepth). Each follows
-/// the bodies' motion. In A's mesh frame; `size`: of the
-/// smaller body, metres. No allocation.
+/// the bodies' motion. In A's mesh frame; `size`: of the smaller body, metres. No allocation.
 class LateManifold {
  public:
   void forget() noexcept { count_ = 0; }
 
   /// All contacts that there are at `pose`, of B's mesh frame in A's, deepest first, and how many pairs of triangles
-  /// they were made from. `pose_now`: that of this run.
+  /// they were made from. `pose_now`: that of this run. Of what came in some runs a share of one run is given at once.
   void keep(std::span<const Contact> contacts, const math::Pose& pose, const math::Pose& pose_now, double size,
-            std::uint32_t made_from) noexcept {
+            std::uint32_t made_from, const Lateness& lateness = {}) noexcept {
     std::size_t kept = std::min<std::size_t>(contacts.size(), most_contacts);
     std::array<Entry, most> now;
     for (std::size_t i = 0; i < kept; ++i) {
       now[i].held = HeldContact(contacts[i], pose);
-      double given = tolerances::late_least * size;
+      const double depth = now[i].held.parted(pose_now).depth;
+      double given = std::max(tolerances::late_least * size, depth / std::max(lateness.last, 1));
       for (std::size_t k = 0; k < count_; ++k) {
         const bool is_successor = held_[k].depth.holds() && is_same(held_[k].held, now[i].held, size);
         if (is_successor) given = std::max(given, held_[k].depth.given());
       }
-      now[i].depth.begin(now[i].held.parted(pose_now).depth, std::min(contacts[i].depth, given));
+      now[i].depth.begin(depth, std::min(contacts[i].depth, given));
     }
     for (std::size_t i = 0; i < count_ && kept < most; ++i) {
       const auto [depth, slip] = held_[i].held.parted(pose);
@@ -51,6 +58,7 @@ class LateManifold {
     count_ = kept;
     pose_ = pose;
     made_from_ = made_from;
+    asked_ = lateness.asked;
   }
   /// Whether all of each depth is given, but for what rounding took.
   [[nodiscard]] bool gives_all(const math::Pose& pose) const noexcept {
@@ -61,20 +69,28 @@ class LateManifold {
   }
   /// A run begins, at `pose`.
   void age(const math::Pose& pose, double size) noexcept {
+    asked_ = std::min(asked_ + 1, Lateness::long_ago);
     for (Entry& entry : std::span(held_).first(count_)) {
       entry.depth.age(entry.held.parted(pose).depth, tolerances::late_least * size, tolerances::late_rise * size);
     }
   }
 
+  /// How far contacts that were asked for `asked` runs ago are carried, as a part of the smaller body's size: those of
+  /// bodies that slide are new ones all the time, and hold better than none where they have slid to.
+  [[nodiscard]] static double motion_carried(int asked) noexcept {
+    return asked <= tolerances::late_runs ? tolerances::slid_motion : tolerances::late_motion;
+  }
   /// Whether no point within `size` of the first contact has moved farther than they are carried, and one of them at
   /// least overlaps.
   [[nodiscard]] bool serves(const math::Pose& pose, double size) const noexcept {
     if (count_ == 0) return false;
-    if (!(math::motion_bound_about(held_[0].held.on_b(), pose_, pose, size) <= tolerances::late_motion * size))
+    if (!(math::motion_bound_about(held_[0].held.on_b(), pose_, pose, size) <= motion_carried(asked_) * size)) {
       return false;
+    }
+    const double most_slip = slip_carried() * size;
     return std::any_of(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(count_), [&](const Entry& entry) {
       const auto [depth, slip] = entry.held.parted(pose);
-      return depth > 0.0 && slip <= tolerances::late_slip * size;
+      return depth > 0.0 && slip <= most_slip;
     });
   }
 
@@ -87,9 +103,10 @@ class LateManifold {
     };
     std::array<Candidate, most> candidates;
     std::size_t overlapping = 0;
+    const double most_slip = slip_carried() * size;
     for (std::size_t i = 0; i < count_; ++i) {
       const auto [depth, slip] = held_[i].held.parted(pose);
-      if (depth > 0.0 && slip <= tolerances::late_slip * size) candidates[overlapping++] = {depth, i};
+      if (depth > 0.0 && slip <= most_slip) candidates[overlapping++] = {depth, i};
     }
     const std::size_t written = std::min(overlapping, contacts.size());
     const auto begin = candidates.begin();
@@ -113,6 +130,9 @@ class LateManifold {
     HeldContact held;
     GivenDepth depth;
   };
+  [[nodiscard]] double slip_carried() const noexcept {
+    return asked_ <= tolerances::late_runs ? tolerances::slid_slip : tolerances::late_slip;
+  }
   [[nodiscard]] static bool is_same(const HeldContact& x, const HeldContact& y, double size) noexcept {
     return (x.on_a() - y.on_a()).norm() <= tolerances::late_spacing * size &&
            x.normal().dot(y.normal()) > tolerances::hasty_agreement;
@@ -121,6 +141,7 @@ class LateManifold {
   std::array<Entry, most> held_;
   std::size_t count_ = 0;
   std::uint32_t made_from_ = 0;
+  int asked_ = 0;  ///< runs since `pose_`
   math::Pose pose_;
 };
 

@@ -224,7 +224,9 @@ void work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implement
     return pair.late->note_starved();
   }
   spending.reserve_for_contacts(pair.endings.late);
-  const double press = request.budget.microseconds < short_us ? tolerances::late_press * smaller_size(pair) : 0.0;
+  // In a longer budget what rests is asked about as it lies, so that its contacts can be carried.
+  const auto press =
+      request.budget.microseconds < short_us ? LateContacts::Press::all : LateContacts::Press::what_slides;
   if (!pair.late->work(pose_b_in_a, request, pair, spending, press)) return;
   const bool is_flush = is_all_flush(pair.late->contacts(), pair.late->pose(), true, pair, spending);
   carry_found(is_flush, pose_b_in_a, request, pair);

@@ -37,7 +37,7 @@ std::vector<Contact> written(LateManifold& manifold, const math::Pose& pose, std
 TEST(LateManifold, FollowsTheBodies) {
   LateManifold manifold;
   EXPECT_FALSE(manifold.serves({}, size));
-  manifold.keep(std::vector{contact_at(0.1, 0.1, 5e-6)}, {}, {}, size, 12);
+  manifold.keep(std::vector{contact_at(0.1, 0.1, 5e-6)}, {}, {}, size, 12, {.asked = tolerances::late_runs});
   EXPECT_EQ(manifold.made_from(), 12u);
   manifold.age(moved(5e-6), size);
   const auto now = written(manifold, moved(5e-6));
@@ -84,6 +84,28 @@ TEST(LateManifold, ForgetsWhatHasGone) {
   }
 }
 
+// A tool that is dragged slides by a thousandth of its size in a run.
+TEST(LateManifold, CarriesNewContactsFarther) {
+  LateManifold manifold;
+  const auto slid = [](double way) {
+    math::Pose pose = moved(1e-5);
+    pose.translation.y() = way * size;
+    return pose;
+  };
+  const double far = 0.9 * tolerances::slid_slip;
+  ASSERT_LT(far, tolerances::slid_motion);
+  ASSERT_GT(far, tolerances::late_motion);
+  manifold.keep(std::vector{contact_at(0.1, 0.1, 1e-5)}, {}, {}, size, 12, {.asked = tolerances::late_runs - 1});
+  manifold.age(slid(far), size);
+  EXPECT_TRUE(manifold.serves(slid(far), size));
+  EXPECT_EQ(written(manifold, slid(far)).size(), 1u);
+  EXPECT_FALSE(manifold.serves(slid(1.1 * tolerances::slid_slip), size));
+  EXPECT_FALSE(manifold.serves(slid(1.1 * tolerances::slid_motion), size));
+  manifold.age(slid(far), size);
+  EXPECT_FALSE(manifold.serves(slid(far), size)) << "they are old";
+  EXPECT_TRUE(written(manifold, slid(far)).empty());
+}
+
 TEST(LateManifold, TheDeepestComeFirst) {
   LateManifold manifold;
   std::vector<Contact> contacts;
@@ -113,6 +135,18 @@ TEST(LateManifold, GivesADepthNoFasterThanItsRate) {
   }
   EXPECT_NEAR(before, deep, 1e-12) << "all of it in the end";
   EXPECT_NEAR(runs, deep / (tolerances::late_rise * size), 10.0);
+}
+
+// A solver takes some steps to push out what came in one: of what came in four runs, a fourth is as much as came in
+// one.
+TEST(LateManifold, GivesTheShareOfARun) {
+  const double deep = 0.01;
+  for (const int runs : {0, 1, 4, 100, Lateness::long_ago}) {
+    LateManifold manifold;
+    manifold.keep(std::vector{contact_at(0.0, 0.0, deep)}, {}, {}, size, 12, {.asked = 0, .last = runs});
+    EXPECT_NEAR(written(manifold, {})[0].depth, std::max(deep / std::max(runs, 1), least), 1e-12) << runs;
+    EXPECT_EQ(manifold.gives_all({}), runs <= 1);
+  }
 }
 
 // Of a body of half a metre: what is given at first, and after a second at 1 kHz.
@@ -186,7 +220,7 @@ TEST(LateManifold, WhatIsNotWrittenHoldsNothing) {
   LateManifold manifold;
   manifold.keep(std::vector{contact_at(0.0, 0.0, 1e-5)}, {}, {}, size, 12);
   math::Pose slid = moved(0.0);
-  slid.translation.y() = 1.2 * tolerances::late_slip * size;
+  slid.translation.y() = 1.2 * tolerances::slid_slip * size;
   for (int run = 1; run <= 10; ++run) {
     math::Pose deeper = slid;
     deeper.translation.z() = 1e-4 * run;
