@@ -87,6 +87,7 @@ const CarriedContacts& LateContacts::carried() const noexcept { return worker_->
 
 void LateContacts::keep_guess(std::span<const Contact> contacts, const math::Pose& pose_b_in_a) noexcept {
   guesses_ = true;
+  if (is_at_work()) owed_ = most_shared;
   guessed_ = std::min(contacts.size(), guess_.size());
   guess_pose_ = pose_b_in_a;
   for (std::size_t i = 0; i < guessed_; ++i) guess_[i] = HeldContact(contacts[i], pose_b_in_a);
@@ -97,7 +98,7 @@ std::size_t LateContacts::write_guess(const math::Pose& pose_b_in_a, double size
   if (!shares_guess()) return 0;
   --owed_;
   const double motion = math::motion_bound_about(guess_[0].on_b(), guess_pose_, pose_b_in_a, size);
-  if (!(motion <= tolerances::hasty_slack * size)) return 0;
+  if (!(motion <= tolerances::late_slip * size)) return 0;
   std::size_t written = 0;
   for (std::size_t i = 0; i < guessed_ && written < contacts.size(); ++i) {
     Contact now = guess_[i].at(pose_b_in_a);

@@ -93,7 +93,8 @@ class LateContacts {
  private:
   /// Bodies that hop are apart for a few runs.
   static constexpr int most_clear_runs = 8;
-  /// A guess takes a run's time; these that follow are left for the work.
+  /// A guess takes most of a run's time; these that follow are left for the work: where patches take longer than bodies
+  /// stay where they are, only more work brings them back from guesses, which do not hold them, to contacts that do.
   static constexpr int most_shared = 3;
   /// Questions in a row, each answered within half of a run, after which runs are said to be long enough.
   static constexpr int enough_quick = 32;

@@ -81,8 +81,8 @@ class LateManifold {
     return asked <= tolerances::late_runs ? tolerances::slid_motion : tolerances::late_motion;
   }
   /// Whether no point within `size` of the first contact has moved farther than they are carried, and one of them at
-  /// least overlaps.
-  [[nodiscard]] bool serves(const math::Pose& pose, double size) const noexcept {
+  /// least overlaps, or has come apart by less than `margin`, metres.
+  [[nodiscard]] bool serves(const math::Pose& pose, double size, double margin = 0.0) const noexcept {
     if (count_ == 0) return false;
     if (!(math::motion_bound_about(held_[0].held.on_b(), pose_, pose, size) <= motion_carried(asked_) * size)) {
       return false;
@@ -90,13 +90,15 @@ class LateManifold {
     const double most_slip = slip_carried() * size;
     return std::any_of(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(count_), [&](const Entry& entry) {
       const auto [depth, slip] = entry.held.parted(pose);
-      return depth > 0.0 && slip <= most_slip;
+      return depth > -margin && slip <= most_slip;
     });
   }
 
-  /// Writes those that overlap at `pose`, as many as there is room for, the deepest first: one that is left out while
-  /// the bodies come deeper there would push all at once when it is not. Returns how many.
-  [[nodiscard]] std::size_t write(const math::Pose& pose, double size, std::span<Contact> contacts) noexcept {
+  /// Writes those that overlap at `pose`, or have come apart by less than `margin` (a depth below 0), as many as there
+  /// is room for, the deepest first: one that is left out while the bodies come deeper there would push all at once
+  /// when it is not. Returns how many.
+  [[nodiscard]] std::size_t write(const math::Pose& pose, double size, std::span<Contact> contacts,
+                                  double margin = 0.0) noexcept {
     struct Candidate {
       double depth;
       std::size_t entry;
@@ -106,7 +108,7 @@ class LateManifold {
     const double most_slip = slip_carried() * size;
     for (std::size_t i = 0; i < count_; ++i) {
       const auto [depth, slip] = held_[i].held.parted(pose);
-      if (depth > 0.0 && slip <= most_slip) candidates[overlapping++] = {depth, i};
+      if (depth > -margin && slip <= most_slip) candidates[overlapping++] = {depth, i};
     }
     const std::size_t written = std::min(overlapping, contacts.size());
     const auto begin = candidates.begin();

@@ -182,16 +182,17 @@ void begin_haste(const math::Pose& pose_b_in_a, Pair::Implementation& pair) noex
 
 /// Whether the contacts of earlier poses are of use now, far as the bodies may have moved. Of a wall that a body has
 /// come to since they know nothing.
-bool serves_late(const math::Pose& pose_b_in_a, const Pair::Implementation& pair) noexcept {
-  return !pair.flush.something_else_came() && pair.late->manifold().serves(pose_b_in_a, smaller_size(pair));
+bool serves_late(const math::Pose& pose_b_in_a, const Request& request, const Pair::Implementation& pair) noexcept {
+  return !pair.flush.something_else_came() &&
+         pair.late->manifold().serves(pose_b_in_a, smaller_size(pair), request.margin);
 }
 
-/// Those of them that overlap.
+/// Those of them that overlap, or have come apart by less than the margin: what two rays would have to find again.
 void write_late(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair) noexcept {
   LateManifold& manifold = pair.late->manifold();
   const std::span<Contact> room = room_for_contacts(request, pair);
   const double size = smaller_size(pair);
-  const std::size_t written = manifold.write(pose_b_in_a, size, room);
+  const std::size_t written = manifold.write(pose_b_in_a, size, room, request.margin);
   pair.answer.contacts = room.first(pair.haste.hold_beside(room, written, pose_b_in_a, tolerances::hasty_spacing * size,
                                                            tolerances::unmeasured_depth * size));
   pair.answer.contacts_late = true;
@@ -230,7 +231,7 @@ void work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implement
   if (!pair.late->work(pose_b_in_a, request, pair, spending, press)) return;
   const bool is_flush = is_all_flush(pair.late->contacts(), pair.late->pose(), true, pair, spending);
   carry_found(is_flush, pose_b_in_a, request, pair);
-  if (is_flush || !serves_late(pose_b_in_a, pair)) return;
+  if (is_flush || !serves_late(pose_b_in_a, request, pair)) return;
   write_late(pose_b_in_a, request, pair);
   add_flush(request, pair, spending);
 }
@@ -265,7 +266,7 @@ bool carry_late_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_
   const bool is_flush = pair.flush.serves();
   // Where there is never time for work on contacts, only a search sees what else has come to touch.
   if (is_flush && request.budget.microseconds < very_short_us && ++pair.hasty_runs % 2 == 0) return false;
-  if (!is_flush && !serves_late(pose_b_in_a, pair)) return false;
+  if (!is_flush && !serves_late(pose_b_in_a, request, pair)) return false;
   if (!prove_carried(meshes, pair, spending)) return false;
   begin_haste(pose_b_in_a, pair);
   pair.answer.contacts_complete = false;
@@ -300,7 +301,7 @@ void make_contacts_over_runs(const PosedMeshes& meshes, const math::Pose& pose_b
   if (see_flush(meshes, pair, spending)) {
     write_flush(meshes, false, request, pair, spending);
     pair.carried.keep_proofs(pair.hits.pairs());
-  } else if (serves_late(pose_b_in_a, pair)) {
+  } else if (serves_late(pose_b_in_a, request, pair)) {
     write_late(pose_b_in_a, request, pair);
   } else if (!share_guess(pose_b_in_a, request, pair)) {
     spending.reserve_for_contacts(pair.endings.rough);
