@@ -34,13 +34,6 @@ void copy_what_is_known(const Pair::Implementation& from, Pair::Implementation& 
   to.known_direction = from.known_direction;
 }
 
-/// Whether there are contacts, and all push in much the same direction.
-bool push_one_way(std::span<const Contact> contacts) noexcept {
-  return !contacts.empty() && std::all_of(contacts.begin(), contacts.end(), [&contacts](const Contact& contact) {
-    return contact.normal.dot(contacts.front().normal) > tolerances::hasty_agreement;
-  });
-}
-
 }  // namespace
 
 LateContacts::LateContacts(const std::shared_ptr<const Shape>& a, const std::shared_ptr<const Shape>& b,
@@ -87,7 +80,7 @@ const CarriedContacts& LateContacts::carried() const noexcept { return worker_->
 
 void LateContacts::keep_guess(std::span<const Contact> contacts, const math::Pose& pose_b_in_a) noexcept {
   guesses_ = true;
-  if (is_at_work()) owed_ = most_shared;
+  if (is_at_work() && push_one_way(contacts)) owed_ = most_shared;
   guessed_ = std::min(contacts.size(), guess_.size());
   guess_pose_ = pose_b_in_a;
   for (std::size_t i = 0; i < guessed_; ++i) guess_[i] = HeldContact(contacts[i], pose_b_in_a);
@@ -118,7 +111,7 @@ void LateContacts::drop() noexcept {
 
 bool LateContacts::is_far(const math::Pose& pose_b_in_a, double size) const noexcept {
   return !(math::motion_bound_about(place_on_b_, pose_, pose_b_in_a, size) <=
-           LateManifold::motion_carried(asked_) * size);
+           CarriedFar::of(one_way_, asked_).motion * size);
 }
 
 bool LateContacts::slide(const Contact& contact, double size) const noexcept {
@@ -132,7 +125,8 @@ void LateContacts::ask(const math::Pose& pose_b_in_a, const Request& request, co
   asked_ = 0;
   const double size = smaller_size(pair);
   const std::span<const Contact> contacts = pair.answer.contacts;
-  pressed_ = push_one_way(contacts) && (press == Press::all || slide(contacts.front(), size));
+  one_way_ = push_one_way(contacts);
+  pressed_ = one_way_ && (press == Press::all || slide(contacts.front(), size));
   if (pressed_) pose_.translation += tolerances::late_press * size * contacts.front().normal;
   place_on_b_ = pose_.inverse() * (contacts.empty() ? Vec3(Vec3::Zero()) : Vec3(contacts.front().position));
   request_ = {};

@@ -115,6 +115,7 @@ class LateContacts {
   Scratch* scratch_ = nullptr;  ///< while a question is being worked on
   Spending* spending_ = nullptr;
   bool pressed_ = false;    ///< what is being worked on
+  bool one_way_ = false;    ///< the contacts of the run that asked it
   bool gives_all_ = false;  ///< of what was made last
   bool parted_ = false;     ///< the bodies were apart since it was asked
   bool too_many_ = false;   ///< the last one had more hits than are kept

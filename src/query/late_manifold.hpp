@@ -22,6 +22,27 @@ struct Lateness {
   int last = long_ago;  ///< since the one before it whose contacts were kept: so long a depth may have come unknown
 };
 
+/// Whether there are contacts, and all push in much the same direction: a tool on the ground, but not a bolt in its
+/// nut, which another turn of its thread would push elsewhere.
+[[nodiscard]] inline bool push_one_way(std::span<const Contact> contacts) noexcept {
+  return !contacts.empty() && std::all_of(contacts.begin(), contacts.end(), [&contacts](const Contact& contact) {
+    return contact.normal.dot(contacts.front().normal) > tolerances::hasty_agreement;
+  });
+}
+
+/// How far contacts are carried that were asked for `asked` runs ago, as parts of the smaller body's size. Those of
+/// bodies that slide are new ones all the time, and where they have slid to hold better than none; where all push
+/// `one_way`.
+struct CarriedFar {
+  double motion;
+  double slip;
+
+  static constexpr CarriedFar of(bool one_way, int asked) noexcept {
+    return one_way && asked <= tolerances::late_runs ? CarriedFar{tolerances::slid_motion, tolerances::slid_slip}
+                                                     : CarriedFar{tolerances::late_motion, tolerances::late_slip};
+  }
+};
+
 /// Bodies that rest on each other rock by nanometres, and touch on one edge now, on another one then. A patch that is
 /// late by ten runs knows one of them; so those of the patches before it stay where they have come apart by little, and
 /// push again as soon as they touch. What came deep while nobody knew is pushed out gently (GivenDepth). Each follows
@@ -31,15 +52,18 @@ class LateManifold {
   void forget() noexcept { count_ = 0; }
 
   /// All contacts that there are at `pose`, of B's mesh frame in A's, deepest first, and how many pairs of triangles
-  /// they were made from. `pose_now`: that of this run. Of what came in some runs a share of one run is given at once.
+  /// they were made from. `pose_now`: that of this run. Where all push one way, of what came in some runs a share of
+  /// one run is given at once.
   void keep(std::span<const Contact> contacts, const math::Pose& pose, const math::Pose& pose_now, double size,
             std::uint32_t made_from, const Lateness& lateness = {}) noexcept {
+    one_way_ = push_one_way(contacts);
     std::size_t kept = std::min<std::size_t>(contacts.size(), most_contacts);
     std::array<Entry, most> now;
     for (std::size_t i = 0; i < kept; ++i) {
       now[i].held = HeldContact(contacts[i], pose);
       const double depth = now[i].held.parted(pose_now).depth;
-      double given = std::max(tolerances::late_least * size, depth / std::max(lateness.last, 1));
+      const double share = one_way_ ? depth / std::max(lateness.last, 1) : 0.0;
+      double given = std::max(tolerances::late_least * size, share);
       for (std::size_t k = 0; k < count_; ++k) {
         const bool is_successor = held_[k].depth.holds() && is_same(held_[k].held, now[i].held, size);
         if (is_successor) given = std::max(given, held_[k].depth.given());
@@ -75,19 +99,14 @@ class LateManifold {
     }
   }
 
-  /// How far contacts that were asked for `asked` runs ago are carried, as a part of the smaller body's size: those of
-  /// bodies that slide are new ones all the time, and hold better than none where they have slid to.
-  [[nodiscard]] static double motion_carried(int asked) noexcept {
-    return asked <= tolerances::late_runs ? tolerances::slid_motion : tolerances::late_motion;
-  }
   /// Whether no point within `size` of the first contact has moved farther than they are carried, and one of them at
   /// least overlaps, or has come apart by less than `margin`, metres.
   [[nodiscard]] bool serves(const math::Pose& pose, double size, double margin = 0.0) const noexcept {
     if (count_ == 0) return false;
-    if (!(math::motion_bound_about(held_[0].held.on_b(), pose_, pose, size) <= motion_carried(asked_) * size)) {
+    if (!(math::motion_bound_about(held_[0].held.on_b(), pose_, pose, size) <= carried_far().motion * size)) {
       return false;
     }
-    const double most_slip = slip_carried() * size;
+    const double most_slip = carried_far().slip * size;
     return std::any_of(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(count_), [&](const Entry& entry) {
       const auto [depth, slip] = entry.held.parted(pose);
       return depth > -margin && slip <= most_slip;
@@ -105,7 +124,7 @@ class LateManifold {
     };
     std::array<Candidate, most> candidates;
     std::size_t overlapping = 0;
-    const double most_slip = slip_carried() * size;
+    const double most_slip = carried_far().slip * size;
     for (std::size_t i = 0; i < count_; ++i) {
       const auto [depth, slip] = held_[i].held.parted(pose);
       if (depth > -margin && slip <= most_slip) candidates[overlapping++] = {depth, i};
@@ -132,9 +151,7 @@ class LateManifold {
     HeldContact held;
     GivenDepth depth;
   };
-  [[nodiscard]] double slip_carried() const noexcept {
-    return asked_ <= tolerances::late_runs ? tolerances::slid_slip : tolerances::late_slip;
-  }
+  [[nodiscard]] CarriedFar carried_far() const noexcept { return CarriedFar::of(one_way_, asked_); }
   [[nodiscard]] static bool is_same(const HeldContact& x, const HeldContact& y, double size) noexcept {
     return (x.on_a() - y.on_a()).norm() <= tolerances::late_spacing * size &&
            x.normal().dot(y.normal()) > tolerances::hasty_agreement;
@@ -144,6 +161,7 @@ class LateManifold {
   std::size_t count_ = 0;
   std::uint32_t made_from_ = 0;
   int asked_ = 0;  ///< runs since `pose_`
+  bool one_way_ = false;
   math::Pose pose_;
 };
 
