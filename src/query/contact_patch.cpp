@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 
 #include "odds/math/tolerances.hpp"
+#include "query/patch_eight.hpp"
 #include "query/patch_scratch.hpp"
 #include "query/spread_step.hpp"
 
@@ -46,12 +48,19 @@ Vec3 span_centre(const patch::Rim& rim, std::span<const std::uint32_t> indices, 
 void PatchBuilder::Scratch::place_pairs(const PatchInput& input, Watch& watch) noexcept {
   const std::size_t count = std::min(input.hits.size(), pairs.size());
   const std::size_t taken = std::min<std::size_t>(count, input.most_pairs);
-  const std::size_t step = count > 0 ? spread_step(count) : 1;
+  const std::size_t step = count > 0 ? spread_step(count) % count : 0;
+  const patch::Kernels& kernels = patch::kernels();
+  std::array<TrianglePair, patch::eight> some;
   std::size_t next = 0;
   pair_count = 0;
-  for (std::size_t i = 0; i < taken; ++i, next = (next + step) % count) {
-    if (patch::place(input, input.hits[next], pairs[pair_count])) ++pair_count;
-    if (watch.late(i) && pair_count >= least_pairs) break;
+  for (std::size_t i = 0; i < taken; i += some.size()) {
+    if (watch.late_before_next(i) && pair_count >= least_pairs) break;
+    const std::size_t asked = std::min(some.size(), taken - i);
+    for (std::size_t k = 0; k < asked; ++k) {
+      some[k] = input.hits[next];
+      next += next + step < count ? step : step - count;
+    }
+    pair_count += kernels.place(input, {some.data(), asked}, pairs.data() + pair_count);
   }
 }
 
@@ -76,12 +85,23 @@ void PatchBuilder::Scratch::cut_pairs(const PatchInput& input, std::size_t count
                                       Watch& watch) noexcept {
   piece_count = 0;
   const bool skip_silent = input.solid_a && input.solid_b && !silent_too;
+  const patch::Kernels& kernels = patch::kernels();
   std::array<patch::RimPiece, patch::most_pieces_of_a_pair> found;
-  for (std::size_t i = 0; i < count && !watch.late(i); ++i) {
-    if (piece_count + found.size() > pieces.size()) break;
-    const std::size_t cut = patch::rim_pieces(pairs[i], skip_silent, static_cast<std::uint32_t>(i), found);
-    for (std::size_t k = 0; k < cut; ++k) {
-      if (found[k].from.allFinite() && found[k].to.allFinite()) pieces[piece_count++] = found[k];
+  patch::CutEight cut;
+  for (std::size_t i = 0; i < count && !watch.late_before_next(i); i += patch::eight) {
+    const std::size_t lanes = std::min(patch::eight, count - i);
+    kernels.cut(&pairs[i], lanes, cut);
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      if (piece_count + found.size() > pieces.size()) return;
+      const auto pair = static_cast<std::uint32_t>(i + lane);
+      if ((cut.plain >> lane & 1U) != 0) {
+        pieces[piece_count++] = cut.piece(lane, pair);
+        continue;
+      }
+      const std::size_t number = patch::rim_pieces(pairs[pair], skip_silent, pair, found);
+      for (std::size_t k = 0; k < number; ++k) {
+        if (found[k].from.allFinite() && found[k].to.allFinite()) pieces[piece_count++] = found[k];
+      }
     }
   }
 }
@@ -159,20 +179,38 @@ void PatchBuilder::Scratch::straighten(const PatchInput& input, std::span<const 
   }
 }
 
+/// The overlap's corners of up to eight pairs, one pair after the other.
+void PatchBuilder::Scratch::add_witnesses(std::span<const patch::PlacedPair* const> asked,
+                                          const patch::Frame& frame) noexcept {
+  patch::CornersOfEight corners;
+  patch::kernels().corners(asked, frame, Vec3::Zero(), 0.0, corners);
+  const std::array<std::uint16_t, patch::eight> kinds = corners.kinds_of_lanes();
+  for (std::size_t lane = 0; lane < asked.size(); ++lane) {
+    for (unsigned left = kinds[lane]; left != 0; left &= left - 1U) {
+      if (witness_count == witnesses.size()) return;
+      const auto kind = static_cast<std::size_t>(std::countr_zero(left));
+      witnesses[witness_count++] = corners.witness(*asked[lane], frame, kind, lane);
+    }
+  }
+}
+
 /// Fills `witnesses` with the overlap's corners of the pairs of the pieces; at least one.
 void PatchBuilder::Scratch::find_witnesses(Indices indices, const patch::Frame& frame, Watch& watch) noexcept {
   witness_count = 0;
+  std::array<const patch::PlacedPair*, patch::eight> asked;
+  std::size_t count = 0;
   std::uint32_t last_pair = no_feature;
-  for (std::size_t i = 0; i < indices.size() && !watch.late_in_large_steps(i); ++i) {
+  for (std::size_t i = 0; i < indices.size(); ++i) {
     const std::uint32_t pair = pieces[indices[i]].pair;
     if (pair == last_pair) continue;  // the pieces of one pair follow each other
     last_pair = pair;
-    const patch::PlacedPair& placed = pairs[pair];
-    patch::overlap_corners(placed, frame, Vec3::Zero(), [&](const Vec3& on_a, const Vec3& on_b, double depth) noexcept {
-      if (!(depth >= 0.0) || !std::isfinite(depth) || witness_count == witnesses.size()) return;
-      witnesses[witness_count++] = {on_a, on_b, depth, placed.index.a, placed.index.b};
-    });
+    asked[count++] = &pairs[pair];
+    if (count < asked.size()) continue;
+    add_witnesses(asked, frame);
+    count = 0;
+    if (watch.late()) break;
   }
+  if (count > 0) add_witnesses({asked.data(), count}, frame);
   if (witness_count == 0) {  // rounding has parted triangles that only touch
     const patch::RimPiece& piece = pieces[indices[0]];
     const patch::PlacedPair& placed = pairs[piece.pair];

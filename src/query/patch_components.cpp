@@ -32,13 +32,12 @@ void RimSums::add(const RimPiece& piece, const PlacedPair& placed, const Vec3& o
   upper = upper.cwiseMax(piece.from).cwiseMax(piece.to);
   const Vec3 from = piece.from - origin;
   const Vec3 to = piece.to - origin;
-  const double piece_length = (to - from).norm();
   area += 0.5 * from.cross(to);
   gap += to - from;
-  moment += piece_length * 0.5 * (from + to);
-  normals_a += piece_length * placed.normal_a;
-  normals_b += piece_length * placed.normal_b;
-  length += piece_length;
+  moment += piece.length * 0.5 * (from + to);
+  normals_a += piece.length * placed.normal_a;
+  normals_b += piece.length * placed.normal_b;
+  length += piece.length;
 }
 
 void RimSums::add(const RimSums& other) noexcept {

@@ -88,7 +88,7 @@ Vec3 snap_to_face(const PatchView& view, const Vec3& normal, Watch& watch) noexc
     const RimPiece& piece = view.rim.pieces[view.pieces[i]];
     if (!piece.counts) continue;
     const PlacedPair& placed = view.rim.pairs[piece.pair];
-    const double length = piece.along().norm();
+    const double length = piece.length;
     faces.add(accept(placed.normal_b, view.input.solid_b, 1.0), length);
     faces.add(accept(placed.normal_a, view.input.solid_a, -1.0), length);
   }
@@ -103,7 +103,7 @@ Vec3 snap_to_face(const PatchView& view, const Vec3& normal, Watch& watch) noexc
     const RimPiece& piece = view.rim.pieces[view.pieces[i]];
     if (!piece.counts) continue;
     const PlacedPair& placed = view.rim.pairs[piece.pair];
-    const double length = piece.along().norm();
+    const double length = piece.length;
     const Vec3 face_b = accept(placed.normal_b, view.input.solid_b, 1.0);
     const Vec3 face_a = accept(placed.normal_a, view.input.solid_a, -1.0);
     const double by_b = face_b == Vec3::Zero() ? 0.0 : flatness(face_b, flat);
@@ -314,7 +314,7 @@ Vec3 least_overlap(const PatchView& view, const Vec3& area, Watch& watch) noexce
     // Solids on the same side of a wall that both have do not part across it, however little the walls overlap in what
     // a search without time has left of the rim.
     if (solid && in_part && placed.normal_a.dot(placed.normal_b) > tolerances::same_face) continue;
-    const double weight = piece.along().norm();
+    const double weight = piece.length;
     faces.add(placed.normal_b, weight);
     faces.add(-placed.normal_a, weight);
   }
@@ -379,7 +379,7 @@ bool is_of_direction(const PatchView& view, const Vec3& direction, double depth,
     const bool flush =
         view.input.solid_a && view.input.solid_b && placed.normal_a.dot(placed.normal_b) > tolerances::same_face;
     if (flush || leads(placed.normal_b, view.input.solid_b) || leads(-placed.normal_a, view.input.solid_a)) {
-      not_against += piece.along().norm();
+      not_against += piece.length;
     }
   }
   if (watch.late() || !(high - low <= depth)) return false;

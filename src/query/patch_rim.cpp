@@ -20,7 +20,7 @@ Vec3 unit_normal(const Corners& t) noexcept {
   const double longest = std::max({u.squaredNorm(), v.squaredNorm(), w.squaredNorm()});
   const double twice_area = cross.norm();
   if (!(twice_area > tolerances::degenerate_triangle * longest)) return Vec3::Zero();
-  return cross / twice_area;
+  return cross * (1.0 / twice_area);
 }
 
 /// The one or two points in which the border of a triangle meets a plane, given its corners' heights above the plane.
@@ -82,6 +82,7 @@ RimPiece common_piece(const Crossing& a, const Crossing& b, const Vec3& directio
   piece.from = direction.dot(b_low - a_low) > 0.0 ? b_low : a_low;
   piece.to = direction.dot(b_high - a_high) < 0.0 ? b_high : a_high;
   if (direction.dot(piece.to - piece.from) < 0.0) piece.from = piece.to = piece.middle();
+  piece.length = piece.along().norm();
   return piece;
 }
 
@@ -121,6 +122,7 @@ std::size_t coplanar_pieces(const PlacedPair& placed, std::uint32_t pair, std::s
     pieces[count] = RimPiece{};
     pieces[count].from = polygon.points[i];
     pieces[count].to = polygon.points[(i + 1) % polygon.count];
+    pieces[count].length = pieces[count].along().norm();
     pieces[count].pair = pair;
     ++count;
   }

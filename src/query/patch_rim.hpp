@@ -24,6 +24,7 @@ struct PlacedPair {
 struct RimPiece {
   Vec3 from = Vec3::Zero();
   Vec3 to = Vec3::Zero();
+  double length = 0.0;          ///< of along()
   std::uint32_t pair = 0;       ///< index of its PlacedPair
   std::uint32_t component = 0;  ///< set by connect()
   bool counts = true;           ///< false for a copy of another piece (a rim that runs along an edge of a mesh)

@@ -81,6 +81,7 @@ struct PatchBuilder::Scratch {
   patch::Patch patch_along(const Vec3& normal, const PatchInput& input, const patch::RimSums& sums, Indices indices,
                            const patch::Effort& effort, patch::Watch& watch) noexcept;
   void find_witnesses(Indices indices, const patch::Frame& frame, patch::Watch& watch) noexcept;
+  void add_witnesses(std::span<const patch::PlacedPair* const> asked, const patch::Frame& frame) noexcept;
   std::size_t probe(const PatchInput& input, const Vec3& centre, double reach, const patch::Frame& frame,
                     const patch::Chosen& spread, Measured& measured, patch::Watch& watch) noexcept;
   void drop_crumbs() noexcept;

@@ -9,6 +9,7 @@
 #include "odds/query/ray.hpp"
 #include "odds/query/request.hpp"
 #include "query/counted_ray.hpp"
+#include "query/patch_eight.hpp"
 #include "query/search.hpp"
 #include "query/wide/encounter.hpp"
 #include "query/wide/kinetic_front.hpp"
@@ -69,6 +70,7 @@ struct Searches {
   /// The nearest points; the bodies may be apart.
   void (*nearest)(NearestTask& task) noexcept;
   std::optional<RayHit> (*ray)(const RayTask& task) noexcept;
+  patch::Kernels patch;
 };
 
 /// Null where the program was not built with them.

@@ -4,6 +4,7 @@
 #include "query/wide/exact.hpp"
 #include "query/wide/incremental.hpp"
 #include "query/wide/nearest.hpp"
+#include "query/wide/patch_kernel.hpp"
 #include "query/wide/ray_cast.hpp"
 #include "query/wide/time_critical.hpp"
 
@@ -11,8 +12,8 @@ namespace odds::query::wide {
 
 template <class L>
 constexpr Searches searches_of() noexcept {
-  return {L::name,          &Exact<L>::run_from_roots, &TimeCritical<L>::run, &Incremental<L>::run,
-          &Nearest<L>::run, &RayCast<L>::run};
+  return {L::name,          &Exact<L>::run_from_roots, &TimeCritical<L>::run,  &Incremental<L>::run,
+          &Nearest<L>::run, &RayCast<L>::run,          PatchKernel<L>::table()};
 }
 
 }  // namespace odds::query::wide

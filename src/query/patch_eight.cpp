@@ -1,0 +1,37 @@
+#include "query/patch_eight.hpp"
+
+#include <bit>
+
+namespace odds::query::patch {
+
+std::array<std::uint16_t, eight> CornersOfEight::kinds_of_lanes() const noexcept {
+  std::array<std::uint16_t, eight> kinds_of{};
+  for (std::size_t kind = 0; kind < kinds; ++kind) {
+    for (unsigned left = found[kind]; left != 0; left &= left - 1U) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(left));
+      kinds_of[lane] = static_cast<std::uint16_t>(kinds_of[lane] | 1U << kind);
+    }
+  }
+  return kinds_of;
+}
+
+Witness CornersOfEight::witness(const PlacedPair& placed, const Frame& frame, std::size_t kind,
+                                std::size_t lane) const noexcept {
+  const double deep = depth[kind][lane];
+  const Vec3 way = deep * frame.normal;
+  if (kind >= of_b && kind < crossing) {
+    const Vec3& corner = placed.b[kind - of_b];
+    return {corner - way, corner, deep, placed.index.a, placed.index.b};
+  }
+  Vec3 on_a;
+  if (kind < of_b) {
+    on_a = placed.a[kind];
+  } else {
+    const std::size_t side = (kind - crossing) / 3;
+    const Vec3& from = placed.a[side];
+    on_a = from + share[kind][lane] * (placed.a[side == 2 ? 0 : side + 1] - from);
+  }
+  return {on_a, on_a + way, deep, placed.index.a, placed.index.b};
+}
+
+}  // namespace odds::query::patch
