@@ -2,6 +2,7 @@
 #include "query/patch_components.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "odds/math/random.hpp"
@@ -95,58 +96,72 @@ std::span<const RimSums> Components::group(const Rim& rim, bool solid_a, bool so
   return {patches_.data(), kept_};
 }
 
-std::uint32_t Components::root(std::vector<std::uint32_t>& parents, std::uint32_t i) const noexcept {
-  while (parents[i] != i) {
-    parents[i] = parents[parents[i]];
-    i = parents[i];
-  }
-  return i;
+/// The cell of a point: its coordinates as integers, in the last bits of doubles.
+Components::Cell Components::cell_of(const Vec3& cells) noexcept {
+  const auto index = [](double x) noexcept { return std::bit_cast<std::uint64_t>(x + to_integer); };
+  return {index(cells.x()), index(cells.y()), index(cells.z())};
 }
 
-/// The joint at a point; a new one if none is near. Joints stand in cells of a grid; a point near the border of its
-/// cell is looked for beyond it as well.
-std::uint32_t Components::joint_at(const Vec3& point, std::uint32_t piece) noexcept {
-  using Cell = std::array<std::uint64_t, 3>;
-  // Shifted by an odd amount, so that rims in planes of round coordinates do not lie on the borders of cells.
-  const auto cell_of = [this](const Vec3& p) noexcept {
-    constexpr double odd = 1099511627776.3819660;
-    const auto index = [this](double x) noexcept {  // signed, for which processors have an instruction
-      return static_cast<std::uint64_t>(static_cast<std::int64_t>(x * cells_per_metre_ + odd));
-    };
-    return Cell{index(p.x()), index(p.y()), index(p.z())};
-  };
-  const auto slot_of = [this](const Cell& c) noexcept {
-    const std::uint64_t key = c[0] + (c[1] << 21U) + (c[1] >> 43U) + (c[2] << 42U) + (c[2] >> 22U);
-    return static_cast<std::size_t>(math::scramble(key)) & joint_mask_;
-  };
-  const auto find_in = [&](const Cell& cell) noexcept -> std::uint32_t {
-    for (std::size_t slot = slot_of(cell); joint_table_[slot] != 0; slot = (slot + 1) & joint_mask_) {
-      const std::uint32_t joint = joint_table_[slot] - 1;
-      if ((joints_[joint].position - point).cwiseAbs().maxCoeff() <= same_point_) return joint;
-    }
-    return left_out;
-  };
-  const Cell home = cell_of(point);
-  std::uint32_t known = find_in(home);
-  const Cell low = cell_of(point - Vec3::Constant(same_point_));
-  const Cell high = cell_of(point + Vec3::Constant(same_point_));
-  if (low != high) {
-    for (unsigned corner = 0; corner < 8 && known == left_out; ++corner) {
-      known = find_in({(corner & 1U) != 0 ? high[0] : low[0], (corner & 2U) != 0 ? high[1] : low[1],
-                       (corner & 4U) != 0 ? high[2] : low[2]});
-    }
+std::size_t Components::slot_of(const Cell& cell) const noexcept {
+  // Multipliers of L'Ecuyer, Tables of Linear Congruential Generators, Math. of Computation 68, 1999.
+  const std::uint64_t key =
+      cell[0] * 2862933555777941757ULL + cell[1] * 3202034522624059733ULL + cell[2] * 3935559000370003845ULL;
+  return static_cast<std::size_t>(key >> 32U) & joint_mask_;
+}
+
+std::uint32_t Components::find_joint(const Vec3& point, std::size_t slot) const noexcept {
+  for (; joint_table_[slot] != 0; slot = (slot + 1) & joint_mask_) {
+    const std::uint32_t joint = joint_table_[slot] - 1;
+    if ((joints_[joint].position - point).cwiseAbs().maxCoeff() <= same_point_) return joint;
   }
+  return left_out;
+}
+
+/// Joints stand in cells of a grid; a point near the border of its cell is looked for beyond it as well.
+std::uint32_t Components::find_beyond(const Vec3& point, const Vec3& cells) const noexcept {
+  const Cell low = cell_of(cells - Vec3::Constant(near_border));
+  const Cell high = cell_of(cells + Vec3::Constant(near_border));
+  std::uint32_t known = left_out;
+  for (unsigned corner = 0; corner < 8 && known == left_out; ++corner) {
+    known = find_joint(point, slot_of({(corner & 1U) != 0 ? high[0] : low[0], (corner & 2U) != 0 ? high[1] : low[1],
+                                       (corner & 4U) != 0 ? high[2] : low[2]}));
+  }
+  return known;
+}
+
+/// The joint at a point; a new one if none is near.
+std::uint32_t Components::joint_at(const Vec3& point, std::uint32_t piece) noexcept {
+  // Shifted by an odd amount, so that rims in planes of round coordinates do not lie on the borders of cells.
+  const Vec3 cells = cells_per_metre_ * point + Vec3::Constant(0.3819660);
+  const std::size_t home = slot_of(cell_of(cells));
+  const std::uint32_t known = find_joint(point, home);
   if (known != left_out) return known;
-  std::size_t slot = slot_of(home);
+  const auto off_middle = [](double x) noexcept { return std::abs(x - ((x + to_integer) - to_integer)); };
+  const double farthest = std::max({off_middle(cells.x()), off_middle(cells.y()), off_middle(cells.z())});
+  if (!(farthest < 0.5 - near_border)) {
+    const std::uint32_t beyond = find_beyond(point, cells);
+    if (beyond != left_out) return beyond;
+  }
+  std::size_t slot = home;
   while (joint_table_[slot] != 0) slot = (slot + 1) & joint_mask_;
   const auto joint = static_cast<std::uint32_t>(joint_count_++);
-  joints_[joint] = {point, 0, piece};
+  joints_[joint] = {point, 0, piece, left_out};
   joint_table_[slot] = joint + 1;
   return joint;
 }
 
-/// Remembers a directed piece; true if the same was there before.
+/// Remembers a directed piece; true if the same was there before. Of nearly all joints one piece leaves: only others
+/// are looked up.
 bool Components::is_copy(std::uint32_t from, std::uint32_t to) noexcept {
+  std::uint32_t& first = joints_[from].leads_to;
+  if (first == left_out) {
+    first = to;
+    return false;
+  }
+  return first == to || is_another_copy(from, to);
+}
+
+bool Components::is_another_copy(std::uint32_t from, std::uint32_t to) noexcept {
   const std::uint64_t key = (static_cast<std::uint64_t>(from + 1) << 32U) | (to + 1);
   const std::size_t mask = copy_mask_;
   std::size_t slot = static_cast<std::size_t>(math::scramble(key)) & mask;
@@ -167,7 +182,7 @@ void Components::prepare(const Rim& rim, Watch& watch) noexcept {
     reach = std::max(reach, piece.from.cwiseAbs().maxCoeff());
   }
   same_point_ = std::max(tolerances::same_joint * extent, tolerances::on_plane * reach);
-  const double cell = 256.0 * same_point_;
+  const double cell = same_points_per_cell * same_point_;
   cells_per_metre_ = cell > 1e-290 ? 1.0 / cell : 0.0;  // so small a rim is one cell
   joint_mask_ = table_size(2 * rim.pieces.size()) - 1;  // only as much of the tables as is needed, for clearing costs
   copy_mask_ = table_size(rim.pieces.size()) - 1;
@@ -184,6 +199,7 @@ void Components::connect(const Rim& rim, Watch& watch) noexcept {
     const std::uint32_t to = joint_at(piece.to - rim.origin, i);
     ends_[i] = {from, to};
     for (const std::uint32_t joint : {from, to}) {
+      if (joints_[joint].first_piece == i) continue;
       const std::uint32_t here = root(piece_parents_, i);
       const std::uint32_t there = root(piece_parents_, joints_[joint].first_piece);
       piece_parents_[std::max(here, there)] = std::min(here, there);

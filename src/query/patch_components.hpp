@@ -48,6 +48,7 @@ struct Rim {
 /// Finds the patches of a rim. All memory is taken at construction.
 class Components {
  public:
+  static constexpr std::uint32_t left_out = 0xffffffffU;
   static constexpr std::size_t most = 32;  ///< curves that are kept apart; of more, the shortest are left out
 
   Components(std::size_t most_pieces, std::size_t most_pairs);
@@ -56,19 +57,27 @@ class Components {
   /// the sums of each patch; nothing if the time was up before it was done.
   std::span<const RimSums> group(const Rim& rim, bool solid_a, bool solid_b, Watch& watch) noexcept;
 
-  static constexpr std::uint32_t left_out = 0xffffffffU;
-
  private:
   struct Joint {
     Vec3 position = Vec3::Zero();
     std::int32_t balance = 0;  ///< pieces that leave minus pieces that enter
     std::uint32_t first_piece = 0;
+    std::uint32_t leads_to = left_out;  ///< where the first piece that leaves it ends
   };
+  using Cell = std::array<std::uint64_t, 3>;
+  static constexpr double same_points_per_cell = 256.0;
+  static constexpr double near_border = 2.0 / same_points_per_cell;  ///< in cells; twice as far as two joints are one
+  static constexpr double to_integer = 0x1.8p52;                     ///< added, it leaves no digits behind the point
 
+  [[nodiscard]] static Cell cell_of(const Vec3& cells) noexcept;
+  [[nodiscard]] std::size_t slot_of(const Cell& cell) const noexcept;
+  [[nodiscard]] std::uint32_t find_joint(const Vec3& point, std::size_t slot) const noexcept;
+  [[nodiscard]] std::uint32_t find_beyond(const Vec3& point, const Vec3& cells) const noexcept;
   std::uint32_t joint_at(const Vec3& point, std::uint32_t piece) noexcept;
   void prepare(const Rim& rim, Watch& watch) noexcept;
   void connect(const Rim& rim, Watch& watch) noexcept;
   bool is_copy(std::uint32_t from, std::uint32_t to) noexcept;
+  bool is_another_copy(std::uint32_t from, std::uint32_t to) noexcept;
   void sum_up(const Rim& rim, Watch& watch) noexcept;
   void keep_the_longest() noexcept;
   std::span<const std::uint32_t> roots() noexcept;
@@ -77,7 +86,13 @@ class Components {
   void join_neighbours(const Rim& rim, Watch& watch) noexcept;
   void join(std::uint32_t i, std::uint32_t j) noexcept;
   void settle(const Rim& rim, Watch& watch) noexcept;
-  std::uint32_t root(std::vector<std::uint32_t>& parents, std::uint32_t i) const noexcept;
+  static std::uint32_t root(std::vector<std::uint32_t>& parents, std::uint32_t i) noexcept {
+    while (parents[i] != i) {
+      parents[i] = parents[parents[i]];
+      i = parents[i];
+    }
+    return i;
+  }
 
   std::vector<Joint> joints_;
   std::vector<std::uint32_t> joint_table_;                     ///< open addressing, 0: free, else joint + 1

@@ -69,47 +69,92 @@ struct Directions {
 
 /// How much a face normal counts as the flat face `flat`: 1 up to half a degree, 0 from three degrees on.
 double flatness(const Vec3& normal, const Vec3& flat) noexcept {
-  if (normal.dot(flat) > 1.0 - 0.5 * tolerances::flat_from * tolerances::flat_from) return 1.0;
+  constexpr double far_off = 0.99;  // the cosine of eight degrees
+  const double agreement = normal.dot(flat);
+  if (agreement > 1.0 - 0.5 * tolerances::flat_from * tolerances::flat_from) return 1.0;
+  if (std::abs(agreement) < far_off) return 0.0;
   return 1.0 - smooth_step(tolerances::flat_from, tolerances::flat_to, normal.cross(flat).norm());
 }
+
+/// The faces that a flat patch may lie on. Of some triangles of a rim one is on such a face and one is not, in no
+/// order: the usual way is without branches.
+class FlatFaces {
+ public:
+  FlatFaces(const PatchView& view, const Vec3& normal) noexcept
+      : view_(view),
+        normal_(normal),
+        least_b_(view.input.solid_b ? 0.0 : -2.0),
+        most_a_(view.input.solid_a ? 0.0 : 2.0) {}
+
+  void add(const RimPiece& piece) noexcept {
+    const PlacedPair& placed = view_.rim.pairs[piece.pair];
+    add(placed.normal_b, sign_of_b(placed), piece.length);
+    add(placed.normal_a, sign_of_a(placed), piece.length);
+  }
+  /// That of most of the rim; zero if there is none.
+  [[nodiscard]] Vec3 heaviest() const noexcept {
+    if (faces_.count == 0) return Vec3::Zero();
+    const auto heaviest =
+        std::max_element(faces_.ones.begin(), faces_.ones.begin() + static_cast<std::ptrdiff_t>(faces_.count),
+                         [](const auto& i, const auto& j) { return i.weight < j.weight; });
+    return unit_or_zero(heaviest->sum);
+  }
+  [[nodiscard]] bool empty() const noexcept { return faces_.count == 0; }
+  /// Adds a piece's share of a flat face, and the normals of its triangles by what they have of it.
+  void weigh(const RimPiece& piece, const Vec3& flat, double& share, Vec3& mean) const noexcept {
+    const PlacedPair& placed = view_.rim.pairs[piece.pair];
+    const double sign_b = sign_of_b(placed);
+    const double sign_a = sign_of_a(placed);
+    const double by_b = std::abs(sign_b) * flatness(sign_b * placed.normal_b, flat);
+    const double by_a = std::abs(sign_a) * flatness(sign_a * placed.normal_a, flat);
+    share += piece.length * std::max(by_a, by_b);
+    mean += piece.length * ((by_b * sign_b) * placed.normal_b + (by_a * sign_a) * placed.normal_a);
+  }
+
+ private:
+  /// What turns the face along the patch's normal, 1 or -1; 0 if it does not face that way, or leads the other way.
+  [[nodiscard]] double sign_of_b(const PlacedPair& placed) const noexcept {
+    const double facing = placed.normal_b.dot(normal_);
+    return std::abs(facing) > steepest && facing >= least_b_ ? std::copysign(1.0, facing) : 0.0;
+  }
+  [[nodiscard]] double sign_of_a(const PlacedPair& placed) const noexcept {
+    const double facing = placed.normal_a.dot(normal_);
+    return std::abs(facing) > steepest && facing <= most_a_ ? std::copysign(1.0, facing) : 0.0;
+  }
+  void add(const Vec3& face, double sign, double length) noexcept {
+    if (faces_.count == 0) return faces_.add(sign * face, length);
+    Directions::One& first = faces_.ones[0];
+    const bool same = sign * face.dot(first.first) > tolerances::same_face;
+    const double weight = same ? length : 0.0;
+    first.sum += (weight * sign) * face;
+    first.weight += weight;
+    if (sign != 0.0 && !same) [[unlikely]]
+      faces_.add(sign * face, length);
+  }
+
+  static constexpr double steepest = 0.8;
+  const PatchView& view_;
+  const Vec3& normal_;
+  double least_b_;
+  double most_a_;
+  Directions faces_;
+};
 
 /// On a flat patch (a face of one body carries nearly all of the rim) the face's normal is the better one: where a face
 /// hangs over a ledge, the vector area leans by depth / width, and where parts of the rim are missing, by more.
 Vec3 snap_to_face(const PatchView& view, const Vec3& normal, Watch& watch) noexcept {
-  Directions faces;
-  const auto towards = [&normal](const Vec3& face) noexcept {
-    const double facing = face.dot(normal);
-    return std::abs(facing) > 0.8 ? Vec3(std::copysign(1.0, facing) * face) : Vec3::Zero();
-  };
-  const auto accept = [&](const Vec3& face, bool solid, double sign) noexcept {
-    return solid && sign * face.dot(normal) < 0.0 ? Vec3::Zero() : towards(face);
-  };
+  FlatFaces faces(view, normal);
   for (std::size_t i = 0; i < view.pieces.size() && !watch.late(i); ++i) {
     const RimPiece& piece = view.rim.pieces[view.pieces[i]];
-    if (!piece.counts) continue;
-    const PlacedPair& placed = view.rim.pairs[piece.pair];
-    const double length = piece.length;
-    faces.add(accept(placed.normal_b, view.input.solid_b, 1.0), length);
-    faces.add(accept(placed.normal_a, view.input.solid_a, -1.0), length);
+    if (piece.counts) faces.add(piece);
   }
-  if (faces.count == 0) return normal;
-  const auto heaviest =
-      std::max_element(faces.ones.begin(), faces.ones.begin() + static_cast<std::ptrdiff_t>(faces.count),
-                       [](const auto& i, const auto& j) { return i.weight < j.weight; });
-  const Vec3 flat = unit_or_zero(heaviest->sum);
+  if (faces.empty()) return normal;
+  const Vec3 flat = faces.heaviest();
   double share = 0.0;
   Vec3 mean = Vec3::Zero();
   for (std::size_t i = 0; i < view.pieces.size() && !watch.late(i); ++i) {
     const RimPiece& piece = view.rim.pieces[view.pieces[i]];
-    if (!piece.counts) continue;
-    const PlacedPair& placed = view.rim.pairs[piece.pair];
-    const double length = piece.length;
-    const Vec3 face_b = accept(placed.normal_b, view.input.solid_b, 1.0);
-    const Vec3 face_a = accept(placed.normal_a, view.input.solid_a, -1.0);
-    const double by_b = face_b == Vec3::Zero() ? 0.0 : flatness(face_b, flat);
-    const double by_a = face_a == Vec3::Zero() ? 0.0 : flatness(face_a, flat);
-    share += length * std::max(by_a, by_b);
-    mean += length * (by_b * face_b + by_a * face_a);
+    if (piece.counts) faces.weigh(piece, flat, share, mean);
   }
   if (watch.late()) return normal;
   mean = unit_or_zero(mean);
