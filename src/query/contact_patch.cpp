@@ -298,8 +298,10 @@ Patch PatchBuilder::Scratch::patch_along(const Vec3& normal, const PatchInput& i
   const double radius = 0.5 * sums.diagonal();
   const Witness deepest = patch::deepest_of({witnesses.data(), witness_count}, frame, centre, radius);
   patch::Extremes extremes(frame, fan, centre, deepest);
-  for (std::size_t i = 0; i < witness_count && !watch.late(i); ++i) extremes.add(witnesses[i]);
-
+  const std::span<const Witness> found{witnesses.data(), witness_count};
+  for (std::size_t i = 0; i < found.size() && !watch.late_before_next(i); i += patch::Extremes::at_once) {
+    extremes.add(found.subspan(i, std::min(patch::Extremes::at_once, found.size() - i)));
+  }
   if (watch.late()) return made;
   made.centre = centre;
   const double lever = (input.reference_a - centre).norm();

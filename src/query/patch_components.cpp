@@ -2,7 +2,6 @@
 #include "query/patch_components.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "odds/math/random.hpp"
@@ -94,27 +93,6 @@ std::span<const RimSums> Components::group(const Rim& rim, bool solid_a, bool so
   settle(rim, watch);
   if (watch.late()) return {};
   return {patches_.data(), kept_};
-}
-
-/// The cell of a point: its coordinates as integers, in the last bits of doubles.
-Components::Cell Components::cell_of(const Vec3& cells) noexcept {
-  const auto index = [](double x) noexcept { return std::bit_cast<std::uint64_t>(x + to_integer); };
-  return {index(cells.x()), index(cells.y()), index(cells.z())};
-}
-
-std::size_t Components::slot_of(const Cell& cell) const noexcept {
-  // Multipliers of L'Ecuyer, Tables of Linear Congruential Generators, Math. of Computation 68, 1999.
-  const std::uint64_t key =
-      cell[0] * 2862933555777941757ULL + cell[1] * 3202034522624059733ULL + cell[2] * 3935559000370003845ULL;
-  return static_cast<std::size_t>(key >> 32U) & joint_mask_;
-}
-
-std::uint32_t Components::find_joint(const Vec3& point, std::size_t slot) const noexcept {
-  for (; joint_table_[slot] != 0; slot = (slot + 1) & joint_mask_) {
-    const std::uint32_t joint = joint_table_[slot] - 1;
-    if ((joints_[joint].position - point).cwiseAbs().maxCoeff() <= same_point_) return joint;
-  }
-  return left_out;
 }
 
 /// Joints stand in cells of a grid; a point near the border of its cell is looked for beyond it as well.

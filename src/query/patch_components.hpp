@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -69,9 +70,25 @@ class Components {
   static constexpr double near_border = 2.0 / same_points_per_cell;  ///< in cells; twice as far as two joints are one
   static constexpr double to_integer = 0x1.8p52;                     ///< added, it leaves no digits behind the point
 
-  [[nodiscard]] static Cell cell_of(const Vec3& cells) noexcept;
-  [[nodiscard]] std::size_t slot_of(const Cell& cell) const noexcept;
-  [[nodiscard]] std::uint32_t find_joint(const Vec3& point, std::size_t slot) const noexcept;
+  /// The cell of a point: its coordinates as integers, in the last bits of doubles.
+  [[nodiscard]] static Cell cell_of(const Vec3& cells) noexcept {
+    const auto index = [](double x) noexcept { return std::bit_cast<std::uint64_t>(x + to_integer); };
+    return {index(cells.x()), index(cells.y()), index(cells.z())};
+  }
+  [[nodiscard]] std::size_t slot_of(const Cell& cell) const noexcept {
+    // Multipliers of L'Ecuyer, Tables of Linear Congruential Generators, Math. of Computation 68, 1999.
+    const std::uint64_t key =
+        cell[0] * 2862933555777941757ULL + cell[1] * 3202034522624059733ULL + cell[2] * 3935559000370003845ULL;
+    return static_cast<std::size_t>(key >> 32U) & joint_mask_;
+  }
+  /// The joint at a point, of those in a cell.
+  [[nodiscard]] std::uint32_t find_joint(const Vec3& point, std::size_t slot) const noexcept {
+    for (; joint_table_[slot] != 0; slot = (slot + 1) & joint_mask_) {
+      const std::uint32_t joint = joint_table_[slot] - 1;
+      if ((joints_[joint].position - point).cwiseAbs().maxCoeff() <= same_point_) return joint;
+    }
+    return left_out;
+  }
   [[nodiscard]] std::uint32_t find_beyond(const Vec3& point, const Vec3& cells) const noexcept;
   std::uint32_t joint_at(const Vec3& point, std::uint32_t piece) noexcept;
   void prepare(const Rim& rim, Watch& watch) noexcept;

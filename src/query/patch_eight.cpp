@@ -4,6 +4,17 @@
 
 namespace odds::query::patch {
 
+namespace {
+
+double sum_of(const double (&lanes)[eight]) noexcept {
+  return ((lanes[0] + lanes[1]) + (lanes[2] + lanes[3])) + ((lanes[4] + lanes[5]) + (lanes[6] + lanes[7]));
+}
+
+}  // namespace
+
+Vec3 FaceSums::normals() const noexcept { return {sum_of(normal[0]), sum_of(normal[1]), sum_of(normal[2])}; }
+double FaceSums::lengths() const noexcept { return sum_of(length); }
+
 std::array<std::uint16_t, eight> CornersOfEight::kinds_of_lanes() const noexcept {
   std::array<std::uint16_t, eight> kinds_of{};
   for (std::size_t kind = 0; kind < kinds; ++kind) {

@@ -2,12 +2,15 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
+#include "odds/math/tolerances.hpp"
 #include "query/patch_overlap.hpp"
 #include "query/patch_rim.hpp"
+#include "query/patch_select.hpp"
 
 namespace odds::query::patch {
 
@@ -48,6 +51,57 @@ struct CornersOfEight {
                                 std::size_t lane) const noexcept;
 };
 
+/// Up to eight pieces of rim, by lanes: their pairs and lengths; of lanes that are not used any pair and 0.
+struct EightPieces {
+  alignas(64) std::array<double, eight> length{};
+  std::array<const PlacedPair*, eight> pairs{};
+  std::size_t count = 0;
+
+  void add(const RimPiece& piece, const PlacedPair& placed) noexcept {
+    length[count] = piece.length;
+    pairs[count++] = &placed;
+  }
+  /// The next eight.
+  void clear() noexcept {
+    length.fill(0.0);
+    count = 0;
+  }
+};
+
+/// Which triangles' normals are near a direction, turned round if need be: steeper ones are not, nor those of a solid
+/// that lead the other way.
+struct Facing {
+  static constexpr double steepest = 0.8;  ///< cosine
+  Vec3 direction;
+  bool solid_a;
+  bool solid_b;
+
+  /// The normals so turned, or zero.
+  [[nodiscard]] Vec3 of_a(const PlacedPair& placed) const noexcept { return turned(placed.normal_a, solid_a, -1.0); }
+  [[nodiscard]] Vec3 of_b(const PlacedPair& placed) const noexcept { return turned(placed.normal_b, solid_b, 1.0); }
+
+ private:
+  [[nodiscard]] Vec3 turned(const Vec3& normal, bool solid, double sign) const noexcept {
+    const double along = normal.dot(direction);
+    if (!(std::abs(along) > steepest) || (solid && sign * along < 0.0)) return Vec3::Zero();
+    return std::copysign(1.0, along) * normal;
+  }
+};
+
+/// Cosines of the angle between a normal and a flat face: as good as that, and far off.
+inline constexpr double flat_agreement = 1.0 - 0.5 * tolerances::flat_from * tolerances::flat_from;
+inline constexpr double not_flat = 0.99;
+static_assert(not_flat < 1.0 - tolerances::flat_to * tolerances::flat_to);
+
+/// Sums over pieces of rim by lanes: of the normals that count, times length, and of lengths.
+struct FaceSums {
+  alignas(64) double normal[3][eight]{};
+  alignas(64) double length[eight]{};
+
+  [[nodiscard]] Vec3 normals() const noexcept;
+  [[nodiscard]] double lengths() const noexcept;
+};
+
 struct Kernels {
   /// As `place`, of up to eight; returns how many were placed, those that cannot be left out.
   std::size_t (*place)(const PatchInput& input, std::span<const TrianglePair> hits, PlacedPair* placed) noexcept;
@@ -56,6 +110,16 @@ struct Kernels {
   /// As `overlap_corners` of 1 .. 8 pairs.
   void (*corners)(std::span<const PlacedPair* const> pairs, const Frame& frame, const Vec3& shift, double least_depth,
                   CornersOfEight& corners) noexcept;
+  /// Adds the normals that agree with `first`. Returns those that face that way and do not, as bits: B's from bit 0 on,
+  /// A's from bit 8 on.
+  unsigned (*same_faces)(const EightPieces& pieces, const Facing& facing, const Vec3& first, FaceSums& sums) noexcept;
+  /// Adds the normals that are as good as `flat`, and the lengths of pieces with any. Returns the lanes, not added, of
+  /// which a normal is neither that nor far off.
+  unsigned (*flat_faces)(const EightPieces& pieces, const Facing& facing, const Vec3& flat, FaceSums& sums) noexcept;
+  /// Where points reach farthest in the directions of a fan, beyond what is known by then. The points' coordinates in
+  /// the fan's plane are at u and v, their numbers count from `first`.
+  void (*farthest)(const double* u, const double* v, std::size_t count, std::size_t first, const Fan& fan,
+                   FanEnds& ends) noexcept;
 };
 
 /// Those for this processor.

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "query/patch_eight.hpp"
 #include "query/patch_overlap.hpp"
 
 namespace odds::query::patch {
@@ -69,93 +71,92 @@ struct Directions {
 
 /// How much a face normal counts as the flat face `flat`: 1 up to half a degree, 0 from three degrees on.
 double flatness(const Vec3& normal, const Vec3& flat) noexcept {
-  constexpr double far_off = 0.99;  // the cosine of eight degrees
-  const double agreement = normal.dot(flat);
-  if (agreement > 1.0 - 0.5 * tolerances::flat_from * tolerances::flat_from) return 1.0;
-  if (std::abs(agreement) < far_off) return 0.0;
+  if (normal.dot(flat) > flat_agreement) return 1.0;
   return 1.0 - smooth_step(tolerances::flat_from, tolerances::flat_to, normal.cross(flat).norm());
 }
 
 /// The faces that a flat patch may lie on. Of some triangles of a rim one is on such a face and one is not, in no
-/// order: the usual way is without branches.
+/// order: the usual ones are taken eight at a time.
 class FlatFaces {
  public:
   FlatFaces(const PatchView& view, const Vec3& normal) noexcept
-      : view_(view),
-        normal_(normal),
-        least_b_(view.input.solid_b ? 0.0 : -2.0),
-        most_a_(view.input.solid_a ? 0.0 : 2.0) {}
+      : view_(view), facing_{normal, view.input.solid_a, view.input.solid_b} {}
 
-  void add(const RimPiece& piece) noexcept {
-    const PlacedPair& placed = view_.rim.pairs[piece.pair];
-    add(placed.normal_b, sign_of_b(placed), piece.length);
-    add(placed.normal_a, sign_of_a(placed), piece.length);
-  }
-  /// That of most of the rim; zero if there is none.
-  [[nodiscard]] Vec3 heaviest() const noexcept {
+  /// The mean of those on which most of the rim is; zero if there are none.
+  [[nodiscard]] Vec3 heaviest(Watch& watch) noexcept {
+    for_eights(watch, [this](const EightPieces& eight) noexcept { add(eight); });
     if (faces_.count == 0) return Vec3::Zero();
+    faces_.ones[0].sum += sums_.normals();
+    faces_.ones[0].weight += sums_.lengths();
     const auto heaviest =
         std::max_element(faces_.ones.begin(), faces_.ones.begin() + static_cast<std::ptrdiff_t>(faces_.count),
                          [](const auto& i, const auto& j) { return i.weight < j.weight; });
     return unit_or_zero(heaviest->sum);
   }
-  [[nodiscard]] bool empty() const noexcept { return faces_.count == 0; }
-  /// Adds a piece's share of a flat face, and the normals of its triangles by what they have of it.
-  void weigh(const RimPiece& piece, const Vec3& flat, double& share, Vec3& mean) const noexcept {
-    const PlacedPair& placed = view_.rim.pairs[piece.pair];
-    const double sign_b = sign_of_b(placed);
-    const double sign_a = sign_of_a(placed);
-    const double by_b = std::abs(sign_b) * flatness(sign_b * placed.normal_b, flat);
-    const double by_a = std::abs(sign_a) * flatness(sign_a * placed.normal_a, flat);
-    share += piece.length * std::max(by_a, by_b);
-    mean += piece.length * ((by_b * sign_b) * placed.normal_b + (by_a * sign_a) * placed.normal_a);
+  /// How much of the rim is on a flat face, metres, and the sum of the normals there, times length.
+  void weigh(const Vec3& flat, double& share, Vec3& sum, Watch& watch) noexcept {
+    FaceSums sums;
+    for_eights(watch, [&](const EightPieces& eight) noexcept {
+      for (unsigned left = kernels().flat_faces(eight, facing_, flat, sums); left != 0; left &= left - 1U) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(left));
+        const Vec3 face_b = facing_.of_b(*eight.pairs[lane]);
+        const Vec3 face_a = facing_.of_a(*eight.pairs[lane]);
+        const double by_b = face_b == Vec3::Zero() ? 0.0 : flatness(face_b, flat);
+        const double by_a = face_a == Vec3::Zero() ? 0.0 : flatness(face_a, flat);
+        share += eight.length[lane] * std::max(by_a, by_b);
+        sum += eight.length[lane] * (by_b * face_b + by_a * face_a);
+      }
+    });
+    share += sums.lengths();
+    sum += sums.normals();
   }
 
  private:
-  /// What turns the face along the patch's normal, 1 or -1; 0 if it does not face that way, or leads the other way.
-  [[nodiscard]] double sign_of_b(const PlacedPair& placed) const noexcept {
-    const double facing = placed.normal_b.dot(normal_);
-    return std::abs(facing) > steepest && facing >= least_b_ ? std::copysign(1.0, facing) : 0.0;
+  template <class Each>
+  void for_eights(Watch& watch, Each&& each) noexcept {
+    EightPieces eight;
+    for (const std::uint32_t index : view_.pieces) {
+      const RimPiece& piece = view_.rim.pieces[index];
+      if (!piece.counts) continue;
+      eight.add(piece, view_.rim.pairs[piece.pair]);
+      if (eight.count < eight.pairs.size()) continue;
+      each(eight);
+      eight.clear();
+      if (watch.late()) return;
+    }
+    if (eight.count > 0) each(eight);
   }
-  [[nodiscard]] double sign_of_a(const PlacedPair& placed) const noexcept {
-    const double facing = placed.normal_a.dot(normal_);
-    return std::abs(facing) > steepest && facing <= most_a_ ? std::copysign(1.0, facing) : 0.0;
+  void add(const EightPieces& eight) noexcept {
+    if (faces_.count == 0) {
+      for (std::size_t lane = 0; lane < eight.count; ++lane) add(eight, lane, true, true);
+      return;
+    }
+    const unsigned others = kernels().same_faces(eight, facing_, faces_.ones[0].first, sums_);
+    for (unsigned left = (others | others >> 8U) & 0xFFU; left != 0; left &= left - 1U) {
+      const auto lane = static_cast<unsigned>(std::countr_zero(left));
+      add(eight, lane, (others >> lane & 1U) != 0, (others >> (lane + 8U) & 1U) != 0);
+    }
   }
-  void add(const Vec3& face, double sign, double length) noexcept {
-    if (faces_.count == 0) return faces_.add(sign * face, length);
-    Directions::One& first = faces_.ones[0];
-    const bool same = sign * face.dot(first.first) > tolerances::same_face;
-    const double weight = same ? length : 0.0;
-    first.sum += (weight * sign) * face;
-    first.weight += weight;
-    if (sign != 0.0 && !same) [[unlikely]]
-      faces_.add(sign * face, length);
+  void add(const EightPieces& eight, std::size_t lane, bool b, bool a) noexcept {
+    if (b) faces_.add(facing_.of_b(*eight.pairs[lane]), eight.length[lane]);
+    if (a) faces_.add(facing_.of_a(*eight.pairs[lane]), eight.length[lane]);
   }
 
-  static constexpr double steepest = 0.8;
   const PatchView& view_;
-  const Vec3& normal_;
-  double least_b_;
-  double most_a_;
+  Facing facing_;
   Directions faces_;
+  FaceSums sums_;  ///< of those that are one with the first
 };
 
 /// On a flat patch (a face of one body carries nearly all of the rim) the face's normal is the better one: where a face
 /// hangs over a ledge, the vector area leans by depth / width, and where parts of the rim are missing, by more.
 Vec3 snap_to_face(const PatchView& view, const Vec3& normal, Watch& watch) noexcept {
   FlatFaces faces(view, normal);
-  for (std::size_t i = 0; i < view.pieces.size() && !watch.late(i); ++i) {
-    const RimPiece& piece = view.rim.pieces[view.pieces[i]];
-    if (piece.counts) faces.add(piece);
-  }
-  if (faces.empty()) return normal;
-  const Vec3 flat = faces.heaviest();
+  const Vec3 flat = faces.heaviest(watch);
+  if (flat == Vec3::Zero()) return normal;
   double share = 0.0;
   Vec3 mean = Vec3::Zero();
-  for (std::size_t i = 0; i < view.pieces.size() && !watch.late(i); ++i) {
-    const RimPiece& piece = view.rim.pieces[view.pieces[i]];
-    if (piece.counts) faces.weigh(piece, flat, share, mean);
-  }
+  faces.weigh(flat, share, mean, watch);
   if (watch.late()) return normal;
   mean = unit_or_zero(mean);
   const double snap = smooth_step(tolerances::snap_from, tolerances::snap_to, share / view.sums.length);

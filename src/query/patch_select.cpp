@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "query/patch_eight.hpp"
+
 namespace odds::query::patch {
 namespace {
 
@@ -98,29 +100,40 @@ double area_of(std::span<const Vec3> polygon) noexcept {
 Fan::Fan() noexcept {
   for (std::size_t i = 0; i < size; ++i) {
     const double angle = (static_cast<double>(i) + 0.381966) * std::numbers::pi / 8.0;
-    directions[i] = {std::cos(angle), std::sin(angle)};
+    u[i] = std::cos(angle);
+    v[i] = std::sin(angle);
   }
 }
 
 Extremes::Extremes(const Frame& frame, const Fan& fan, const Vec3& centre, const Witness& deepest) noexcept
-    : frame_(frame), fan_(fan), centre_(centre), deepest_(deepest.depth) {
-  best_[directions] = deepest;
+    : frame_(frame),
+      fan_(fan),
+      centre_(centre),
+      per_depth_(deepest.depth > 0.0 ? 0.5 / deepest.depth : 0.0),
+      least_weight_(deepest.depth > 0.0 ? 0.5 : 1.0) {
+  best_[Fan::size] = deepest;
 }
 
-void Extremes::add(const Witness& witness) noexcept {
-  const double weight = deepest_ > 0.0 ? 0.5 + 0.5 * witness.depth / deepest_ : 1.0;
-  const Vec3 place = weight * frame_(witness.middle() - centre_);
-  for (std::size_t i = 0; i < directions; ++i) {
-    const double score = fan_.directions[i][0] * place.x() + fan_.directions[i][1] * place.y();
-    if (any_ && !(score > score_[i])) continue;
-    score_[i] = score;
-    best_[i] = witness;
+void Extremes::add(std::span<const Witness> witnesses) noexcept {
+  for (std::size_t first = 0; first < witnesses.size(); first += at_once) {
+    const std::span<const Witness> some = witnesses.subspan(first, std::min(at_once, witnesses.size() - first));
+    std::array<double, at_once> u;
+    std::array<double, at_once> v;
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      const Vec3 place = (least_weight_ + per_depth_ * some[i].depth) * (some[i].middle() - centre_);
+      u[i] = frame_.u.dot(place);
+      v[i] = frame_.v.dot(place);
+    }
+    kernels().farthest(u.data(), v.data(), some.size(), seen_, fan_, ends_);
+    for (std::size_t d = 0; d < Fan::size; ++d) {
+      if (ends_.end(d) >= seen_) best_[d] = some[ends_.end(d) - seen_];
+    }
+    seen_ += some.size();
   }
-  any_ = true;
 }
 
 std::span<const Witness> Extremes::all() noexcept {
-  if (!any_) return {};
+  if (seen_ == 0) return {};
   std::size_t count = 0;
   for (const Witness& w : best_) {
     bool known = false;

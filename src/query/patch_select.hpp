@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <span>
 
 #include "odds/math/tolerances.hpp"
@@ -14,8 +15,19 @@ namespace odds::query::patch {
 /// Unit directions in a plane, at angles that no rectangle's sides have, so that a side is never extreme as a whole.
 struct Fan {
   static constexpr std::size_t size = 16;
-  std::array<std::array<double, 2>, size> directions{};
+  alignas(64) std::array<double, size> u{};
+  alignas(64) std::array<double, size> v{};
   Fan() noexcept;
+};
+
+/// The farthest points in these directions, by their numbers. Of equally far ones the first.
+struct FanEnds {
+  alignas(64) std::array<double, Fan::size> far;
+  alignas(64) std::array<double, Fan::size> at{};
+  FanEnds() noexcept { far.fill(-std::numeric_limits<double>::infinity()); }
+  [[nodiscard]] std::size_t end(std::size_t direction) const noexcept {
+    return static_cast<std::size_t>(at[direction]);
+  }
 };
 
 /// Keeps, out of any number of witnesses, the extreme ones in sixteen fixed directions across the normal and the
@@ -25,20 +37,24 @@ struct Fan {
 /// Fixed size.
 class Extremes {
  public:
+  static constexpr std::size_t at_once = 16;
+
   Extremes(const Frame& frame, const Fan& fan, const Vec3& centre, const Witness& deepest) noexcept;
-  void add(const Witness& witness) noexcept;
+  /// Best `at_once` at a time.
+  void add(std::span<const Witness> witnesses) noexcept;
+  /// Nothing if none were added.
   [[nodiscard]] std::span<const Witness> all() noexcept;
 
  private:
-  static constexpr std::size_t directions = Fan::size;
   const Frame& frame_;
   const Fan& fan_;
   Vec3 centre_;
-  double deepest_;
-  std::array<Witness, directions + 1> best_;
-  std::array<double, directions> score_{};
-  std::array<Witness, directions + 1> found_;
-  bool any_ = false;
+  double per_depth_;
+  double least_weight_;
+  FanEnds ends_;
+  std::size_t seen_ = 0;
+  std::array<Witness, Fan::size + 1> best_;
+  std::array<Witness, Fan::size + 1> found_;
 };
 
 /// Witnesses in the order in which they are to be used.

@@ -4,32 +4,33 @@
 #include <limits>
 
 #include "odds/math/random.hpp"
+#include "query/patch_eight.hpp"
 
 namespace odds::query::patch {
 namespace {
 
-constexpr std::size_t least_looked_at = 16;  ///< however late it is
-
-/// Where a patch ends in the directions of the fan: positions in `indices`. A direction and its opposite share a pass.
+/// Where a patch ends in the directions of the fan: positions in `indices`. At least sixteen pieces are looked at,
+/// however late it is.
 using Ends = std::array<std::size_t, Fan::size>;
 
 Ends find_ends(std::span<const RimPiece> pieces, std::span<const std::uint32_t> indices, const Frame& frame,
                const Fan& fan, const Vec3& centre, Watch& watch) noexcept {
-  Ends ends{};
-  std::array<double, Fan::size> farthest;
-  farthest.fill(-std::numeric_limits<double>::infinity());
-  for (std::size_t i = 0; i < indices.size() && !(watch.late_in_small_steps(i) && i >= least_looked_at); ++i) {
-    // The middle: both ends of a piece belong to its neighbours too.
-    const Vec3 out = pieces[indices[i]].middle() - centre;
-    const double u = frame.u.dot(out);
-    const double v = frame.v.dot(out);
-    for (std::size_t d = 0; d < Fan::size; ++d) {
-      const double far = fan.directions[d][0] * u + fan.directions[d][1] * v;
-      const bool farther = far > farthest[d];
-      farthest[d] = farther ? far : farthest[d];
-      ends[d] = farther ? i : ends[d];
+  constexpr std::size_t at_once = 16;
+  std::array<double, at_once> u;
+  std::array<double, at_once> v;
+  FanEnds farthest;
+  for (std::size_t first = 0; first < indices.size() && !(first != 0 && watch.late()); first += at_once) {
+    const std::size_t count = std::min(at_once, indices.size() - first);
+    for (std::size_t i = 0; i < count; ++i) {
+      // The middle: both ends of a piece belong to its neighbours too.
+      const Vec3 out = pieces[indices[first + i]].middle() - centre;
+      u[i] = frame.u.dot(out);
+      v[i] = frame.v.dot(out);
     }
+    kernels().farthest(u.data(), v.data(), count, first, fan, farthest);
   }
+  Ends ends;
+  for (std::size_t d = 0; d < Fan::size; ++d) ends[d] = farthest.end(d);
   std::sort(ends.begin(), ends.end());
   return ends;
 }

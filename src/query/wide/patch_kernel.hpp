@@ -15,7 +15,9 @@ namespace odds::query::wide {
 template <class L>
 class PatchKernel {
  public:
-  static constexpr patch::Kernels table() noexcept { return {&place, &cut, &corners}; }
+  static constexpr patch::Kernels table() noexcept {
+    return {&place, &cut, &corners, &same_faces, &flat_faces, &farthest};
+  }
 
  private:
   using R = typename lanes::DoublesOf<L>::Register;
@@ -307,6 +309,120 @@ class PatchKernel {
         s.store(found.share[kind]);
         keep(wanted, kind, depth, within.bits(), found);
       }
+    }
+  }
+
+  /// One body's normals of eight pairs, turned to face a direction. Those that may not are turned by 0.
+  struct Faces {
+    P normal;
+    D turned;
+
+    ODDS_LANES_INLINE Faces(const double* const (&at)[8], const Vec3& direction, bool solid, double sign) noexcept
+        : normal(P::from(at)) {
+      const D zero = D::all(0.0);
+      const D one = D::all(1.0);
+      const D along = dot(normal, P::all(direction.data()));
+      const T allowed = D::all(solid ? 0.0 : -2.0) <= D::all(sign) * along;
+      const T faces = (D::all(patch::Facing::steepest) < abs(along)) & allowed;
+      turned = choose(faces, choose(along < zero, D::all(-1.0), one), zero);
+    }
+    [[nodiscard]] ODDS_LANES_INLINE D agreement(const Vec3& direction) const noexcept {
+      return turned * dot(normal, P::all(direction.data()));
+    }
+  };
+  struct BothFaces {
+    Faces b;
+    Faces a;
+
+    ODDS_LANES_INLINE BothFaces(const patch::EightPieces& pieces, const patch::Facing& facing) noexcept
+        : BothFaces(Normals(pieces), facing) {}
+
+   private:
+    struct Normals {
+      const double* of_a[patch::eight];
+      const double* of_b[patch::eight];
+      ODDS_LANES_INLINE explicit Normals(const patch::EightPieces& pieces) noexcept {
+        for (std::size_t lane = 0; lane < patch::eight; ++lane) {
+          const patch::PlacedPair* const pair = pieces.pairs.data()[lane < pieces.count ? lane : 0];
+          of_a[lane] = pair->normal_a.data();
+          of_b[lane] = pair->normal_b.data();
+        }
+      }
+    };
+    ODDS_LANES_INLINE BothFaces(const Normals& normals, const patch::Facing& facing) noexcept
+        : b(normals.of_b, facing.direction, facing.solid_b, 1.0),
+          a(normals.of_a, facing.direction, facing.solid_a, -1.0) {}
+  };
+
+  ODDS_LANES_INLINE static void add_to(double (&sums)[patch::eight], const D& more) noexcept {
+    (D::load(sums) + more).store(sums);
+  }
+  ODDS_LANES_INLINE static void add_to(double (&sums)[3][patch::eight], const P& more) noexcept {
+    add_to(sums[0], more.x);
+    add_to(sums[1], more.y);
+    add_to(sums[2], more.z);
+  }
+
+  static unsigned same_faces(const patch::EightPieces& pieces, const patch::Facing& facing, const Vec3& first,
+                             patch::FaceSums& sums) noexcept {
+    const BothFaces faces(pieces, facing);
+    const D zero = D::all(0.0);
+    const D length = D::load(pieces.length.data());
+    const unsigned used = (1U << pieces.count) - 1U;
+    const D least = D::all(tolerances::same_face);
+    const T same_b = least < faces.b.agreement(first);
+    const T same_a = least < faces.a.agreement(first);
+    const D by_b = choose(same_b, length, zero);
+    const D by_a = choose(same_a, length, zero);
+    add_to(sums.normal, (by_b * faces.b.turned) * faces.b.normal + (by_a * faces.a.turned) * faces.a.normal);
+    add_to(sums.length, by_b + by_a);
+    const unsigned others_b = (zero < abs(faces.b.turned)).bits() & ~same_b.bits() & used;
+    const unsigned others_a = (zero < abs(faces.a.turned)).bits() & ~same_a.bits() & used;
+    return others_b | others_a << 8U;
+  }
+
+  static unsigned flat_faces(const patch::EightPieces& pieces, const patch::Facing& facing, const Vec3& flat,
+                             patch::FaceSums& sums) noexcept {
+    const BothFaces faces(pieces, facing);
+    const D zero = D::all(0.0);
+    const D length = D::load(pieces.length.data());
+    const D enough = D::all(patch::flat_agreement);
+    const D far_off = D::all(patch::not_flat);
+    const D agreement_b = faces.b.agreement(flat);
+    const D agreement_a = faces.a.agreement(flat);
+    const T flat_b = enough < agreement_b;
+    const T flat_a = enough < agreement_a;
+    const unsigned unclear = ((far_off <= abs(agreement_b)).bits() & ~flat_b.bits()) |
+                             ((far_off <= abs(agreement_a)).bits() & ~flat_a.bits());
+    alignas(64) double clear[patch::eight];
+    for (unsigned lane = 0; lane < patch::eight; ++lane) clear[lane] = (unclear >> lane & 1U) != 0 ? 0.0 : 1.0;
+    const D counted = unclear != 0 ? D::load(clear) * length : length;
+    const D by_b = choose(flat_b, counted, zero);
+    const D by_a = choose(flat_a, counted, zero);
+    add_to(sums.normal, (by_b * faces.b.turned) * faces.b.normal + (by_a * faces.a.turned) * faces.a.normal);
+    add_to(sums.length, max(by_b, by_a));
+    return unclear & ((1U << pieces.count) - 1U);
+  }
+
+  static void farthest(const double* u, const double* v, std::size_t count, std::size_t first, const patch::Fan& fan,
+                       patch::FanEnds& ends) noexcept {
+    static_assert(patch::Fan::size == 16);
+    const D fan_u[2] = {D::load(fan.u.data()), D::load(fan.u.data() + 8)};
+    const D fan_v[2] = {D::load(fan.v.data()), D::load(fan.v.data() + 8)};
+    D far[2] = {D::load(ends.far.data()), D::load(ends.far.data() + 8)};
+    D at[2] = {D::load(ends.at.data()), D::load(ends.at.data() + 8)};
+    for (std::size_t i = 0; i < count; ++i) {
+      const D number = D::all(static_cast<double>(first + i));
+      for (int half = 0; half < 2; ++half) {
+        const D here = fan_u[half] * D::all(u[i]) + fan_v[half] * D::all(v[i]);
+        const T farther = far[half] < here;
+        far[half] = choose(farther, here, far[half]);
+        at[half] = choose(farther, number, at[half]);
+      }
+    }
+    for (int half = 0; half < 2; ++half) {
+      far[half].store(ends.far.data() + 8 * half);
+      at[half].store(ends.at.data() + 8 * half);
     }
   }
 };
