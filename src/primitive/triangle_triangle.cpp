@@ -2,8 +2,9 @@
 #include "odds/primitive/triangle_triangle.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <utility>
+#include <cstdint>
 
 #include "odds/primitive/predicates.hpp"
 #include "primitive/overlap_polygon.hpp"
@@ -34,22 +35,24 @@ Signs sides(const Vec3 p[3], const Vec3 q[3]) noexcept {
     largest = largest.cwiseMax(d[i].cwiseAbs());
   }
   const double bound = orient3d_error_bound(largest.x(), largest.y(), largest.z());
+  // Nobody could predict on which side a corner is; that it is clear is the rule.
   Signs signs;
+  bool clear = true;
   for (int i = 0; i < 3; ++i) {
-    if (height[i] > bound) {
-      signs.of[i] = 1;
-    } else if (height[i] < -bound) {
-      signs.of[i] = -1;
-    } else {
-      signs.of[i] = orient3d(p[0], p[1], p[2], q[i]);
-    }
+    signs.of[i] = (height[i] > bound ? 1 : 0) - (height[i] < -bound ? 1 : 0);
+    clear = clear && signs.of[i] != 0;
+  }
+  if (clear) [[likely]]
+    return signs;
+  for (int i = 0; i < 3; ++i) {
+    if (signs.of[i] == 0) signs.of[i] = orient3d(p[0], p[1], p[2], q[i]);
   }
   return signs;
 }
 
 // The corner whose two edges both reach the other plane: alone on its side, or alone in the plane. Precondition: the
 // signs are neither all zero nor strictly of one side.
-int apex_of(const Signs& signs) noexcept {
+constexpr int find_apex(const Signs& signs) noexcept {
   for (int i = 0; i < 3; ++i) {
     const int here = signs.of[i];
     const int next = signs.of[(i + 1) % 3];
@@ -61,6 +64,28 @@ int apex_of(const Signs& signs) noexcept {
   return 0;
 }
 
+// The apex, and whether it lies below the plane of the other triangle, or the other corners above.
+struct Apex {
+  std::int8_t corner;
+  bool below;
+};
+constexpr int signs_of_three = 27;
+constexpr auto apexes = [] {
+  std::array<Apex, signs_of_three> found{};
+  for (int code = 0; code < signs_of_three; ++code) {
+    const Signs signs{{code / 9 - 1, code / 3 % 3 - 1, code % 3 - 1}};
+    const int apex = find_apex(signs);
+    const bool below = signs.of[apex] < 0 || (signs.of[apex] == 0 && signs.of[(apex + 1) % 3] > 0);
+    found[static_cast<std::size_t>(code)] = {static_cast<std::int8_t>(apex), below};
+  }
+  return found;
+}();
+
+// From a table, for every branch on signs would be a guess.
+Apex apex_of(const Signs& signs) noexcept {
+  return apexes[static_cast<std::size_t>(9 * signs.of[0] + 3 * signs.of[1] + signs.of[2] + 13)];
+}
+
 // A pair in different planes, corners renamed: a[0] and b[0] are the apexes, a[0] lies not below the plane of b, its
 // other corners not above, and likewise for b. On the common line, oriented so, `a` covers the interval from edge
 // a[0]a[1] to edge a[0]a[2], and `b` from edge b[0]b[2] to edge b[0]b[1].
@@ -70,16 +95,14 @@ struct ArrangedPair {
 };
 
 ArrangedPair arrange(const Vec3 a[3], const Signs& a_signs, const Vec3 b[3], const Signs& b_signs) noexcept {
-  const int i = apex_of(a_signs);
-  const int j = apex_of(b_signs);
-  ArrangedPair pair{{&a[i], &a[(i + 1) % 3], &a[(i + 2) % 3]}, {&b[j], &b[(j + 1) % 3], &b[(j + 2) % 3]}};
-  const auto below = [](const Signs& signs, int apex) noexcept {
-    return signs.of[apex] < 0 || (signs.of[apex] == 0 && signs.of[(apex + 1) % 3] > 0);
-  };
+  constexpr int corner_after[] = {1, 2, 0, 1};
+  const Apex i = apex_of(a_signs);
+  const Apex j = apex_of(b_signs);
   // Turning a triangle over exchanges the sides of its plane.
-  if (below(a_signs, i)) std::swap(pair.b[1], pair.b[2]);
-  if (below(b_signs, j)) std::swap(pair.a[1], pair.a[2]);
-  return pair;
+  const int turned_b = i.below ? 1 : 0;
+  const int turned_a = j.below ? 1 : 0;
+  return {{&a[i.corner], &a[corner_after[i.corner + turned_a]], &a[corner_after[i.corner + 1 - turned_a]]},
+          {&b[j.corner], &b[corner_after[j.corner + turned_b]], &b[corner_after[j.corner + 1 - turned_b]]}};
 }
 
 bool intervals_meet(const ArrangedPair& pair) noexcept {
