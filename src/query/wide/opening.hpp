@@ -31,20 +31,21 @@ template <class L>
   return pairs;
 }
 
-/// Tests them exactly. False ends the search (the result says why).
+/// Tests them exactly, but for those that are certain. False ends the search (the result says why).
 ODDS_LANES_INLINE bool visit_triangles(Task& task, Slot slot_a, Slot slot_b, const LeafPairs& pairs) noexcept {
   const Encounter& met = task.encounter;
   for (unsigned rows = pairs.rows; rows != 0; rows &= rows - 1U) {
     const auto row = static_cast<unsigned>(std::countr_zero(rows));
     for (unsigned lanes = pairs.lanes_a[row]; lanes != 0; lanes &= lanes - 1U) {
-      const std::uint32_t a = met.leaf(0, slot_a).leaf.triangle[std::countr_zero(lanes)];
+      const auto lane = static_cast<unsigned>(std::countr_zero(lanes));
+      const std::uint32_t a = met.leaf(0, slot_a).leaf.triangle[lane];
       const std::uint32_t b = met.leaf(1, slot_b).leaf.triangle[row];
       if (!task.spending.allows(1) || !task.spending.may_go_on()) {
         task.result.ended = Progressed::spent;
         return false;
       }
       task.spending.spend_triangle_pairs(1);
-      if (!met.triangles_meet(a, b)) {
+      if (!pairs.certainly_meet(row, lane) && !met.triangles_meet(a, b)) {
         ++task.apart;
         continue;
       }
