@@ -76,7 +76,10 @@ TEST_P(BoltInItsNut, ExactRunsForgetThePoseBefore) {
     static_cast<void>(pair.run({Mat3::Identity(), far}, {.max_contacts = 8}));
     const double found = deepest(pair.run(deep, {.max_contacts = 8}));
     EXPECT_NEAR(found, once, 0.05 * once) << "a normal that was known breaks ties";
-    for (int run = 0; run < 4; ++run) EXPECT_EQ(deepest(pair.run(deep, {.max_contacts = 8})), found) << run;
+    // With a normal that is known now its patch is made another way, and rounds otherwise.
+    for (int run = 0; run < 4; ++run) {
+      EXPECT_NEAR(deepest(pair.run(deep, {.max_contacts = 8})), found, 1e-12 * found) << run;
+    }
     pair.reset();
     EXPECT_EQ(deepest(pair.run(deep, {.max_contacts = 8})), once);
   }
