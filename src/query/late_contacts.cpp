@@ -80,7 +80,7 @@ const CarriedContacts& LateContacts::carried() const noexcept { return worker_->
 
 void LateContacts::keep_guess(std::span<const Contact> contacts, const math::Pose& pose_b_in_a) noexcept {
   guesses_ = true;
-  if (is_at_work() && push_one_way(contacts)) owed_ = most_shared;
+  if (is_at_work() && !turn() && push_one_way(contacts)) owed_ = most_shared;
   guessed_ = std::min(contacts.size(), guess_.size());
   guess_pose_ = pose_b_in_a;
   for (std::size_t i = 0; i < guessed_; ++i) guess_[i] = HeldContact(contacts[i], pose_b_in_a);
@@ -91,7 +91,7 @@ std::size_t LateContacts::write_guess(const math::Pose& pose_b_in_a, double size
   if (!shares_guess()) return 0;
   --owed_;
   const double motion = math::motion_bound_about(guess_[0].on_b(), guess_pose_, pose_b_in_a, size);
-  if (!(motion <= tolerances::late_slip * size)) return 0;
+  if (!(motion <= (turn() ? tolerances::hasty_slack : tolerances::late_slip) * size)) return 0;
   std::size_t written = 0;
   for (std::size_t i = 0; i < guessed_ && written < contacts.size(); ++i) {
     Contact now = guess_[i].at(pose_b_in_a);
@@ -110,13 +110,14 @@ void LateContacts::drop() noexcept {
 }
 
 bool LateContacts::is_far(const math::Pose& pose_b_in_a, double size) const noexcept {
-  return !(math::motion_bound_about(place_on_b_, pose_, pose_b_in_a, size) <=
-           CarriedFar::of(one_way_, asked_).motion * size);
+  return !are_carried(place_on_b_, pose_, pose_b_in_a, size);
 }
 
 bool LateContacts::slide(const Contact& contact, double size) const noexcept {
   return math::motion_of(contact.position, pose_last_, pose_now_).norm() > tolerances::late_still * size;
 }
+
+bool LateContacts::turn() const noexcept { return math::turn_bound(pose_last_, pose_now_) > tolerances::late_turning; }
 
 void LateContacts::ask(const math::Pose& pose_b_in_a, const Request& request, const Pair::Implementation& pair,
                        Press press) noexcept {
@@ -125,8 +126,8 @@ void LateContacts::ask(const math::Pose& pose_b_in_a, const Request& request, co
   asked_ = 0;
   const double size = smaller_size(pair);
   const std::span<const Contact> contacts = pair.answer.contacts;
-  one_way_ = push_one_way(contacts);
-  pressed_ = one_way_ && (press == Press::all || slide(contacts.front(), size));
+  turned_ = turn();
+  pressed_ = !turned_ && push_one_way(contacts) && (press == Press::all || slide(contacts.front(), size));
   if (pressed_) pose_.translation += tolerances::late_press * size * contacts.front().normal;
   place_on_b_ = pose_.inverse() * (contacts.empty() ? Vec3(Vec3::Zero()) : Vec3(contacts.front().position));
   request_ = {};
@@ -182,7 +183,7 @@ bool LateContacts::work(const math::Pose& pose_b_in_a, const Request& request, P
   too_many_ = worker_->hits.size() == worker_->hits.capacity();
   if (too_many_) return false;
   if (!parted_) copy_what_is_known(*worker_, pair);
-  manifold_.keep(answer.contacts, pose_, pose_b_in_a, size, answer.contact_pairs, {asked_, last_asked_});
+  manifold_.keep(answer.contacts, pose_, pose_b_in_a, size, answer.contact_pairs, {asked_, last_asked_, turned_});
   last_asked_ = asked_;
   gives_all_ = manifold_.gives_all(pose_b_in_a);
   if (gives_all_ && quick_ >= enough_quick) is_wanted_ = false;

@@ -104,6 +104,8 @@ class LateContacts {
            Press press) noexcept;
   /// Whether the bodies move where they touch.
   [[nodiscard]] bool slide(const Contact& contact, double size) const noexcept;
+  /// Whether they turn against each other.
+  [[nodiscard]] bool turn() const noexcept;
   static void answer(void* self) noexcept;
   static std::int64_t read_clock(void* self) noexcept;
   void end() noexcept;
@@ -115,7 +117,7 @@ class LateContacts {
   Scratch* scratch_ = nullptr;  ///< while a question is being worked on
   Spending* spending_ = nullptr;
   bool pressed_ = false;    ///< what is being worked on
-  bool one_way_ = false;    ///< the contacts of the run that asked it
+  bool turned_ = false;     ///< the bodies, when it was asked
   bool gives_all_ = false;  ///< of what was made last
   bool parted_ = false;     ///< the bodies were apart since it was asked
   bool too_many_ = false;   ///< the last one had more hits than are kept

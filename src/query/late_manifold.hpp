@@ -11,6 +11,7 @@
 #include "odds/math/tolerances.hpp"
 #include "odds/query/contact_patch.hpp"
 #include "odds/query/held_contact.hpp"
+#include "query/budgeted_ray.hpp"
 #include "query/given_depth.hpp"
 
 namespace odds::query {
@@ -20,6 +21,7 @@ struct Lateness {
   static constexpr int long_ago = 1 << 20;
   int asked = 0;        ///< since the pose that they are about
   int last = long_ago;  ///< since the one before it whose contacts were kept: so long a depth may have come unknown
+  bool turns = false;   ///< the bodies turned against each other when they were asked for
 };
 
 /// Whether there are contacts, and all push in much the same direction: a tool on the ground, but not a bolt in its
@@ -30,39 +32,37 @@ struct Lateness {
   });
 }
 
-/// How far contacts are carried that were asked for `asked` runs ago, as parts of the smaller body's size. Those of
-/// bodies that slide are new ones all the time, and where they have slid to hold better than none; where all push
-/// `one_way`.
-struct CarriedFar {
-  double motion;
-  double slip;
-
-  static constexpr CarriedFar of(bool one_way, int asked) noexcept {
-    return one_way && asked <= tolerances::late_runs ? CarriedFar{tolerances::slid_motion, tolerances::slid_slip}
-                                                     : CarriedFar{tolerances::late_motion, tolerances::late_slip};
-  }
-};
+/// Whether late contacts about `from` are of use at `to`, poses of B's mesh frame in A's: a point of B where the bodies
+/// touched, in its frame, has not gone far, and the bodies have hardly turned against each other. Those that turn touch
+/// elsewhere soon: a bolt in its nut on one turn of its thread, then on another one.
+[[nodiscard]] inline bool are_carried(const Vec3& place_on_b, const math::Pose& from, const math::Pose& to,
+                                      double size) noexcept {
+  return math::turn_bound(from, to) <= tolerances::late_turn &&
+         (to * place_on_b - from * place_on_b).norm() <= tolerances::slid_motion * size;
+}
 
 /// Bodies that rest on each other rock by nanometres, and touch on one edge now, on another one then. A patch that is
 /// late by ten runs knows one of them; so those of the patches before it stay where they have come apart by little, and
 /// push again as soon as they touch. What came deep while nobody knew is pushed out gently (GivenDepth). Each follows
-/// the bodies' motion. In A's mesh frame; `size`: of the smaller body, metres. No allocation.
+/// the bodies' motion; one that slides along is measured anew now and then, or is none. In A's mesh frame; `size`: of
+/// the smaller body, metres. No allocation.
 class LateManifold {
  public:
   void forget() noexcept { count_ = 0; }
 
   /// All contacts that there are at `pose`, of B's mesh frame in A's, deepest first, and how many pairs of triangles
-  /// they were made from. `pose_now`: that of this run. Where all push one way, of what came in some runs a share of
-  /// one run is given at once.
+  /// they were made from. `pose_now`: that of this run. Of bodies that slide, of what came in some runs a share of one
+  /// run is given at once.
   void keep(std::span<const Contact> contacts, const math::Pose& pose, const math::Pose& pose_now, double size,
             std::uint32_t made_from, const Lateness& lateness = {}) noexcept {
-    one_way_ = push_one_way(contacts);
+    const bool slides = !lateness.turns && push_one_way(contacts);
     std::size_t kept = std::min<std::size_t>(contacts.size(), most_contacts);
     std::array<Entry, most> now;
     for (std::size_t i = 0; i < kept; ++i) {
       now[i].held = HeldContact(contacts[i], pose);
+      now[i].measured = lateness.asked;
       const double depth = now[i].held.parted(pose_now).depth;
-      const double share = one_way_ ? depth / std::max(lateness.last, 1) : 0.0;
+      const double share = slides ? depth / std::max(lateness.last, 1) : 0.0;
       double given = std::max(tolerances::late_least * size, share);
       for (std::size_t k = 0; k < count_; ++k) {
         const bool is_successor = held_[k].depth.holds() && is_same(held_[k].held, now[i].held, size);
@@ -71,9 +71,11 @@ class LateManifold {
       now[i].depth.begin(depth, std::min(contacts[i].depth, given));
     }
     for (std::size_t i = 0; i < count_ && kept < most; ++i) {
-      const auto [depth, slip] = held_[i].held.parted(pose);
+      const bool is_newer = held_[i].measured < lateness.asked;
+      const auto [depth, slip] = held_[i].held.parted(is_newer ? pose_now : pose);
       // What overlaps would be among the contacts if it did; what is one of them has its successor.
-      if (depth > 0.0 || depth < -tolerances::late_gap * size || slip > tolerances::late_slip * size) continue;
+      if (depth > 0.0 && !is_newer) continue;
+      if (depth < -tolerances::late_gap * size || slip > tolerances::late_slip * size) continue;
       const bool is_known = std::any_of(now.begin(), now.begin() + static_cast<std::ptrdiff_t>(kept),
                                         [&](const Entry& other) { return is_same(other.held, held_[i].held, size); });
       if (!is_known) now[kept++] = held_[i];
@@ -82,7 +84,6 @@ class LateManifold {
     count_ = kept;
     pose_ = pose;
     made_from_ = made_from;
-    asked_ = lateness.asked;
   }
   /// Whether all of each depth is given, but for what rounding took.
   [[nodiscard]] bool gives_all(const math::Pose& pose) const noexcept {
@@ -93,20 +94,38 @@ class LateManifold {
   }
   /// A run begins, at `pose`.
   void age(const math::Pose& pose, double size) noexcept {
-    asked_ = std::min(asked_ + 1, Lateness::long_ago);
     for (Entry& entry : std::span(held_).first(count_)) {
+      entry.measured = std::min(entry.measured + 1, Lateness::long_ago);
       entry.depth.age(entry.held.parted(pose).depth, tolerances::late_least * size, tolerances::late_rise * size);
     }
   }
 
-  /// Whether no point within `size` of the first contact has moved farther than they are carried, and one of them at
+  /// Those that have slid: `measure(held)` looks how deep they are now, and changes `held` (Seen::surface), says that
+  /// it is no contact any more (Seen::none), or has no time for any more of them (Seen::unknown).
+  template <class Measure>
+  void measure_slid(const math::Pose& pose, double size, Measure measure) noexcept {
+    for (std::size_t i = 0; i < count_;) {
+      const auto [depth, slip] = held_[i].held.parted(pose);
+      if (depth < -tolerances::late_gap * size || slip < tolerances::slid_measured * size) {
+        ++i;
+        continue;
+      }
+      const Seen seen = slip <= tolerances::slid_slip * size ? measure(held_[i].held) : Seen::none;
+      if (seen == Seen::unknown) return;
+      held_[i].measured = 0;
+      if (seen == Seen::surface) {
+        ++i;
+      } else {
+        held_[i] = held_[--count_];
+      }
+    }
+  }
+
+  /// Whether the bodies have moved no farther than they are carried, and one of them at
   /// least overlaps, or has come apart by less than `margin`, metres.
   [[nodiscard]] bool serves(const math::Pose& pose, double size, double margin = 0.0) const noexcept {
-    if (count_ == 0) return false;
-    if (!(math::motion_bound_about(held_[0].held.on_b(), pose_, pose, size) <= carried_far().motion * size)) {
-      return false;
-    }
-    const double most_slip = carried_far().slip * size;
+    if (count_ == 0 || !are_carried(held_[0].held.on_b(), pose_, pose, size)) return false;
+    const double most_slip = tolerances::late_slip * size;
     return std::any_of(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(count_), [&](const Entry& entry) {
       const auto [depth, slip] = entry.held.parted(pose);
       return depth > -margin && slip <= most_slip;
@@ -124,7 +143,7 @@ class LateManifold {
     };
     std::array<Candidate, most> candidates;
     std::size_t overlapping = 0;
-    const double most_slip = carried_far().slip * size;
+    const double most_slip = tolerances::late_slip * size;
     for (std::size_t i = 0; i < count_; ++i) {
       const auto [depth, slip] = held_[i].held.parted(pose);
       if (depth > -margin && slip <= most_slip) candidates[overlapping++] = {depth, i};
@@ -150,8 +169,8 @@ class LateManifold {
   struct Entry {
     HeldContact held;
     GivenDepth depth;
+    int measured = 0;  ///< runs since the pose that it was found at
   };
-  [[nodiscard]] CarriedFar carried_far() const noexcept { return CarriedFar::of(one_way_, asked_); }
   [[nodiscard]] static bool is_same(const HeldContact& x, const HeldContact& y, double size) noexcept {
     return (x.on_a() - y.on_a()).norm() <= tolerances::late_spacing * size &&
            x.normal().dot(y.normal()) > tolerances::hasty_agreement;
@@ -160,8 +179,6 @@ class LateManifold {
   std::array<Entry, most> held_;
   std::size_t count_ = 0;
   std::uint32_t made_from_ = 0;
-  int asked_ = 0;  ///< runs since `pose_`
-  bool one_way_ = false;
   math::Pose pose_;
 };
 

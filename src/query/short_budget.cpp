@@ -9,6 +9,7 @@
 #include "query/flush_answer.hpp"
 #include "query/pair_contacts.hpp"
 #include "query/rough_contacts.hpp"
+#include "query/slid_contacts.hpp"
 
 namespace odds::query {
 namespace {
@@ -182,9 +183,11 @@ void begin_haste(const math::Pose& pose_b_in_a, Pair::Implementation& pair) noex
 
 /// Whether the contacts of earlier poses are of use now, far as the bodies may have moved. Of a wall that a body has
 /// come to since they know nothing.
-bool serves_late(const math::Pose& pose_b_in_a, const Request& request, const Pair::Implementation& pair) noexcept {
-  return !pair.flush.something_else_came() &&
-         pair.late->manifold().serves(pose_b_in_a, smaller_size(pair), request.margin);
+bool serves_late(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair,
+                 Spending& spending) noexcept {
+  if (pair.flush.something_else_came()) return false;
+  measure_slid(pose_b_in_a, pair, spending);
+  return pair.late->manifold().serves(pose_b_in_a, smaller_size(pair), request.margin);
 }
 
 /// Those of them that overlap, or have come apart by less than the margin: what two rays would have to find again.
@@ -231,7 +234,7 @@ void work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implement
   if (!pair.late->work(pose_b_in_a, request, pair, spending, press)) return;
   const bool is_flush = is_all_flush(pair.late->contacts(), pair.late->pose(), true, pair, spending);
   carry_found(is_flush, pose_b_in_a, request, pair);
-  if (is_flush || !serves_late(pose_b_in_a, request, pair)) return;
+  if (is_flush || !serves_late(pose_b_in_a, request, pair, spending)) return;
   write_late(pose_b_in_a, request, pair);
   add_flush(request, pair, spending);
 }
@@ -266,7 +269,7 @@ bool carry_late_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_
   const bool is_flush = pair.flush.serves();
   // Where there is never time for work on contacts, only a search sees what else has come to touch.
   if (is_flush && request.budget.microseconds < very_short_us && ++pair.hasty_runs % 2 == 0) return false;
-  if (!is_flush && !serves_late(pose_b_in_a, request, pair)) return false;
+  if (!is_flush && !serves_late(pose_b_in_a, request, pair, spending)) return false;
   if (!prove_carried(meshes, pair, spending)) return false;
   begin_haste(pose_b_in_a, pair);
   pair.answer.contacts_complete = false;
@@ -301,7 +304,7 @@ void make_contacts_over_runs(const PosedMeshes& meshes, const math::Pose& pose_b
   if (see_flush(meshes, pair, spending)) {
     write_flush(meshes, false, request, pair, spending);
     pair.carried.keep_proofs(pair.hits.pairs());
-  } else if (serves_late(pose_b_in_a, request, pair)) {
+  } else if (serves_late(pose_b_in_a, request, pair, spending)) {
     write_late(pose_b_in_a, request, pair);
   } else if (!share_guess(pose_b_in_a, request, pair)) {
     spending.reserve_for_contacts(pair.endings.rough);

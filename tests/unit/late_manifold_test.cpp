@@ -37,15 +37,15 @@ std::vector<Contact> written(LateManifold& manifold, const math::Pose& pose, std
 TEST(LateManifold, FollowsTheBodies) {
   LateManifold manifold;
   EXPECT_FALSE(manifold.serves({}, size));
-  manifold.keep(std::vector{contact_at(0.1, 0.1, 5e-6)}, {}, {}, size, 12, {.asked = tolerances::late_runs});
+  manifold.keep(std::vector{contact_at(0.1, 0.1, 5e-6)}, {}, {}, size, 12);
   EXPECT_EQ(manifold.made_from(), 12u);
   manifold.age(moved(5e-6), size);
   const auto now = written(manifold, moved(5e-6));
   ASSERT_EQ(now.size(), 1u);
   EXPECT_NEAR(now[0].depth, 1e-5, 1e-12);
   EXPECT_FALSE(manifold.serves(moved(-2e-5), size)) << "it has come apart";
-  EXPECT_TRUE(manifold.serves(moved(0.9 * tolerances::late_motion * size), size));
-  EXPECT_FALSE(manifold.serves(moved(1.1 * tolerances::late_motion * size), size)) << "too far from where it was made";
+  EXPECT_TRUE(manifold.serves(moved(0.9 * tolerances::slid_motion * size), size));
+  EXPECT_FALSE(manifold.serves(moved(1.1 * tolerances::slid_motion * size), size)) << "too far from where it was made";
   manifold.forget();
   EXPECT_FALSE(manifold.serves({}, size));
 }
@@ -84,26 +84,69 @@ TEST(LateManifold, ForgetsWhatHasGone) {
   }
 }
 
-// A tool that is dragged slides by a thousandth of its size in a run.
-TEST(LateManifold, CarriesNewContactsFarther) {
+TEST(LateManifold, EndsWhereBodiesTurn) {
   LateManifold manifold;
-  const auto slid = [](double way) {
-    math::Pose pose = moved(1e-5);
-    pose.translation.y() = way * size;
-    return pose;
+  Contact contact = contact_at(0.0, 0.0, 1e-5);
+  manifold.keep(std::vector{contact}, {}, {}, size, 12);
+  EXPECT_TRUE(manifold.serves(moved(0.0, 0.9 * tolerances::late_turn), size));
+  EXPECT_FALSE(manifold.serves(moved(0.0, 1.1 * tolerances::late_turn), size));
+}
+
+math::Pose slid(double way) {
+  math::Pose pose = moved(1e-5);
+  pose.translation.y() = way * size;
+  return pose;
+}
+
+// A tool that is dragged slides by a thousandth of its size in a run: what is known of a place is of another one soon.
+TEST(LateManifold, MeasuresWhatSlides) {
+  const auto measured = [](LateManifold& manifold, const math::Pose& pose, Seen seen) {
+    int count = 0;
+    manifold.measure_slid(pose, size, [&](HeldContact& held) noexcept {
+      ++count;
+      if (seen != Seen::surface) return seen;
+      Contact contact = held.at(pose);
+      contact.depth = 2e-5;
+      held = HeldContact(contact, pose);
+      return seen;
+    });
+    return count;
   };
-  const double far = 0.9 * tolerances::slid_slip;
-  ASSERT_LT(far, tolerances::slid_motion);
-  ASSERT_GT(far, tolerances::late_motion);
-  manifold.keep(std::vector{contact_at(0.1, 0.1, 1e-5)}, {}, {}, size, 12, {.asked = tolerances::late_runs - 1});
-  manifold.age(slid(far), size);
-  EXPECT_TRUE(manifold.serves(slid(far), size));
-  EXPECT_EQ(written(manifold, slid(far)).size(), 1u);
-  EXPECT_FALSE(manifold.serves(slid(1.1 * tolerances::slid_slip), size));
-  EXPECT_FALSE(manifold.serves(slid(1.1 * tolerances::slid_motion), size));
-  manifold.age(slid(far), size);
-  EXPECT_FALSE(manifold.serves(slid(far), size)) << "they are old";
-  EXPECT_TRUE(written(manifold, slid(far)).empty());
+  for (const Seen seen : {Seen::surface, Seen::none, Seen::unknown}) {
+    LateManifold manifold;
+    manifold.keep(std::vector{contact_at(0.1, 0.1, 1e-5), contact_at(-0.1, 0.1, 1e-5)}, {}, {}, size, 12);
+    EXPECT_EQ(measured(manifold, slid(0.9 * tolerances::slid_measured), seen), 0) << "it is where it was";
+    const math::Pose far = slid(1.1 * tolerances::late_slip);
+    manifold.age(far, size);
+    EXPECT_FALSE(manifold.serves(far, size)) << "of another place";
+    EXPECT_EQ(measured(manifold, far, seen), seen == Seen::unknown ? 1 : 2);
+    EXPECT_EQ(manifold.serves(far, size), seen == Seen::surface);
+    EXPECT_EQ(written(manifold, far).size(), seen == Seen::surface ? 2u : 0u);
+    EXPECT_EQ(measured(manifold, far, seen), seen == Seen::unknown ? 1 : 0) << "once";
+  }
+  LateManifold manifold;
+  manifold.keep(std::vector{contact_at(0.1, 0.1, 1e-5)}, {}, {}, size, 12);
+  EXPECT_EQ(measured(manifold, slid(1.1 * tolerances::slid_slip), Seen::surface), 0) << "nobody knows where it is";
+  EXPECT_FALSE(manifold.serves(slid(0.0), size)) << "and it is none any more";
+}
+
+// The patch that comes is of where the bodies were when it was asked for: what was measured since is newer.
+TEST(LateManifold, KeepsWhatWasMeasuredSinceItWasAsked) {
+  for (const bool is_newer : {false, true}) {
+    LateManifold manifold;
+    manifold.keep(std::vector{contact_at(0.1, 0.1, 1e-5)}, {}, {}, size, 12);
+    const math::Pose far = slid(1.1 * tolerances::late_slip);
+    for (int run = 0; run < 3; ++run) manifold.age(far, size);
+    if (is_newer) {
+      manifold.measure_slid(far, size, [&](HeldContact& held) noexcept {
+        held = HeldContact(held.at(far), far);
+        return Seen::surface;
+      });
+    }
+    manifold.age(far, size);
+    manifold.keep(std::vector{contact_at(-0.1, 0.1, 1e-5)}, far, far, size, 12, {.asked = 2});
+    EXPECT_EQ(written(manifold, far).size(), is_newer ? 2u : 1u);
+  }
 }
 
 TEST(LateManifold, TheDeepestComeFirst) {
@@ -146,6 +189,9 @@ TEST(LateManifold, GivesTheShareOfARun) {
     manifold.keep(std::vector{contact_at(0.0, 0.0, deep)}, {}, {}, size, 12, {.asked = 0, .last = runs});
     EXPECT_NEAR(written(manifold, {})[0].depth, std::max(deep / std::max(runs, 1), least), 1e-12) << runs;
     EXPECT_EQ(manifold.gives_all({}), runs <= 1);
+    manifold.forget();
+    manifold.keep(std::vector{contact_at(0.0, 0.0, deep)}, {}, {}, size, 12, {.asked = 0, .last = runs, .turns = true});
+    EXPECT_NEAR(written(manifold, {})[0].depth, least, 1e-12) << "what turns touches elsewhere all the time";
   }
 }
 
@@ -220,7 +266,7 @@ TEST(LateManifold, WhatIsNotWrittenHoldsNothing) {
   LateManifold manifold;
   manifold.keep(std::vector{contact_at(0.0, 0.0, 1e-5)}, {}, {}, size, 12);
   math::Pose slid = moved(0.0);
-  slid.translation.y() = 1.2 * tolerances::slid_slip * size;
+  slid.translation.y() = 1.2 * tolerances::late_slip * size;
   for (int run = 1; run <= 10; ++run) {
     math::Pose deeper = slid;
     deeper.translation.z() = 1e-4 * run;

@@ -5,13 +5,18 @@
 
 namespace odds::math {
 
+/// The angle by which a frame turns from pose `from` to pose `to` is at most this while it is small: twice the sine of
+/// half of it. Radians.
+[[nodiscard]] inline double turn_bound(const Pose& from, const Pose& to) noexcept {
+  constexpr double root_half = 0.70710678118654757;
+  return root_half * (to.rotation - from.rotation).norm();
+}
+
 /// No point within `reach` of the moved frame's origin goes farther from pose `from` to pose `to`. Metres. A rotation
 /// by an angle differs from the identity by 2 sin(angle / 2) in the spectral norm, and by sqrt(2) times that in the
 /// Frobenius norm.
 [[nodiscard]] inline double motion_bound(const Pose& from, const Pose& to, double reach) noexcept {
-  constexpr double root_half = 0.70710678118654757;
-  return ((to.translation - from.translation).norm() + reach * root_half * (to.rotation - from.rotation).norm()) *
-         (1.0 + 1e-12);
+  return ((to.translation - from.translation).norm() + reach * turn_bound(from, to)) * (1.0 + 1e-12);
 }
 
 /// The same of a body's points within `reach` of one of them, `place` in the body's frame. Metres.

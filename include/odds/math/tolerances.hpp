@@ -134,16 +134,21 @@ inline constexpr double way_it_came = 0.25;
 /// Stacks drifted as little with it as without, and ten times as far with 1e-4. Test: Bricks.CreepingAddsUp.
 inline constexpr double resting_motion = 1e-5;
 /// Of the smaller body's size: contacts that are late (Request::late_contacts) are carried along while bodies move
-/// by less. Test: LateManifold.FollowsTheBodies.
-inline constexpr double late_motion = 0.02;
-/// The same of contacts that were asked for no more than so many runs ago, which those of a body that slides are: it
-/// goes 0.1 % of its size in a run, and with late_slip it has none before the next ones come. A peg that drops into its
-/// hole, for hundreds of runs, would be pushed by a rim that it has passed: so only for these, and only where all push
-/// one way: a bolt in its nut won 20 times its energy, pushed by turns of its thread that it has left.
-/// Test: LateManifold.CarriesNewContactsFarther.
-inline constexpr int late_runs = 24;
-inline constexpr double slid_motion = 0.16;  ///< see late_runs
-inline constexpr double slid_slip = 0.08;    ///< see late_runs
+/// by less, and turn against each other by less than late_turn, radians: carried over ten times that, turns of a thread
+/// pushed a bolt that had left them. Tests: LateManifold.FollowsTheBodies, LateManifold.EndsWhereBodiesTurn.
+inline constexpr double slid_motion = 0.16;
+inline constexpr double late_turn = 0.02;  ///< see slid_motion
+/// Radians a run: bodies that turn by more against each other do not slide. Test: LateManifold.GivesTheShareOfARun.
+inline constexpr double late_turning = 1e-3;
+/// The same: one of them that has slid by more than the first is measured anew; by more than the second, it is not
+/// looked for.
+/// Test: LateManifold.MeasuresWhatSlides.
+inline constexpr double slid_measured = 2.5e-3;
+inline constexpr double slid_slip = 0.08;  ///< see slid_measured
+inline constexpr double slid_bend = 0.2;   ///< of what it has slid, how far off its surface it is looked for
+/// Cosine (10 degrees) from which a normal of a contact is that of its facet, and turns with the surface.
+/// Test: SlidContacts.TurnWithTheSurface.
+inline constexpr double slid_facet = 0.985;
 /// The same: one of them that has come apart by no more is kept for when it touches again; and across its normal. With
 /// 2e-2 and 1e-2 an edge that rocks by two degrees is found again without a patch, but bodies that land are held in the
 /// wrong places: of 528 starved stacks (`odds_ode_scenes --only stacks --ours --budgets 5,7`, 3 to 10 bricks) 6 fell,
