@@ -13,11 +13,11 @@
 namespace odds::query {
 namespace {
 
-// A pair of triangles in a patch takes 0.3 us, half of it to be found; rays and choice some 25 us whatever their
+// A pair of triangles in a patch takes 0.3 us, half of it to be found; rays and choice up to 15 us whatever their
 // number.
 constexpr double hits_per_microsecond = 3.0;
 constexpr double found_hits_per_microsecond = 6.0;
-constexpr double patch_base_us = 25.0;
+constexpr double patch_base_us = 15.0;
 // Fewer may leave a gap in the rim of even two boxes, and the direction of a patch needs all of its rim.
 constexpr double least_hits = 64.0;
 constexpr double most_hits = 65536.0;
