@@ -8,6 +8,11 @@ namespace odds::ablation {
 struct BoxesOnly : query::lanes::Avx2 {};
 }  // namespace odds::ablation
 
+namespace odds::query::lanes {
+template <>
+struct DoublesOf<ablation::BoxesOnly> : DoublesOf<Avx2> {};
+}  // namespace odds::query::lanes
+
 namespace odds::query::wide {
 template <>
 inline constexpr bool looks_at_slabs<ablation::BoxesOnly> = false;
