@@ -11,7 +11,7 @@ namespace {
 // Within a time, of one ray: less than 2 us. 1 in 20,000 rays in a million triangles visits more than 22 wide nodes; of
 // trees of spheres 1 in 1,000 visits more than 400 and is not decided.
 constexpr std::uint64_t most_wide_nodes = 64;
-constexpr std::uint64_t most_generic_nodes = 256;
+constexpr std::uint64_t most_generic_nodes = most_nodes_of_a_ray;
 constexpr std::uint64_t least_nodes = 16;  // with less it is not begun
 
 }  // namespace

@@ -16,6 +16,9 @@ enum class Seen : std::uint8_t {
   unknown,  ///< there was no time, or no work, to look to the end
 };
 
+/// No ray within a time visits more.
+inline constexpr std::uint64_t most_nodes_of_a_ray = 256;
+
 /// As cast_ray. It is not begun unless there is time for contacts (Spending::reserve_for_contacts) and some work left;
 /// within a time it ends in less than 2 us; a node counts as a unit of work.
 [[nodiscard]] Seen cast_budgeted_ray(const Shape& shape, const Vec3& point, const Vec3& direction, double length,

@@ -26,6 +26,12 @@ class GivenDepth {
     depth_ = now;
     holds_ = false;
   }
+  /// It was measured after `runs`, and is `depth` deep, `deeper` than was thought: that came while nobody knew, and a
+  /// run's share of it is given.
+  void correct(double depth, double deeper, int runs) noexcept {
+    depth_ = std::max(depth, 0.0);
+    given_ += std::max(deeper, 0.0) / std::max(runs, 1);
+  }
   /// It is among the contacts of this run.
   void hold() noexcept { holds_ = true; }
   [[nodiscard]] bool holds() const noexcept { return holds_; }

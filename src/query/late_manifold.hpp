@@ -37,7 +37,7 @@ struct Lateness {
 /// elsewhere soon: a bolt in its nut on one turn of its thread, then on another one.
 [[nodiscard]] inline bool are_carried(const Vec3& place_on_b, const math::Pose& from, const math::Pose& to,
                                       double size) noexcept {
-  return math::turn_bound(from, to) <= tolerances::late_turn &&
+  return math::turn_between(from, to) <= tolerances::late_turn &&
          (to * place_on_b - from * place_on_b).norm() <= tolerances::slid_motion * size;
 }
 
@@ -100,23 +100,21 @@ class LateManifold {
     }
   }
 
-  /// Those that have slid: `measure(held)` looks how deep they are now, and changes `held` (Seen::surface), says that
-  /// it is no contact any more (Seen::none), or has no time for any more of them (Seen::unknown).
+  /// Those that have slid, and overlap or are within `margin` of it, metres, the deepest first: `measure(held)` looks
+  /// how deep they are now, and changes `held` (Seen::surface), says that it is no contact any more (Seen::none), or
+  /// has no time for any more of them (Seen::unknown).
   template <class Measure>
-  void measure_slid(const math::Pose& pose, double size, Measure measure) noexcept {
-    for (std::size_t i = 0; i < count_;) {
-      const auto [depth, slip] = held_[i].held.parted(pose);
-      if (depth < -tolerances::late_gap * size || slip < tolerances::slid_measured * size) {
-        ++i;
-        continue;
-      }
-      const Seen seen = slip <= tolerances::slid_slip * size ? measure(held_[i].held) : Seen::none;
+  void measure_slid(const math::Pose& pose, double size, double margin, Measure measure) noexcept {
+    for (std::size_t i = deepest_slid(pose, size, margin); i < count_; i = deepest_slid(pose, size, margin)) {
+      Entry& entry = held_[i];
+      const auto [depth, slip] = entry.held.parted(pose);
+      const Seen seen = slip <= tolerances::slid_slip * size ? measure(entry.held) : Seen::none;
       if (seen == Seen::unknown) return;
-      held_[i].measured = 0;
-      if (seen == Seen::surface) {
-        ++i;
+      if (seen == Seen::surface && entry.held.parted(pose).slip < tolerances::slid_measured * size) {
+        entry.depth.correct(entry.held.depth(), entry.held.depth() - depth, entry.measured);
+        entry.measured = 0;
       } else {
-        held_[i] = held_[--count_];
+        entry = held_[--count_];
       }
     }
   }
@@ -171,6 +169,18 @@ class LateManifold {
     GivenDepth depth;
     int measured = 0;  ///< runs since the pose that it was found at
   };
+  /// The end if there is none.
+  [[nodiscard]] std::size_t deepest_slid(const math::Pose& pose, double size, double margin) const noexcept {
+    std::size_t found = count_;
+    double deepest = -std::max(margin, tolerances::unmeasured_depth * size);
+    for (std::size_t i = 0; i < count_; ++i) {
+      const auto [depth, slip] = held_[i].held.parted(pose);
+      if (!(depth > deepest) || slip < tolerances::slid_measured * size) continue;
+      found = i;
+      deepest = depth;
+    }
+    return found;
+  }
   [[nodiscard]] static bool is_same(const HeldContact& x, const HeldContact& y, double size) noexcept {
     return (x.on_a() - y.on_a()).norm() <= tolerances::late_spacing * size &&
            x.normal().dot(y.normal()) > tolerances::hasty_agreement;

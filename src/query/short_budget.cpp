@@ -183,11 +183,18 @@ void begin_haste(const math::Pose& pose_b_in_a, Pair::Implementation& pair) noex
 
 /// Whether the contacts of earlier poses are of use now, far as the bodies may have moved. Of a wall that a body has
 /// come to since they know nothing.
+bool serves_unmeasured(const math::Pose& pose_b_in_a, const Request& request,
+                       const Pair::Implementation& pair) noexcept {
+  return !pair.flush.something_else_came() &&
+         pair.late->manifold().serves(pose_b_in_a, smaller_size(pair), request.margin);
+}
+
+/// The same once those that have slid are measured, which waits until the hit is proved.
 bool serves_late(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair,
                  Spending& spending) noexcept {
   if (pair.flush.something_else_came()) return false;
-  measure_slid(pose_b_in_a, pair, spending);
-  return pair.late->manifold().serves(pose_b_in_a, smaller_size(pair), request.margin);
+  measure_slid(pose_b_in_a, request, pair, spending);
+  return serves_unmeasured(pose_b_in_a, request, pair);
 }
 
 /// Those of them that overlap, or have come apart by less than the margin: what two rays would have to find again.
@@ -269,7 +276,7 @@ bool carry_late_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_
   const bool is_flush = pair.flush.serves();
   // Where there is never time for work on contacts, only a search sees what else has come to touch.
   if (is_flush && request.budget.microseconds < very_short_us && ++pair.hasty_runs % 2 == 0) return false;
-  if (!is_flush && !serves_late(pose_b_in_a, request, pair, spending)) return false;
+  if (!is_flush && !serves_unmeasured(pose_b_in_a, request, pair)) return false;
   if (!prove_carried(meshes, pair, spending)) return false;
   begin_haste(pose_b_in_a, pair);
   pair.answer.contacts_complete = false;

@@ -51,6 +51,9 @@ Seen measure(const math::Pose& pose_b_in_a, const Pair::Implementation& pair, do
   RayHit hit;
   const Seen seen = cast_budgeted_ray(other.shape, back * Vec3(point - reach * inwards), back.rotation * inwards,
                                       2.0 * reach, spending, hit);
+  // One that is not seen to its end within a ray's nodes would take the time of every run.
+  const bool had_time = spending.allows(most_nodes_of_a_ray) && spending.may_make_contacts();
+  if (seen == Seen::unknown && had_time) return Seen::none;
   if (seen != Seen::surface) return seen;
   const double cosine = facing(other.shape, hit.triangle, back.rotation * inwards);
   if (!((other.shape.is_solid() ? -cosine : std::abs(cosine)) > tolerances::same_contact_side)) return Seen::none;
@@ -65,10 +68,11 @@ Seen measure(const math::Pose& pose_b_in_a, const Pair::Implementation& pair, do
 
 }  // namespace
 
-void measure_slid(const math::Pose& pose_b_in_a, Pair::Implementation& pair, Spending& spending) noexcept {
+void measure_slid(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair,
+                  Spending& spending) noexcept {
   const double size = smaller_size(pair);
   bool is_reserved = false;
-  pair.late->manifold().measure_slid(pose_b_in_a, size, [&](HeldContact& held) noexcept {
+  pair.late->manifold().measure_slid(pose_b_in_a, size, request.margin, [&](HeldContact& held) noexcept {
     if (!is_reserved) spending.reserve_for_contacts(pair.endings.ray);
     is_reserved = true;
     return measure(pose_b_in_a, pair, size, spending, held);

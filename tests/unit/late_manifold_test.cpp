@@ -102,7 +102,7 @@ math::Pose slid(double way) {
 TEST(LateManifold, MeasuresWhatSlides) {
   const auto measured = [](LateManifold& manifold, const math::Pose& pose, Seen seen) {
     int count = 0;
-    manifold.measure_slid(pose, size, [&](HeldContact& held) noexcept {
+    manifold.measure_slid(pose, size, 0.0, [&](HeldContact& held) noexcept {
       ++count;
       if (seen != Seen::surface) return seen;
       Contact contact = held.at(pose);
@@ -130,6 +130,33 @@ TEST(LateManifold, MeasuresWhatSlides) {
   EXPECT_FALSE(manifold.serves(slid(0.0), size)) << "and it is none any more";
 }
 
+// What a ray finds deeper than was thought came in since the last one: a run's share of it is given, and the rest
+// slowly.
+TEST(LateManifold, GivesAShareOfWhatIsMeasuredDeeper) {
+  constexpr int runs = 4;
+  const double deeper = 2e-3;
+  LateManifold manifold;
+  manifold.keep(std::vector{contact_at(0.1, 0.1, 1e-5)}, {}, {}, size, 12);
+  const math::Pose far = slid(1.1 * tolerances::slid_measured);
+  for (int run = 0; run < runs; ++run) {
+    manifold.age(far, size);
+    static_cast<void>(written(manifold, far));
+  }
+  const double before = written(manifold, far)[0].depth;
+  manifold.measure_slid(far, size, 0.0, [&](HeldContact& held) noexcept {
+    Contact contact = held.at(far);
+    contact.depth += deeper;
+    held = HeldContact(contact, far);
+    return Seen::surface;
+  });
+  for (int run = 0; run < 3; ++run) {
+    const auto now = written(manifold, far);
+    ASSERT_EQ(now.size(), 1u);
+    EXPECT_NEAR(now[0].depth, before + deeper / runs + run * tolerances::late_rise * size, 1e-9) << run;
+    manifold.age(far, size);
+  }
+}
+
 // The patch that comes is of where the bodies were when it was asked for: what was measured since is newer.
 TEST(LateManifold, KeepsWhatWasMeasuredSinceItWasAsked) {
   for (const bool is_newer : {false, true}) {
@@ -138,7 +165,7 @@ TEST(LateManifold, KeepsWhatWasMeasuredSinceItWasAsked) {
     const math::Pose far = slid(1.1 * tolerances::late_slip);
     for (int run = 0; run < 3; ++run) manifold.age(far, size);
     if (is_newer) {
-      manifold.measure_slid(far, size, [&](HeldContact& held) noexcept {
+      manifold.measure_slid(far, size, 0.0, [&](HeldContact& held) noexcept {
         held = HeldContact(held.at(far), far);
         return Seen::surface;
       });

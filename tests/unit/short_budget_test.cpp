@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -188,6 +189,36 @@ TEST(ShortBudget, GivesTheDepthOfWhatSlides) {
       deep_in += exact.contacts.empty() ? 0.0 : exact.contacts.front().depth;
     }
     EXPECT_GT(given, (microseconds < 50.0 ? 0.05 : 0.3) * deep_in) << microseconds << " us";
+  }
+}
+
+// Rays for late contacts leave the hit its proof, and end on ground whose triangles lie along the axes.
+TEST(ShortBudget, ProvesWhatSlidesAndKeepsItsContacts) {
+  const auto shape_of = [](const std::string& name) {
+    return Shape::build(std::make_shared<const mesh::TriangleMesh>(mesh::made::make_shape(name).value())).value();
+  };
+  const auto ground = shape_of("made:box:x=1,y=1,z=0.1,cells=64");
+  const auto tool = shape_of("made:icosphere:radius=0.05,frequency=8");
+  const double size = tool->mesh().size();
+  for (const double microseconds : {3.0, 5.0, 10.0}) {
+    realtime::ManualClock clock(40);
+    auto pair = std::move(Pair::make(ground, tool, {.late_contacts = true})).value();
+    const auto pose = [&](double way) {
+      math::Pose above;
+      above.translation = {0.011 + way, 0.007, 0.1 - 2e-4 * size};
+      return above;
+    };
+    ASSERT_TRUE(runs_until_late(pair, pose(0.0), short_request(clock, microseconds)).has_value()) << microseconds;
+    constexpr int runs = 600;
+    int proved = 0;
+    int held = 0;
+    for (int run = 1; run <= runs; ++run) {
+      const Answer& answer = pair.run(pose(3e-4 * size * run), short_request(clock, microseconds));
+      proved += answer.basis == Basis::proved && answer.verdict == Verdict::hit ? 1 : 0;
+      held += answer.contacts_late && !answer.contacts.empty() ? 1 : 0;
+    }
+    EXPECT_EQ(proved, runs) << microseconds;
+    EXPECT_GT(held, runs * 9 / 10) << microseconds;
   }
 }
 

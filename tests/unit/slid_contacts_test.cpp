@@ -40,7 +40,7 @@ struct Slid {
     budget.work_units = work;
     Spending spending(budget);
     pair.late->age(pose, smaller_size(pair));
-    measure_slid(pose, pair, spending);
+    measure_slid(pose, {}, pair, spending);
     std::vector<Contact> contacts(8);
     contacts.resize(pair.late->manifold().write(pose, smaller_size(pair), contacts));
     return contacts;

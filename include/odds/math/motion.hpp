@@ -5,9 +5,8 @@
 
 namespace odds::math {
 
-/// The angle by which a frame turns from pose `from` to pose `to` is at most this while it is small: twice the sine of
-/// half of it. Radians.
-[[nodiscard]] inline double turn_bound(const Pose& from, const Pose& to) noexcept {
+/// Twice the sine of half the angle by which a frame turns from pose `from` to pose `to`: the angle while it is small.
+[[nodiscard]] inline double turn_between(const Pose& from, const Pose& to) noexcept {
   constexpr double root_half = 0.70710678118654757;
   return root_half * (to.rotation - from.rotation).norm();
 }
@@ -16,7 +15,7 @@ namespace odds::math {
 /// by an angle differs from the identity by 2 sin(angle / 2) in the spectral norm, and by sqrt(2) times that in the
 /// Frobenius norm.
 [[nodiscard]] inline double motion_bound(const Pose& from, const Pose& to, double reach) noexcept {
-  return ((to.translation - from.translation).norm() + reach * turn_bound(from, to)) * (1.0 + 1e-12);
+  return ((to.translation - from.translation).norm() + reach * turn_between(from, to)) * (1.0 + 1e-12);
 }
 
 /// The same of a body's points within `reach` of one of them, `place` in the body's frame. Metres.

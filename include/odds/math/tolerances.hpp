@@ -140,19 +140,19 @@ inline constexpr double slid_motion = 0.16;
 inline constexpr double late_turn = 0.02;  ///< see slid_motion
 /// Radians a run: bodies that turn by more against each other do not slide. Test: LateManifold.GivesTheShareOfARun.
 inline constexpr double late_turning = 1e-3;
-/// The same: one of them that has slid by more than the first is measured anew; by more than the second, it is not
-/// looked for.
-/// Test: LateManifold.MeasuresWhatSlides.
+/// Of the smaller body's size: a late contact that has slid by more than the first is measured anew; by more than the
+/// second, it is not looked for. Test: LateManifold.MeasuresWhatSlides.
 inline constexpr double slid_measured = 2.5e-3;
 inline constexpr double slid_slip = 0.08;  ///< see slid_measured
-inline constexpr double slid_bend = 0.2;   ///< of what it has slid, how far off its surface it is looked for
+/// Of what a contact has slid, how far off its surface it is looked for. Test: SlidContacts.TurnWithTheSurface.
+inline constexpr double slid_bend = 0.2;
 /// Cosine (10 degrees) from which a normal of a contact is that of its facet, and turns with the surface.
 /// Test: SlidContacts.TurnWithTheSurface.
 inline constexpr double slid_facet = 0.985;
-/// The same: one of them that has come apart by no more is kept for when it touches again; and across its normal. With
-/// 2e-2 and 1e-2 an edge that rocks by two degrees is found again without a patch, but bodies that land are held in the
-/// wrong places: of 528 starved stacks (`odds_ode_scenes --only stacks --ours --budgets 5,7`, 3 to 10 bricks) 6 fell,
-/// none with these. Test: LateManifold.ForgetsWhatHasGone.
+/// Of the smaller body's size: a late contact that has come apart by no more is kept for when it touches again; and
+/// across its normal. With 2e-2 and 1e-2 an edge that rocks by two degrees is found again without a patch, but bodies
+/// that land are held in the wrong places: of 528 starved stacks (`odds_ode_scenes --only stacks --ours --budgets 5,7`,
+/// 3 to 10 bricks) 6 fell, none with these. Test: LateManifold.ForgetsWhatHasGone.
 inline constexpr double late_gap = 5e-3;
 inline constexpr double late_slip = 5e-3;
 /// The same: late contacts of a short budget, or of bodies that slide, are those of bodies that are pressed together by

@@ -56,13 +56,13 @@ struct Contact {
 /// What the query spent. Times in microseconds by the budget's clock.
 struct Cost {
   std::uint64_t node_pairs = 0;      ///< pairs of bounding volumes tested
-  std::uint64_t triangle_pairs = 0;  ///< pairs of triangles given to the exact kernel; of the wide engine also each
-                                     ///< comparison of one triangle with the eight of a leaf
-  std::uint64_t queue_full = 0;      ///< pairs that found the queue full and were searched at once instead
-  double gross_us = 0.0;             ///< from call to return
-  double stall_us = 0.0;             ///< gaps between two clock polls too long to be the query's own work (pre-emption)
-  double overshoot_us = 0.0;         ///< gross time beyond the budget, >= 0
-  double net_overshoot_us = 0.0;     ///< the same without the stalls, >= 0
+  std::uint64_t triangle_pairs = 0;  ///< pairs of triangles tested exactly, or found certain to meet; of the wide
+                                     ///< engine also each comparison of one triangle with the eight of a leaf
+  std::uint64_t queue_full = 0;   ///< pairs that found the queue full and were searched at once instead
+  double gross_us = 0.0;          ///< from call to return
+  double stall_us = 0.0;          ///< gaps between two clock polls too long to be the query's own work (pre-emption)
+  double overshoot_us = 0.0;      ///< gross time beyond the budget, >= 0
+  double net_overshoot_us = 0.0;  ///< the same without the stalls, >= 0
   std::uint32_t longest_unpolled_units = 0;  ///< most work units done between two polls of the clock
   [[nodiscard]] double net_us() const noexcept { return gross_us - stall_us; }
 };

@@ -52,7 +52,8 @@ class RayCast {
       const float across = segment_.direction[i];
       const float motion = std::max(across < 0.0F ? -across : across, least_motion);
       inverse_[i] = 1.0F / motion;
-      turned_[i] = across * inverse_[i] * inverse_[i];
+      // Not 0 of a ray along an axis, or it would be in every slab across it.
+      turned_[i] = across < 0.0F ? -inverse_[i] : inverse_[i];
     }
   }
 
