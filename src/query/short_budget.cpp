@@ -284,6 +284,7 @@ bool carry_late_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_
     write_flush(meshes, false, request, pair, spending);
     learn_from_work(meshes, pair, spending);
   } else {
+    measure_slid(pose_b_in_a, request, pair, spending);
     write_late(pose_b_in_a, request, pair);
     add_flush(request, pair, spending);
   }
