@@ -110,6 +110,7 @@ class LateManifold {
       const auto [depth, slip] = entry.held.parted(pose);
       const Seen seen = slip <= tolerances::slid_slip * size ? measure(entry.held) : Seen::none;
       if (seen == Seen::unknown) return;
+      // One that was not put where the bodies are now would be asked about for ever.
       if (seen == Seen::surface && entry.held.parted(pose).slip < tolerances::slid_measured * size) {
         entry.depth.correct(entry.held.depth(), entry.held.depth() - depth, entry.measured);
         entry.measured = 0;
@@ -119,8 +120,8 @@ class LateManifold {
     }
   }
 
-  /// Whether the bodies have moved no farther than they are carried, and one of them at
-  /// least overlaps, or has come apart by less than `margin`, metres.
+  /// Whether the bodies have moved no farther than they are carried, and one of them at least overlaps, or has come
+  /// apart by less than `margin`, metres.
   [[nodiscard]] bool serves(const math::Pose& pose, double size, double margin = 0.0) const noexcept {
     if (count_ == 0 || !are_carried(held_[0].held.on_b(), pose_, pose, size)) return false;
     const double most_slip = tolerances::late_slip * size;
