@@ -103,7 +103,8 @@ struct FaceSums {
 };
 
 struct Kernels {
-  /// As `place`, of up to eight; returns how many were placed, those that cannot be left out.
+  /// Fetches the triangles of up to eight pairs; returns how many. Those with an index out of range or a coordinate that
+  /// is not finite are left out.
   std::size_t (*place)(const PatchInput& input, std::span<const TrianglePair> hits, PlacedPair* placed) noexcept;
   /// As `rim_pieces` of placed[0] .. placed[count - 1], count in 1 .. 8.
   void (*cut)(const PlacedPair* placed, std::size_t count, CutEight& pieces) noexcept;

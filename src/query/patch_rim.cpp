@@ -12,17 +12,6 @@ namespace {
 
 using Corners = std::array<Vec3, 3>;
 
-Vec3 unit_normal(const Corners& t) noexcept {
-  const Vec3 u = t[1] - t[0];
-  const Vec3 v = t[2] - t[0];
-  const Vec3 w = t[2] - t[1];
-  const Vec3 cross = u.cross(v);
-  const double longest = std::max({u.squaredNorm(), v.squaredNorm(), w.squaredNorm()});
-  const double twice_area = cross.norm();
-  if (!(twice_area > tolerances::degenerate_triangle * longest)) return Vec3::Zero();
-  return cross * (1.0 / twice_area);
-}
-
 /// The one or two points in which the border of a triangle meets a plane, given its corners' heights above the plane.
 struct Crossing {
   std::array<Vec3, 3> points;
@@ -174,24 +163,6 @@ Vec3 degenerate_point(const PlacedPair& placed) noexcept {
 }
 
 }  // namespace
-
-bool place(const PatchInput& input, const TrianglePair& index, PlacedPair& placed) noexcept {
-  if (index.a >= input.triangles_a.size() || index.b >= input.triangles_b.size()) return false;
-  bool finite = true;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::uint32_t va = input.triangles_a[index.a][i];
-    const std::uint32_t vb = input.triangles_b[index.b][i];
-    if (va >= input.vertices_a.size() || vb >= input.vertices_b.size()) return false;
-    placed.a[i] = input.vertices_a[va];
-    placed.b[i] = input.pose_b_in_a * input.vertices_b[vb];
-    finite = finite && placed.a[i].allFinite() && placed.b[i].allFinite();
-  }
-  if (!finite) return false;
-  placed.normal_a = unit_normal(placed.a);
-  placed.normal_b = unit_normal(placed.b);
-  placed.index = index;
-  return true;
-}
 
 std::size_t rim_pieces(const PlacedPair& placed, bool both_solid, std::uint32_t pair,
                        std::span<RimPiece, most_pieces_of_a_pair> pieces) noexcept {

@@ -35,9 +35,6 @@ struct RimPiece {
 
 constexpr std::size_t most_pieces_of_a_pair = 6;
 
-/// Fetches the triangles; false if an index is out of range or a coordinate is not finite.
-[[nodiscard]] bool place(const PatchInput& input, const TrianglePair& index, PlacedPair& placed) noexcept;
-
 /// Writes the pieces of rim of two triangles that are known to meet (`pair` stands in each of them) and returns how
 /// many: 1 as a rule; for coplanar triangles that face each other the sides of their common polygon, for coplanar ones
 /// that face the same way nothing if both bodies are solid (they say nothing about a direction); at least a point

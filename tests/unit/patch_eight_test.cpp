@@ -3,11 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cstring>
 #include <limits>
 #include <vector>
 
 #include "odds/math/random.hpp"
+#include "odds/math/tolerances.hpp"
 #include "query/wide/searches.hpp"
 
 namespace odds::query::patch {
@@ -59,6 +62,26 @@ struct Scene {
   }
 };
 
+Vec3 unit_normal(const std::array<Vec3, 3>& t) {
+  const Vec3 cross = (t[1] - t[0]).cross(t[2] - t[0]);
+  const double longest =
+      std::max({(t[1] - t[0]).squaredNorm(), (t[2] - t[0]).squaredNorm(), (t[2] - t[1]).squaredNorm()});
+  return cross.norm() > tolerances::degenerate_triangle * longest ? Vec3(cross.normalized()) : Vec3(Vec3::Zero());
+}
+
+/// One pair, by Eigen.
+PlacedPair place(const PatchInput& input, const TrianglePair& index) {
+  PlacedPair placed;
+  for (std::size_t k = 0; k < 3; ++k) {
+    placed.a[k] = input.vertices_a[input.triangles_a[index.a][k]];
+    placed.b[k] = input.pose_b_in_a * input.vertices_b[input.triangles_b[index.b][k]];
+  }
+  placed.normal_a = unit_normal(placed.a);
+  placed.normal_b = unit_normal(placed.b);
+  placed.index = index;
+  return placed;
+}
+
 std::vector<const Kernels*> all_kernels() {
   std::vector<const Kernels*> all;
   for (const InstructionSet set :
@@ -80,8 +103,7 @@ TEST(PatchEight, PlacesAsOneAtATime) {
       const std::vector<PlacedPair> pairs = scene.placed(*kernels);
       ASSERT_EQ(pairs.size(), scene.hits.size());
       for (std::size_t i = 0; i < pairs.size(); ++i) {
-        PlacedPair one;
-        ASSERT_TRUE(place(scene.input, scene.hits[i], one));
+        const PlacedPair one = place(scene.input, scene.hits[i]);
         EXPECT_EQ(pairs[i].index.a, one.index.a);
         EXPECT_EQ(pairs[i].index.b, one.index.b);
         for (std::size_t k = 0; k < 3; ++k) {
@@ -92,6 +114,24 @@ TEST(PatchEight, PlacesAsOneAtATime) {
         EXPECT_EQ(pairs[i].normal_b.isZero(0.0), one.normal_b.isZero(0.0));
         EXPECT_LE((pairs[i].normal_a - one.normal_a).norm(), 1e-9);
         EXPECT_LE((pairs[i].normal_b - one.normal_b).norm(), 1e-9);
+      }
+    }
+  }
+}
+
+TEST(PatchEight, LeavesOutWhatIsNotFiniteInAnyCoordinate) {
+  for (const Kernels* kernels : all_kernels()) {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+        for (const bool of_a : {true, false}) {
+          Scene scene(0);  // its pose is no turn, which would spread it over all axes
+          (of_a ? scene.vertices_a : scene.vertices_b)[7][axis] = bad;
+          scene.hits = {{0, 0}, {2, 2}, {3, 3}};
+          scene.input.hits = scene.hits;
+          const std::vector<PlacedPair> pairs = scene.placed(*kernels);
+          ASSERT_EQ(pairs.size(), 2U) << axis << of_a;
+          EXPECT_EQ(pairs[1].index.a, 3U);
+        }
       }
     }
   }
