@@ -58,7 +58,7 @@ Counts compare(const Leaf& a, const Leaf& b, const math::Pose& pose) {
       const PlacedLeaf leaf_b = met.leaf(1, slot_b);
       const LeafPairs pairs = leaf_pairs<L>(leaf_a, leaf_b, met.turn_into(0), shift, met.margin(), true);
       alignas(64) float gaps[wide_lanes][wide_lanes];
-      triangle_gaps<L>(leaf_a, leaf_b, met.turn_into(0), shift, met.margin(), gaps);
+      triangle_gaps<L>(SpreadLeaves<L>(leaf_a, leaf_b, met.turn_into(0), shift, met.margin()), leaf_b.count(), gaps);
       for (std::uint32_t row = 0; row < leaf_b.count(); ++row) {
         for (std::uint32_t lane = 0; lane < leaf_a.count(); ++lane) {
           const bool asked = (pairs.rows >> row & 1U) != 0 && (pairs.lanes_a[row] >> lane & 1U) != 0;

@@ -56,6 +56,13 @@ void Encounter::bring_nearer(std::uint32_t triangle_a, std::uint32_t triangle_b,
   task.triangles = {triangle_a, triangle_b};
 }
 
+Vec3 Encounter::shortest_way(std::uint32_t triangle_a, std::uint32_t triangle_b) const noexcept {
+  const tree::TriangleCorners a = meshes_.corners_a(triangle_a);
+  const tree::TriangleCorners b = meshes_.corners_b(triangle_b);
+  const primitive::ClosestPoints points = primitive::closest_points(a.data(), b.data());
+  return points.on_b - points.on_a;
+}
+
 volume::Aabb Encounter::box(const tree::WideTree& tree, Slot slot) noexcept {
   const tree::WideNode& node = tree.nodes()[slot / wide_lanes];
   const std::uint32_t lane = slot % wide_lanes;

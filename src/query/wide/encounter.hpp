@@ -66,6 +66,9 @@ class Encounter {
   /// Keeps the nearest points of two triangles in the task if they are nearer than its bound.
   void bring_nearer(std::uint32_t triangle_a, std::uint32_t triangle_b, NearestTask& task) const noexcept;
 
+  /// From the point of A's triangle that is nearest to B's to that of B's, in A's frame.
+  [[nodiscard]] Vec3 shortest_way(std::uint32_t triangle_a, std::uint32_t triangle_b) const noexcept;
+
   /// See query::Encounter.
   [[nodiscard]] float rank(Slot slot_a, Slot slot_b) const noexcept;
   [[nodiscard]] float probability(Slot slot_a, Slot slot_b) const noexcept;

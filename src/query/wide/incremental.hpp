@@ -7,6 +7,7 @@
 
 #include "query/spread_step.hpp"
 #include "query/wide/opening.hpp"
+#include "query/wide/part_leaves.hpp"
 
 namespace odds::query::wide {
 
@@ -159,6 +160,10 @@ class Incremental {
         leave_rest_open(i, end);
         return i;
       }
+      if (front_.is_parted(i)) {
+        ++i;
+        continue;
+      }
       if (spent() >= last_unit_) return i;
       if (!may_go_on()) {
         leave_rest_open(i, end);
@@ -180,11 +185,20 @@ class Incremental {
       front_.set_expiry(i, open(entry));
       return go_down();
     }
-    double expiry = KineticFront::at_once;
     const std::size_t hits = task_.hits.size();
-    const bool goes_on = test_leaves(entry.a, entry.b, expiry);
-    front_.set_met(i, task_.hits.size() > hits || was_met_around(entry.a, entry.b) || (!goes_on && entry.met));
-    front_.set_expiry(i, goes_on ? expiry : KineticFront::at_once);
+    bool close = false;
+    const bool goes_on = test_leaves(entry.a, entry.b, close);
+    const bool met = task_.hits.size() > hits || was_met_around(entry.a, entry.b);
+    front_.set_met(i, met || (!goes_on && entry.met));
+    Parting parting;
+    // Leaves that are looked at again are near each other for a while, where a plane is worth its time.
+    if (goes_on && !met) {
+      const LaneNumbers leaf_b = met_.numbers(1, entry.b);
+      const bool by_plane = !task_.spending.nears_end() && front_.may_be_parted(i, leaf_b);
+      if (by_plane || !close) part(entry.a, entry.b, by_plane, parting);
+      if (by_plane) front_.note_parting(i, parting, leaf_b);
+    }
+    front_.set_expiry(i, expiry_of(parting));
     return goes_on;
   }
 
@@ -216,14 +230,30 @@ class Incremental {
     stack_.add(expanded, inner & ~deepest);
     stack_.add(expanded, inner & deepest);
     stack_.add(expanded, lanes & expanded.leaf_lanes);
-    entry.opened = static_cast<std::uint16_t>(entry.opened | expanded.lanes);
+    entry.opened = static_cast<std::uint8_t>(entry.opened | expanded.lanes);
     alignas(64) float gap[wide_lanes];
     L::store(gap, expanded.gaps);
+    keep_near(expanded, gap, entry);
     float least = 1e30F;  // empty lanes are farther
     for (std::uint32_t lane = 0; lane < wide_lanes; ++lane) {
       if ((entry.opened >> lane & 1U) == 0) least = std::min(least, gap[lane]);
     }
-    return front_.travelled() + static_cast<double>(least) - static_cast<double>(met_.margin());
+    return expiry_of_gap(least);
+  }
+
+  /// Lanes that are apart by little become entries of their own, so that they do not have all others looked at again.
+  void keep_near(const Expanded<L>& expanded, const float (&gap)[wide_lanes], KineticFront::Entry& entry) noexcept {
+    const float skin = met_.margin() + static_cast<float>(front_.skin());
+    const unsigned near = L::less_equal(expanded.gaps, L::all(skin)) & ~static_cast<unsigned>(entry.opened);
+    entry.opened = static_cast<std::uint8_t>(entry.opened | near);
+    for (unsigned lanes = near; lanes != 0; lanes &= lanes - 1U) {
+      const auto lane = static_cast<unsigned>(std::countr_zero(lanes));
+      const Slot slots[2] = {expanded.first + lane, expanded.other};
+      front_.add({slots[expanded.side], slots[1 - expanded.side]}, expiry_of_gap(gap[lane]));
+    }
+  }
+  [[nodiscard]] double expiry_of_gap(float gap) const noexcept {
+    return front_.travelled() + static_cast<double>(gap) - static_cast<double>(met_.margin());
   }
 
   /// Down from the stack. False ends the search; what it did not look into is kept as expired.
@@ -236,7 +266,13 @@ class Incremental {
       const std::size_t hits = task_.hits.size();
       bool goes_on = true;
       if (met_.are_leaves(entry.a, entry.b)) {
-        goes_on = test_leaves(entry.a, entry.b, expiry);
+        bool close = false;
+        goes_on = test_leaves(entry.a, entry.b, close);
+        if (goes_on && !close && !was_met_around(entry.a, entry.b)) {
+          Parting parting;
+          part(entry.a, entry.b, false, parting);
+          expiry = expiry_of(parting);
+        }
       } else {
         expiry = open(entry);
       }
@@ -273,7 +309,8 @@ class Incremental {
     return false;
   }
 
-  bool test_leaves(Slot a, Slot b, double& expiry) noexcept {
+  /// `close`: single precision sees no gap. False ends the search.
+  bool test_leaves(Slot a, Slot b, bool& close) noexcept {
     if (was_met_around(a, b)) {
       KineticFront::LastMet& last = front_.last_met();
       last.is_entry = last.is_entry || (last.a == a && last.b == b);
@@ -281,23 +318,34 @@ class Incremental {
     }
     const std::size_t hits = task_.hits.size();
     const LeafPairs pairs = compare_leaves<L>(task_, a, b);
+    close = pairs.rows != 0;
     const bool goes_on = visit_triangles(task_, a, b, pairs);
     if (task_.hits.size() > hits) note_met(a, b, true);
-    if (!goes_on) {
-      if (task_.result.ended == Progressed::spent) leave_open<L>(task_, {a, b, unranked});
-      return false;
-    }
-    if (pairs.rows == 0) {  // else there is no gap that single precision can see
-      const float gap = gap_of_leaves(a, b);
-      if (gap > 0.0F) expiry = front_.travelled() + static_cast<double>(gap);
-    }
-    return true;
+    if (!goes_on && task_.result.ended == Progressed::spent) leave_open<L>(task_, {a, b, unranked});
+    return goes_on;
   }
 
-  [[nodiscard]] float gap_of_leaves(Slot slot_a, Slot slot_b) const noexcept {
+  /// Of two leaves that do not meet.
+  void part(Slot a, Slot b, bool by_plane, Parting& parting) noexcept {
     float shift[3];
-    met_.shift(slot_a, slot_b, shift);
-    return leaf_gap<L>(met_.leaf(0, slot_a), met_.leaf(1, slot_b), met_.turn_into(0), shift, met_.margin());
+    met_.shift(a, b, shift);
+    const PlacedLeaf leaf_a = met_.leaf(0, a);
+    const PlacedLeaf leaf_b = met_.leaf(1, b);
+    const SpreadLeaves<L> leaves(leaf_a, leaf_b, met_.turn_into(0), shift, met_.margin());
+    task_.spending.hasten_poll(units_between_polls);
+    if (by_plane) {
+      part_by_triangles<L>(leaves, leaf_a.count(), leaf_b.count(), parting);
+      if (parting.parts) return;
+    }
+    const GapsOfTriangles<L> gaps(leaves, leaf_b.count());
+    parting.gap = gaps.least;
+    if (!by_plane || !task_.spending.may_go_on()) return;
+    const Vec3 way = met_.shortest_way(leaf_a.leaf.triangle[gaps.lane], leaf_b.leaf.triangle[gaps.row]);
+    part_by_nearest<L>(leaves, gaps, way, parting);
+  }
+  [[nodiscard]] double expiry_of(const Parting& parting) const noexcept {
+    const float gap = parting.parts ? std::max(parting.gap, std::min(parting.along, parting.beside)) : parting.gap;
+    return gap > 0.0F ? front_.travelled() + static_cast<double>(gap) : KineticFront::at_once;
   }
 
   Task& task_;

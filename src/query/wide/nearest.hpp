@@ -78,7 +78,7 @@ class Nearest {
     float shift[3];
     met_.shift(pair.of[0], pair.of[1], shift);
     alignas(64) float gaps[wide_lanes][wide_lanes];
-    triangle_gaps<L>(in_a, in_b, met_.turn_into(0), shift, met_.margin(), gaps);
+    triangle_gaps<L>(SpreadLeaves<L>(in_a, in_b, met_.turn_into(0), shift, met_.margin()), in_b.count(), gaps);
     const std::uint32_t rows = in_b.count();
     task_.spending.spend_triangle_pairs(rows);
     // The nearest first, so that the bound sinks before the others are asked.

@@ -160,31 +160,41 @@ ODDS_LANES_INLINE LeafPairs leaf_pairs(const PlacedLeaf& in_a, const PlacedLeaf&
   return found;
 }
 
+/// Two leaves with all that is compared of their triangles, B's one by one.
+template <class L>
+struct SpreadLeaves {
+  TwoLeaves<L> leaves;
+  Rows<L> rows_of_b;
+
+  ODDS_LANES_INLINE SpreadLeaves(const PlacedLeaf& in_a, const PlacedLeaf& in_b, const Turn& turn, const float shift[3],
+                                 float margin) noexcept {
+    leaves.measure(in_a, in_b, turn, shift, margin);
+    leaves.place_b(in_b.leaf, turn, shift);
+    leaves.place_a(in_a.leaf);
+    leaves.find_planes();
+    rows_of_b.keep_boxes(leaves.b, 0.0F);
+    rows_of_b.keep_planes(leaves.b);
+  }
+};
+
 /// For each of B's triangles (rows) and A's (lanes) a lower bound of their distance, from boxes and planes and, where
 /// those say nothing, from outlines; 0 or less says nothing. Metres. Lanes and rows beyond the leaves' counts say
 /// nothing.
 template <class L>
-ODDS_LANES_INLINE void triangle_gaps(const PlacedLeaf& in_a, const PlacedLeaf& in_b, const Turn& turn,
-                                     const float shift[3], float margin,
+ODDS_LANES_INLINE void triangle_gaps(const SpreadLeaves<L>& spread, std::uint32_t rows,
                                      float (&gaps)[wide_lanes][wide_lanes]) noexcept {
   using F = typename L::Float;
   constexpr float shortest_normal = 1e-18F;  // shorter ones have lost digits to underflow
   constexpr float below = 0.999999F;         // covers the rounding of roots and quotients
-  TwoLeaves<L> leaves;
-  leaves.measure(in_a, in_b, turn, shift, margin);
-  leaves.place_b(in_b.leaf, turn, shift);
-  leaves.place_a(in_a.leaf);
-  leaves.find_planes();
-  Rows<L> b;
-  b.keep_boxes(leaves.b, 0.0F);
-  b.keep_planes(leaves.b);
+  const TwoLeaves<L>& leaves = spread.leaves;
   const EightTriangles<L>& a = leaves.a;
+  const Rows<L>& b = spread.rows_of_b;
   const F inverse_a = L::divide(L::all(below), L::max(a.lengths_of_normals(), L::all(shortest_normal)));
   alignas(64) float lengths_b[wide_lanes];
   L::store(lengths_b, leaves.b.lengths_of_normals());
   const F slack = L::all(2.0F * leaves.delta);
   const F unscale = L::all(1.0F / leaves.scale);
-  for (unsigned row = 0; row < in_b.count(); ++row) {
+  for (unsigned row = 0; row < rows; ++row) {
     F squares = L::all(0.0F);  // boxes apart along several axes are apart by their legs
     for (int i = 0; i < 3; ++i) {
       const F leg = L::max(L::all(b.lower[i][row]) - a.upper[i], a.lower[i] - L::all(b.upper[i][row])) - slack;
@@ -202,21 +212,6 @@ ODDS_LANES_INLINE void triangle_gaps(const PlacedLeaf& in_a, const PlacedLeaf& i
     }
     L::store(gaps[row], gap * unscale);
   }
-}
-
-/// The least of these.
-template <class L>
-ODDS_LANES_INLINE float leaf_gap(const PlacedLeaf& in_a, const PlacedLeaf& in_b, const Turn& turn, const float shift[3],
-                                 float margin) noexcept {
-  alignas(64) float gaps[wide_lanes][wide_lanes];
-  triangle_gaps<L>(in_a, in_b, turn, shift, margin, gaps);
-  typename L::Float least = L::load(gaps[0]);
-  for (unsigned row = 1; row < in_b.count(); ++row) least = L::min(least, L::load(gaps[row]));
-  alignas(64) float of[wide_lanes];
-  L::store(of, least);
-  float smallest = of[0];
-  for (std::uint32_t lane = 1; lane < in_a.count(); ++lane) smallest = std::min(smallest, of[lane]);
-  return smallest;
 }
 
 }  // namespace odds::query::wide
