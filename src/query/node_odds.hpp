@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 
 #include "odds/math/pose.hpp"
 #include "odds/probability/balls_into_bins.hpp"
@@ -150,13 +151,38 @@ using NodeWeights = std::array<float, NodeNumbers::count>;
 /// What a pair of nodes says about where the surfaces meet; in A's tree frame, metres.
 struct MetPlace {
   Vec3 position;        ///< between both centroids, nearer to that of the smaller node, which says more about where
-  Vec3 facing;          ///< mean normal of B's surface less that of A's: from outwards of A to into A; 0 .. 2 long
+  Vec3 facing;          ///< from outwards of A to into A: see facing_where_they_touch
   double opposition;    ///< 0 .. 1: how much the mean normals face each other; 0 of sides of an edge, that cannot meet
   Vec3 beyond;          ///< from A's centroid to B's
   double thickness;     ///< of the thinner of both patches
   double flatness;      ///< 0 .. 1: a patch that faces all ways, as of a whole closed body, has no side to be beyond
   double inverse_size;  ///< of both bounding volumes together, 1/m
 };
+
+/// 1/m: of a cap of a ball of that area whose normals have that mean; it may be bent either way. 0 of what is no patch.
+[[nodiscard]] inline double curvature_of(double area, double mean_normal) noexcept {
+  constexpr double whole_sphere = 4.0 * std::numbers::pi;
+  constexpr double least_bent = 1e-6;  // single precision says no more of what is flat
+  const double squared = whole_sphere * std::max(1.0 - mean_normal, least_bent) / area;
+  return area > 0.0 && std::isfinite(squared) ? std::sqrt(squared) : 0.0;
+}
+
+/// The direction into A in which two patches touch, from the means of their normals and `to_a`, from B's centroid to
+/// A's; not unit.
+///
+/// Patches that a search has not looked into are larger than where they touch, and that is aside of their middles. Of
+/// two balls of curvatures k and l it is known how far: where the patches are m and n and lie at p and q, the normal is
+/// (k n - l m + k l (p - q)) / (k + l), whatever caps they are. Surfaces that touch are mostly bent as balls are; since
+/// some are not, half of the way counts. Equal or unknown curvatures and one place leave the difference of the normals.
+[[nodiscard]] inline Vec3 facing_where_they_touch(const Vec3& normal_a, double area_a, const Vec3& normal_b,
+                                                  double area_b, const Vec3& to_a) noexcept {
+  constexpr double trust = 0.5;
+  const double bent_a = curvature_of(area_a, normal_a.norm());
+  const double bent_b = curvature_of(area_b, normal_b.norm());
+  const double share_a = bent_a / (bent_a + bent_b);
+  if (!(share_a > 0.0 && share_a < 1.0)) return normal_b - normal_a;
+  return 2.0 * (share_a * normal_b - (1.0 - share_a) * normal_a + trust * share_a * bent_b * to_a);
+}
 
 /// `b_in_a` of the trees' frames; radii of the bounding volumes.
 [[nodiscard]] inline MetPlace met_place(const tree::NodeStatistics& a, const tree::NodeStatistics& b, double radius_a,
@@ -171,7 +197,8 @@ struct MetPlace {
   const double weight_a = std::isfinite(share) ? share : 0.5;  // radii of 1e19 m are infinite
   place.beyond = centroid_b - centroid_a;
   place.position = centroid_a + (1.0 - weight_a) * place.beyond;
-  place.facing = normal_b - normal_a;
+  place.facing = facing_where_they_touch(normal_a, static_cast<double>(a.area), normal_b, static_cast<double>(b.area),
+                                         -place.beyond);
   place.opposition = std::clamp(-normal_a.dot(normal_b), 0.0, 1.0);
   constexpr double closed = 1e-3;
   if (!(place.facing.squaredNorm() > closed * closed)) {

@@ -1,10 +1,14 @@
 // Where the most probable pair of cells says that surfaces meet, when a query ends before it is decided.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 
 #include "odds/mesh/made/by_name.hpp"
 #include "odds/query/pair.hpp"
+#include "query/node_odds.hpp"
 #include "query/way_apart.hpp"
 
 namespace odds::query {
@@ -69,6 +73,46 @@ TEST(LikeliestPlace, OfABrickOnTheEndOfASlabPushesStraight) {
   }
   EXPECT_GE(guessed, 10);
   EXPECT_EQ(sideways, 0) << "of " << guessed;
+}
+
+/// What a node says of a cap of a ball: all points within an angle about an axis.
+struct Cap {
+  Vec3 axis;  ///< unit
+  double radius;
+  double angle;
+
+  [[nodiscard]] double flatness() const { return 0.5 * (1.0 + std::cos(angle)); }
+  [[nodiscard]] Vec3 mean_normal() const { return flatness() * axis; }
+  [[nodiscard]] double area() const { return 2.0 * std::numbers::pi * radius * radius * (1.0 - std::cos(angle)); }
+};
+
+/// Two balls touch on z, B above A; the patches of both lie aside of that.
+TEST(FacingWhereTheyTouch, IsNearerToThatOfTwoBallsThanTheNormalsOfPatchesAside) {
+  const auto off = [](const Vec3& direction) { return std::acos(std::min(1.0, -direction.normalized().z())); };
+  for (const double radius_b : {0.2, 1.0, 3.0}) {
+    for (const double aside_a : {-0.3, 0.0, 0.4}) {
+      for (const double aside_b : {-0.4, 0.2, 0.5}) {
+        const Cap a{{std::sin(aside_a), 0.0, std::cos(aside_a)}, 1.0, 0.6};
+        const Cap b{{0.0, std::sin(aside_b), -std::cos(aside_b)}, radius_b, 0.5};
+        const Vec3 centroid_a = a.mean_normal() * a.radius;
+        const Vec3 centroid_b = Vec3(0, 0, 1.0 + radius_b) + b.mean_normal() * b.radius;
+        const Vec3 facing =
+            facing_where_they_touch(a.mean_normal(), a.area(), b.mean_normal(), b.area(), centroid_a - centroid_b);
+        EXPECT_LT(off(facing), 0.75 * off(b.mean_normal() - a.mean_normal()))
+            << radius_b << " " << aside_a << " " << aside_b;
+      }
+    }
+  }
+}
+
+TEST(FacingWhereTheyTouch, OfFlatAndOfUnknownPatchesIsTheDifferenceOfTheNormals) {
+  const Vec3 up = Vec3::UnitZ();
+  const Vec3 aside = Vec3(0.3, 0.0, -1.0).normalized();
+  const Vec3 flat = facing_where_they_touch(up, 0.01, aside, 0.01, Vec3(0.05, 0.0, 0.0));
+  EXPECT_LT(flat.normalized().cross((aside - up).normalized()).norm(), 1e-3);
+  for (const double area : {0.0, 1e-320, std::numeric_limits<double>::infinity()}) {
+    EXPECT_EQ(facing_where_they_touch(up, area, 0.5 * aside, 0.01, Vec3(1.0, 0.0, 0.0)), 0.5 * aside - up) << area;
+  }
 }
 
 TEST(WayApart, IsAlongTheSideOfLeastOverlap) {
