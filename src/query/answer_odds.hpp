@@ -12,20 +12,33 @@
 
 namespace odds::query {
 
-/// Ten numbers in, a probability out: a logistic regression, and a monotone line of ten pieces that bends what it says
-/// to what was seen.
+/// Twelve numbers in, a probability out: a logistic regression, and a monotone line that bends what it says to what was
+/// seen.
 struct AnswerOdds {
-  static constexpr std::size_t count = 10;
-  static constexpr std::size_t knots = 11;
+  static constexpr std::size_t count = 12;
+  static constexpr std::size_t most_pieces = 20;
   std::array<float, count> weights{};
-  std::array<float, knots> seen{};  ///< shares of hits where the regression says 0, 0.1, ... 1; ascending
+  /// Shares of hits where the regression says 0, 1 / pieces, ... 1; ascending. What follows is not used.
+  std::array<float, most_pieces + 1> seen{};
+  std::size_t pieces = 10;  ///< of the line, all of one length
 };
+
+/// Of the wide engine a finer line, and how thin surfaces are, make odds truer on meshes that they were not fitted on;
+/// of kdop18 they did not, and of the other volumes nobody tried.
+[[nodiscard]] constexpr std::size_t pieces_of(volume::Kind kind) noexcept {
+  return kind == volume::Kind::wide ? AnswerOdds::most_pieces : 10;
+}
+/// Where a search goes depth-first, what it leaves open is any pair, and how thin that is says nothing.
+[[nodiscard]] constexpr bool counts_thin(volume::Kind kind, Method method) noexcept {
+  return kind == volume::Kind::wide && method == Method::time_critical;
+}
 
 /// Surfaces that face the same way, as of nested shells, follow a law of their own: all numbers count once as they are
 /// and once times `facing`.
 [[nodiscard]] constexpr std::array<float, AnswerOdds::count> numbers_of(const Remains& r) noexcept {
   const float f = r.facing;
-  return {1.0F, r.spent, r.open, r.logit, r.rank, f, f * r.spent, f * r.open, f * r.logit, f * r.rank};
+  return {1.0F,        r.spent,    r.open,      r.logit,    r.rank, f,
+          f * r.spent, f * r.open, f * r.logit, f * r.rank, r.thin, f * r.thin};
 }
 
 /// What the regression says, in [0, 1].
@@ -47,8 +60,8 @@ inline constexpr std::size_t odds_tables = 4 * volume::kind_names.size();
 
 /// Probability of a hit, in (0, 1): among searches that left this undecided, such a share met a hit.
 [[nodiscard]] inline double probability_of_hit(const AnswerOdds& odds, const Remains& remains) noexcept {
-  const float at = 10.0F * std::clamp(regression(odds, remains), 0.0F, 1.0F);
-  const auto knot = std::min(static_cast<std::size_t>(at), AnswerOdds::knots - 2);
+  const float at = static_cast<float>(odds.pieces) * std::clamp(regression(odds, remains), 0.0F, 1.0F);
+  const auto knot = std::min(static_cast<std::size_t>(at), odds.pieces - 1);
   const float part = at - static_cast<float>(knot);
   return static_cast<double>(odds.seen[knot] + part * (odds.seen[knot + 1] - odds.seen[knot]));
 }

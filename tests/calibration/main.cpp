@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -76,7 +77,7 @@ Tables gather(const std::vector<Meeting>& meetings, volume::Kind volume, const O
 /// Each meeting counts the same, however many of its answers have no proof; but a handful does not outweigh a thousand.
 double weight_in(const Kept& kept) { return 1000.0 / std::max(300.0, static_cast<double>(kept.answers.size())); }
 
-/// Shares of hits by what the regression says: pooled until they ascend (isotonic regression), read at every tenth.
+/// Shares of hits by what the regression says: pooled until they ascend (isotonic regression), read at every knot.
 void bend(const std::vector<Kept>& all, query::AnswerOdds& odds) {
   std::vector<Case> cases;
   for (const Kept& kept : all) {
@@ -85,21 +86,24 @@ void bend(const std::vector<Kept>& all, query::AnswerOdds& odds) {
     }
   }
   const std::vector<Level> levels = ascending_levels(std::move(cases), 40);
-  for (std::size_t k = 0; k < query::AnswerOdds::knots; ++k) {
-    odds.seen[k] = static_cast<float>(level_at(levels, 0.1 * static_cast<double>(k)));
+  for (std::size_t k = 0; k <= odds.pieces; ++k) {
+    odds.seen[k] = static_cast<float>(level_at(levels, static_cast<double>(k) / static_cast<double>(odds.pieces)));
   }
 }
 
-query::AnswerOdds fit(const std::vector<Kept>& all) {
+query::AnswerOdds fit(const std::vector<Kept>& all, std::size_t pieces, bool counts_thin) {
   std::vector<Case> cases;
   for (const Kept& kept : all) {
     for (const Unproved& one : kept.answers) {
-      const auto numbers = query::numbers_of(one.remains);
+      query::Remains remains = one.remains;
+      if (!counts_thin) remains.thin = 0.0F;
+      const auto numbers = query::numbers_of(remains);
       cases.push_back({{numbers.begin(), numbers.end()}, one.hit, weight_in(kept)});
     }
   }
   const std::vector<double> weights = fit_logistic(cases, 1.0);
   query::AnswerOdds odds;
+  odds.pieces = pieces;
   std::transform(weights.begin(), weights.end(), odds.weights.begin(), [](double w) { return static_cast<float>(w); });
   bend(all, odds);
   return odds;
@@ -142,12 +146,15 @@ void judge(const std::vector<Kept>& all, const query::AnswerOdds& odds, const ch
 }
 
 void print(const query::AnswerOdds& odds, const std::string& comment) {
-  const auto list = [](const auto& numbers) {
+  const auto list = [](std::span<const float> numbers) {
     std::string text;
     for (const float x : numbers) text += fmt::format("{}{:.4f}F", text.empty() ? "" : ", ", x);
     return text;
   };
-  fmt::print("    // {}\n    {{{{{}}},\n     {{{}}}}},\n", comment, list(odds.weights), list(odds.seen));
+  constexpr std::size_t usual = query::AnswerOdds{}.pieces;
+  fmt::print("    // {}\n    {{{{{}}},\n     {{{}}}{}}},\n", comment, list(odds.weights),
+             list(std::span(odds.seen).first(odds.pieces + 1)),
+             odds.pieces == usual ? "" : fmt::format(",\n     {}", odds.pieces));
 }
 
 void run(const Options& options) {
@@ -165,7 +172,8 @@ void run(const Options& options) {
         judge(held_out[i], query::answer_odds[first + i], (name + ": held out, as it stands").c_str());
         continue;
       }
-      const query::AnswerOdds odds = fit(training[i]);
+      const query::Method method = i % 2 == 1 ? query::Method::time_critical : query::Method::exact;
+      const query::AnswerOdds odds = fit(training[i], query::pieces_of(volume), query::counts_thin(volume, method));
       print(odds, name);
       judge(training[i], odds, (name + ": fitted on").c_str());
       judge(held_out[i], odds, (name + ": held out").c_str());

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "odds/query/pair.hpp"
 #include "query/answer_odds_table.hpp"
@@ -16,18 +17,19 @@ namespace {
 
 TEST(AnswerOdds, EveryTableAscendsWithinZeroAndOne) {
   for (const AnswerOdds& odds : answer_odds) {
-    EXPECT_TRUE(std::is_sorted(odds.seen.begin(), odds.seen.end()));
-    EXPECT_GE(odds.seen.front(), 0.0F);
-    EXPECT_LE(odds.seen.back(), 1.0F);
-    EXPECT_LT(odds.seen.front(), odds.seen.back());  // fitted at all
+    const auto seen = std::span(odds.seen).first(odds.pieces + 1);
+    EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
+    EXPECT_GE(seen.front(), 0.0F);
+    EXPECT_LE(seen.back(), 1.0F);
+    EXPECT_LT(seen.front(), seen.back());  // fitted at all
   }
 }
 
 TEST(AnswerOdds, TheRegressionIsTheLogisticFunction) {
   AnswerOdds odds;
-  odds.weights = {0.5F, -0.25F, 0.125F, 0.0F, 0.0F, 2.0F, 0.0F, 0.0F, 0.0F, -1.0F};
-  Remains remains{3.0F, 6.0F, 1.0F, -2.0F, 0.5F};
-  const double z = 0.5 - 0.25 * 6.0 + 0.125 * 3.0 + 2.0 * 0.5 - 1.0 * 0.5 * -2.0;
+  odds.weights = {0.5F, -0.25F, 0.125F, 0.0F, 0.0F, 2.0F, 0.0F, 0.0F, 0.0F, -1.0F, 0.5F, 0.25F};
+  Remains remains{3.0F, 6.0F, 1.0F, -2.0F, 0.5F, -4.0F};
+  const double z = 0.5 - 0.25 * 6.0 + 0.125 * 3.0 + 0.5 * -4.0 + 2.0 * 0.5 - 1.0 * 0.5 * -2.0 + 0.25 * 0.5 * -4.0;
   EXPECT_NEAR(static_cast<double>(regression(odds, remains)), 1.0 / (1.0 + std::exp(-z)), 1e-6);
   odds.weights[0] = -400.0F;
   EXPECT_EQ(regression(odds, remains), 0.0F);
@@ -36,13 +38,32 @@ TEST(AnswerOdds, TheRegressionIsTheLogisticFunction) {
 }
 
 TEST(AnswerOdds, TheBendRunsThroughItsKnots) {
-  AnswerOdds odds;
-  for (std::size_t k = 0; k < AnswerOdds::knots; ++k) odds.seen[k] = static_cast<float>(k * k) / 100.0F;
-  for (const double p : {0.0001, 0.2, 0.35, 0.9999}) {
-    odds.weights[0] = static_cast<float>(std::log(p / (1.0 - p)));
-    const double low = std::floor(10.0 * p);
-    const double expected = (low * low + (10.0 * p - low) * (2.0 * low + 1.0)) / 100.0;
-    EXPECT_NEAR(probability_of_hit(odds, {}), expected, 1e-5) << p;
+  for (const std::size_t pieces : {10U, 20U}) {
+    AnswerOdds odds;
+    odds.pieces = pieces;
+    const auto n = static_cast<double>(pieces);
+    for (std::size_t k = 0; k <= pieces; ++k) odds.seen[k] = static_cast<float>(static_cast<double>(k * k) / (n * n));
+    for (const double p : {0.0001, 0.2, 0.35, 0.9999}) {
+      odds.weights[0] = static_cast<float>(std::log(p / (1.0 - p)));
+      const double low = std::floor(n * p);
+      const double expected = (low * low + (n * p - low) * (2.0 * low + 1.0)) / (n * n);
+      EXPECT_NEAR(probability_of_hit(odds, {}), expected, 1e-5) << p << " " << pieces;
+    }
+    odds.weights[0] = 400.0F;
+    EXPECT_EQ(probability_of_hit(odds, {}), 1.0) << pieces;
+  }
+}
+
+/// Of all else equal, what overlaps as deeply for its thickness is likelier to meet where that is little.
+TEST(AnswerOdds, OfTheWideEngineKnowHowThinSurfacesAre) {
+  for (const EstimatorKind estimator : {EstimatorKind::cells, EstimatorKind::kinematic}) {
+    const AnswerOdds& one_hit = answer_odds[odds_index(volume::Kind::wide, estimator, Method::time_critical)];
+    const AnswerOdds& several = answer_odds[odds_index(volume::Kind::wide, estimator, Method::exact)];
+    const Remains thick{5.0F, 9.0F, 0.0F, 0.0F, 0.0F, -4.0F};
+    Remains thin = thick;
+    thin.thin = -10.0F;
+    EXPECT_GT(probability_of_hit(one_hit, thin), probability_of_hit(one_hit, thick) + 0.01);
+    EXPECT_EQ(probability_of_hit(several, thin), probability_of_hit(several, thick));
   }
 }
 
