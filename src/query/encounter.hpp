@@ -149,6 +149,10 @@ class Encounter {
   }
 
   /// Where the surfaces of the pair most probably meet.
+  /// Of the thinner of both surfaces, metres.
+  [[nodiscard]] double thickness(std::uint32_t i, std::uint32_t j) const noexcept {
+    return thickness_of(a_.statistics()[i], b_.statistics()[j]);
+  }
   [[nodiscard]] MetPlace place(std::uint32_t i, std::uint32_t j) const noexcept {
     return met_place(a_.statistics()[i], b_.statistics()[j], static_cast<double>(a_.nodes()[i].radius),
                      static_cast<double>(b_.nodes()[j].radius), b_in_a_);

@@ -151,7 +151,7 @@ using NodeWeights = std::array<float, NodeNumbers::count>;
 /// What a pair of nodes says about where the surfaces meet; in A's tree frame, metres.
 struct MetPlace {
   Vec3 position;        ///< between both centroids, nearer to that of the smaller node, which says more about where
-  Vec3 facing;          ///< from outwards of A to into A: see facing_where_they_touch
+  Vec3 facing;          ///< from outwards of A to into A: see facing_where_they_touch; 0 .. 2 long
   double opposition;    ///< 0 .. 1: how much the mean normals face each other; 0 of sides of an edge, that cannot meet
   Vec3 beyond;          ///< from A's centroid to B's
   double thickness;     ///< of the thinner of both patches
@@ -181,7 +181,14 @@ struct MetPlace {
   const double bent_b = curvature_of(area_b, normal_b.norm());
   const double share_a = bent_a / (bent_a + bent_b);
   if (!(share_a > 0.0 && share_a < 1.0)) return normal_b - normal_a;
-  return 2.0 * (share_a * normal_b - (1.0 - share_a) * normal_a + trust * share_a * bent_b * to_a);
+  const Vec3 facing = 2.0 * (share_a * normal_b - (1.0 - share_a) * normal_a + trust * share_a * bent_b * to_a);
+  const double length = facing.norm();  // of slivers far apart it would outweigh all other places
+  return length > 2.0 ? Vec3(facing * (2.0 / length)) : facing;
+}
+
+/// Of the thinner of both patches, metres.
+[[nodiscard]] inline double thickness_of(const tree::NodeStatistics& a, const tree::NodeStatistics& b) noexcept {
+  return 2.0 * static_cast<double>(std::min(a.slab_half, b.slab_half));
 }
 
 /// `b_in_a` of the trees' frames; radii of the bounding volumes.
@@ -204,7 +211,7 @@ struct MetPlace {
   if (!(place.facing.squaredNorm() > closed * closed)) {
     place.facing = closed * (b_in_a.rotation * b.slab_normal.cast<double>());
   }
-  place.thickness = 2.0 * static_cast<double>(std::min(a.slab_half, b.slab_half));
+  place.thickness = thickness_of(a, b);
   place.flatness = std::min(std::sqrt(normal_a.squaredNorm() * normal_b.squaredNorm()), 1.0);
   return place;
 }

@@ -285,6 +285,7 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
   answer = {};
   pair.hits.clear();
   pair.flush.begin();
+  pair.front.begin_run();
   if (pair.late) pair.late->age(pose_b_in_a, smaller_size(pair));
   const PosedMeshes meshes(pair.a->mesh(), pair.b->mesh(), a.origin(), b.origin(), pose_b_in_a);
   forget_if_elsewhere(meshes, pair);

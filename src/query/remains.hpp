@@ -17,7 +17,7 @@ struct Remains {
   float logit = 0.0F;   ///< log2(p / (1 - p)) of the likeliest of them by the estimator, within 10
   float rank = 0.0F;    ///< of that pair, -10 .. 6
   float facing = 0.0F;  ///< how much its surfaces face the same way, 0 .. 1: then one lies behind the other
-  float thin = 0.0F;    ///< log2 of how thick the thinner of them is, of the smaller body; -16 .. 0
+  float thin = 0.0F;    ///< log2 of how thick the thinner of them is, over the reach of the smaller body; -16 .. 0
 };
 
 /// `met` is an encounter; `spent` says what the search took; `probability` is that of the highest of the shortlist,
@@ -34,7 +34,7 @@ template <class Met>
   remains.rank = std::clamp(likeliest.rank, -10.0F, 6.0F);
   remains.facing = std::clamp(met.facing(likeliest.a, likeliest.b), 0.0F, 1.0F);
   const double reach = std::min(met.a().reach(), met.b().reach());
-  const double thickness = met.place(likeliest.a, likeliest.b).thickness;
+  const double thickness = met.thickness(likeliest.a, likeliest.b);
   // Without reach, as of a mesh that is one point, nothing is thin.
   const double share = reach > 0.0 ? std::clamp(thickness / reach, 0x1p-16, 1.0) : 1.0;
   remains.thin = math::rough_log2(share);

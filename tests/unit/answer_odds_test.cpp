@@ -10,6 +10,7 @@
 #include "odds/query/pair.hpp"
 #include "query/answer_odds_table.hpp"
 #include "query/recalibration.hpp"
+#include "support/all_kinds.hpp"
 #include "support/shapes.hpp"
 
 namespace odds::query {
@@ -22,6 +23,20 @@ TEST(AnswerOdds, EveryTableAscendsWithinZeroAndOne) {
     EXPECT_GE(seen.front(), 0.0F);
     EXPECT_LE(seen.back(), 1.0F);
     EXPECT_LT(seen.front(), seen.back());  // fitted at all
+  }
+}
+
+TEST(AnswerOdds, EveryTableIsOfTheFormThatItsVolumeHas) {
+  for (const volume::Kind kind : testing::all_kinds()) {
+    for (const EstimatorKind estimator : {EstimatorKind::kinematic, EstimatorKind::cells}) {
+      for (const Method method : {Method::time_critical, Method::exact}) {
+        const AnswerOdds& odds = answer_odds[odds_index(kind, estimator, method)];
+        EXPECT_EQ(odds.pieces, pieces_of(kind)) << volume::name(kind);
+        if (counts_thin(kind, method)) continue;
+        EXPECT_EQ(odds.weights[10], 0.0F) << volume::name(kind);
+        EXPECT_EQ(odds.weights[11], 0.0F) << volume::name(kind);
+      }
+    }
   }
 }
 

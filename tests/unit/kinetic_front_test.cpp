@@ -25,6 +25,23 @@ std::set<tree::Slot> slots(KineticFront& front, std::uint32_t count) {
   return found;
 }
 
+TEST(KineticFront, KnowsTheMotionOfARunAlsoWhereNoneCameToASearch) {
+  KineticFront front(64);
+  math::Pose pose;
+  front.begin_run();
+  front.move_to(pose, reach);
+  EXPECT_EQ(front.skin(), 0.0);
+  pose.translation.x() = 0.01;
+  front.begin_run();
+  front.move_to(pose, reach);
+  const double one_run = front.skin();
+  EXPECT_GT(one_run, 0.01);
+  pose.translation.x() += 0.1;
+  for (int i = 0; i < 10; ++i) front.begin_run();
+  front.move_to(pose, reach);
+  EXPECT_NEAR(front.skin(), one_run, 1e-9);
+}
+
 TEST(KineticFront, WhatMetStandsFirst) {
   KineticFront front = filled(100);
   for (const std::uint32_t i : {7U, 40U, 99U}) front.set_met(i, true);

@@ -125,7 +125,9 @@ void follow(const Leaf& a, const Leaf& b, math::Pose pose, bool by_triangles, ma
     const PosedMeshes now(a.mesh, b.mesh, a.tree.origin(), b.tree.origin(), pose);
     front.move_to(now.pose(), reach);
     if (!front.is_parted(0)) continue;  // and may be again later
-    EXPECT_GT(distance(a, b, now), 0.0) << i;
+    const double apart_now = distance(a, b, now);
+    EXPECT_GT(apart_now, 0.0) << i;
+    EXPECT_LE(front.expiry(0) - front.travelled(), apart_now) << i;
     held.outlived += front.travelled() > apart ? 1 : 0;
   }
 }
@@ -209,11 +211,17 @@ TEST(PartingPlanes, HaveRoomAgainForWhatIsGivenUp) {
 TEST(PartingPlanes, AreNotLookedForAtOnceAgainWhereNoneWas) {
   PartingPlanes planes(2);
   PartingPlanes::Which which = PartingPlanes::none;
-  EXPECT_TRUE(PartingPlanes::is_worth_looking(which));
+  EXPECT_TRUE(planes.takes_look(which));
   planes.give_up(which);
   int looks = 0;
-  while (!PartingPlanes::is_worth_looking(which) && looks < 100) ++looks;
+  while (!planes.takes_look(which) && looks < 100) ++looks;
   EXPECT_EQ(looks, 8);
+  const PartingPlane plane{};
+  for (int i = 0; i < 2; ++i) {
+    PartingPlanes::Which other = PartingPlanes::none;
+    planes.keep(other, plane);
+  }
+  EXPECT_FALSE(planes.takes_look(which)) << "there is no room";
 }
 
 }  // namespace

@@ -80,6 +80,9 @@ class Encounter {
     }
   }
   [[nodiscard]] float facing(Slot slot_a, Slot slot_b) const noexcept;
+  [[nodiscard]] double thickness(Slot slot_a, Slot slot_b) const noexcept {
+    return thickness_of(a_.statistics(slot_a), b_.statistics(slot_b));
+  }
   [[nodiscard]] MetPlace place(Slot slot_a, Slot slot_b) const noexcept;
 
  private:

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "query/spread_step.hpp"
@@ -12,7 +13,7 @@
 namespace odds::query::wide {
 
 /// Looks at what has expired in the front, and goes down from there. As exact as a search from the roots: every pair of
-/// triangles is below a lane that was apart by more than the motion since, or is looked at.
+/// triangles is below a lane that was apart by more than the motion since, or is parted by a plane, or is looked at.
 template <class L>
 class Incremental {
  public:
@@ -26,8 +27,9 @@ class Incremental {
   }
 
  private:
-  /// Entries passed over between two looks at the clock: some 100 ns.
+  /// Entries passed over, and planes asked, between two looks at the clock: some 100 ns.
   static constexpr std::uint32_t entries_between_polls = 256;
+  static constexpr std::uint32_t planes_between_polls = 8;
 
   Incremental(Task& task, KineticFront& front) noexcept : task_(task), met_(task.encounter), front_(front) {}
 
@@ -161,7 +163,9 @@ class Incremental {
         return i;
       }
       if (front_.is_parted(i)) {
+        task_.spending.hasten_poll(1);
         ++i;
+        next_poll = std::min(next_poll, i + planes_between_polls);
         continue;
       }
       if (spent() >= last_unit_) return i;
@@ -194,9 +198,9 @@ class Incremental {
     // Leaves that are looked at again are near each other for a while, where a plane is worth its time.
     if (goes_on && !met) {
       const LaneNumbers leaf_b = met_.numbers(1, entry.b);
-      const bool by_plane = !task_.spending.nears_end() && front_.may_be_parted(i, leaf_b);
-      if (by_plane || !close) part(entry.a, entry.b, by_plane, parting);
-      if (by_plane) front_.note_parting(i, parting, leaf_b);
+      const bool by_plane = front_.takes_look(i, leaf_b) && task_.spending.may_go_on() && !task_.spending.nears_end();
+      const bool tried = (by_plane || !close) && part(entry.a, entry.b, by_plane, parting);
+      if (tried && by_plane) front_.note_parting(i, parting, leaf_b);
     }
     front_.set_expiry(i, expiry_of(parting));
     return goes_on;
@@ -243,6 +247,9 @@ class Incremental {
 
   /// Lanes that are apart by little become entries of their own, so that they do not have all others looked at again.
   void keep_near(const Expanded<L>& expanded, const float (&gap)[wide_lanes], KineticFront::Entry& entry) noexcept {
+    // Where B moves by much of a node in a run, others are near each other soon.
+    const float radius = std::sqrt(squared_radius(met_.numbers(1, entry.b)));
+    if (front_.skin() > 0.5 * static_cast<double>(radius) || !front_.has_room_for_near()) return;
     const float skin = met_.margin() + static_cast<float>(front_.skin());
     const unsigned near = L::less_equal(expanded.gaps, L::all(skin)) & ~static_cast<unsigned>(entry.opened);
     entry.opened = static_cast<std::uint8_t>(entry.opened | near);
@@ -270,7 +277,7 @@ class Incremental {
         goes_on = test_leaves(entry.a, entry.b, close);
         if (goes_on && !close && !was_met_around(entry.a, entry.b)) {
           Parting parting;
-          part(entry.a, entry.b, false, parting);
+          static_cast<void>(part(entry.a, entry.b, false, parting));
           expiry = expiry_of(parting);
         }
       } else {
@@ -325,8 +332,8 @@ class Incremental {
     return goes_on;
   }
 
-  /// Of two leaves that do not meet.
-  void part(Slot a, Slot b, bool by_plane, Parting& parting) noexcept {
+  /// Of two leaves that do not meet. False: there was no time for all of it.
+  bool part(Slot a, Slot b, bool by_plane, Parting& parting) noexcept {
     float shift[3];
     met_.shift(a, b, shift);
     const PlacedLeaf leaf_a = met_.leaf(0, a);
@@ -335,13 +342,15 @@ class Incremental {
     task_.spending.hasten_poll(units_between_polls);
     if (by_plane) {
       part_by_triangles<L>(leaves, leaf_a.count(), leaf_b.count(), parting);
-      if (parting.parts) return;
+      if (parting.parts) return true;
     }
     const GapsOfTriangles<L> gaps(leaves, leaf_b.count());
     parting.gap = gaps.least;
-    if (!by_plane || !task_.spending.may_go_on()) return;
+    if (!by_plane) return true;
+    if (!task_.spending.may_go_on()) return false;
     const Vec3 way = met_.shortest_way(leaf_a.leaf.triangle[gaps.lane], leaf_b.leaf.triangle[gaps.row]);
     part_by_nearest<L>(leaves, gaps, way, parting);
+    return true;
   }
   [[nodiscard]] double expiry_of(const Parting& parting) const noexcept {
     const float gap = parting.parts ? std::max(parting.gap, std::min(parting.along, parting.beside)) : parting.gap;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <utility>
@@ -65,13 +66,17 @@ class KineticFront {
       motion_ = 0.0;
       add({tree::WideTree::root, tree::WideTree::root, 0}, at_once);
     } else {
-      motion_ = math::motion_bound(pose_, pose, reach);
-      travelled_ += motion_;
+      const double motion = math::motion_bound(pose_, pose, reach);
+      motion_ = motion / std::max(runs_, 1);
+      travelled_ += motion;
       turned_ += math::turn_between(pose_, pose);
     }
+    runs_ = 0;
     pose_ = pose;
     earliest_ = std::numeric_limits<double>::infinity();
   }
+  /// One more run of the pair, whether it comes to a search or not.
+  void begin_run() noexcept { runs_ = std::min(runs_ + 1, 1 << 20); }
   /// How a search from a front went.
   struct Outcome {
     std::uint32_t left_at = 0;        ///< where that begins which the search was going down into when it ended
@@ -120,11 +125,13 @@ class KineticFront {
     bool known = false;
   };
   [[nodiscard]] LastMet& last_met() noexcept { return last_met_; }
-  /// What is apart by less than this is an entry of its own, metres: it expires within a few searches.
+  /// What is apart by less than this is an entry of its own, metres: it expires within a few runs.
   [[nodiscard]] double skin() const noexcept {
-    constexpr double searches = 8.0;  // of 4, 8 and 16 the best at touch; near each other none makes a difference
-    return searches * motion_;
+    constexpr double runs = 8.0;  // of 4, 8 and 16 the best at touch; near each other none makes a difference
+    return runs * motion_;
   }
+  /// Such entries are no use where they would leave no room for others.
+  [[nodiscard]] bool has_room_for_near() const noexcept { return size_ < entries_.size() / 2; }
   [[nodiscard]] double travelled() const noexcept { return travelled_; }
   [[nodiscard]] bool expired(std::uint32_t index) const noexcept { return !(travelled_ < expiries_[index]); }
   /// The first that has expired of those from `from` on, before `end`; `end`: none. Every search passes over each entry
@@ -143,6 +150,7 @@ class KineticFront {
     for (; i < end && travelled_ < e[i]; ++i) earliest_ = lesser(earliest_, e[i]);
     return i;
   }
+  [[nodiscard]] double expiry(std::uint32_t index) const noexcept { return expiries_[index]; }
   [[nodiscard]] Entry& entry(std::uint32_t index) noexcept { return entries_[index]; }
   void set_expiry(std::uint32_t index, double expiry) noexcept {
     expiries_[index] = expiry;
@@ -159,12 +167,12 @@ class KineticFront {
     set_expiry(index, travelled_ + gap);
     return true;
   }
-  /// Whether a plane between two leaves is worth looking for. Not where B moves by much of a leaf between two searches:
-  /// then others are near each other soon.
-  [[nodiscard]] bool may_be_parted(std::uint32_t index, const LaneNumbers& leaf_b) noexcept {
+  /// Whether a plane between two leaves is worth looking for in this look at them. Not where B moves by much of a leaf
+  /// in a run: then others are near each other soon.
+  [[nodiscard]] bool takes_look(std::uint32_t index, const LaneNumbers& leaf_b) noexcept {
     constexpr double slow = 1.0 / 16.0;
     return motion_ < slow * static_cast<double>(std::sqrt(squared_radius(leaf_b))) &&
-           PartingPlanes::is_worth_looking(entries_[index].plane);
+           planes_.takes_look(entries_[index].plane);
   }
   /// What was found at this pose.
   void note_parting(std::uint32_t index, const Parting& parting, const LaneNumbers& leaf_b) noexcept {
@@ -247,7 +255,8 @@ class KineticFront {
   bool overflowed_ = false;
   double travelled_ = 0.0;
   double turned_ = 0.0;  ///< sum of turns
-  double motion_ = 0.0;  ///< since the search before
+  double motion_ = 0.0;  ///< a run, since the search before
+  int runs_ = 0;         ///< since that one
   LastMet last_met_;
   math::Pose pose_;
 };

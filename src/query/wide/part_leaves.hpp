@@ -28,7 +28,7 @@ struct GapsOfTriangles {
     triangle_gaps<L>(leaves, rows, of);
     least = of[0][0];
     for (unsigned of_b = 0; of_b < rows; ++of_b) {
-      const unsigned of_a = L::least(L::load(of[of_b]));
+      const unsigned of_a = L::least(L::load(of[of_b])) % wide_lanes;  // 8 stands for none, if all are NaN
       if (of[of_b][of_a] < least) {
         least = of[of_b][of_a];
         row = of_b;

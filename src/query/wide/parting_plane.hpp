@@ -27,6 +27,7 @@ struct PartingPlane {
   /// the radius times it.
   [[nodiscard]] double gap(const math::Pose& pose_b_in_a, double turned_now) const noexcept {
     const double along = along_normal(pose_b_in_a);
+    // That of the centre's place is covered by what was taken off when the limit was found.
     const double rounding = 0x1p-48 * (std::abs(along) + std::abs(limit) + pose_b_in_a.translation.lpNorm<1>());
     return along - limit - static_cast<double>(radius) * (turned_now - turned) - rounding;
   }
@@ -64,9 +65,11 @@ class PartingPlanes {
   void clear() noexcept { used_ = free_count_ = 0; }
   [[nodiscard]] static bool is_plane(Which which) noexcept { return which < most; }
   [[nodiscard]] const PartingPlane& operator[](Which which) const noexcept { return planes_[which]; }
-  /// Before a plane is looked for; false: one was not found a few looks ago.
-  [[nodiscard]] static bool is_worth_looking(Which& which) noexcept {
-    if (is_plane(which) || which == none) return true;
+  /// One more look at an entry: whether a plane is worth looking for. False: one was not found a few looks ago, or
+  /// there is no room for it.
+  [[nodiscard]] bool takes_look(Which& which) const noexcept {
+    if (is_plane(which)) return true;
+    if (which == none) return free_count_ > 0 || used_ < planes_.size();
     ++which;
     return false;
   }

@@ -178,8 +178,8 @@ struct SpreadLeaves {
 };
 
 /// For each of B's triangles (rows) and A's (lanes) a lower bound of their distance, from boxes and planes and, where
-/// those say nothing, from outlines; 0 or less says nothing. Metres. Lanes and rows beyond the leaves' counts say
-/// nothing.
+/// those say nothing, from outlines; 0 or less says nothing. Metres. Lanes beyond A's count repeat its first triangle's;
+/// rows beyond B's are not written.
 template <class L>
 ODDS_LANES_INLINE void triangle_gaps(const SpreadLeaves<L>& spread, std::uint32_t rows,
                                      float (&gaps)[wide_lanes][wide_lanes]) noexcept {
