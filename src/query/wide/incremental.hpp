@@ -249,7 +249,11 @@ class Incremental {
   void keep_near(const Expanded<L>& expanded, const float (&gap)[wide_lanes], KineticFront::Entry& entry) noexcept {
     // Where B moves by much of a node in a run, others are near each other soon.
     const float radius = std::sqrt(squared_radius(met_.numbers(1, entry.b)));
-    if (front_.skin() > 0.5 * static_cast<double>(radius) || !front_.has_room_for_near()) return;
+    // A budget of a few pairs has none for each of them.
+    if (front_.skin() > 0.5 * static_cast<double>(radius) || !front_.has_room_for_near() ||
+        !is_enough_from_roots(task_.request.budget)) {
+      return;
+    }
     const float skin = met_.margin() + static_cast<float>(front_.skin());
     const unsigned near = L::less_equal(expanded.gaps, L::all(skin)) & ~static_cast<unsigned>(entry.opened);
     entry.opened = static_cast<std::uint8_t>(entry.opened | near);
