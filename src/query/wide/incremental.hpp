@@ -198,9 +198,10 @@ class Incremental {
     // Leaves that are looked at again are near each other for a while, where a plane is worth its time.
     if (goes_on && !met) {
       const LaneNumbers leaf_b = met_.numbers(1, entry.b);
-      const bool by_plane = front_.takes_look(i, leaf_b) && task_.spending.may_go_on() && !task_.spending.nears_end();
+      const bool by_plane = looks_for_plane(i, leaf_b);
       const bool tried = (by_plane || !close) && part(entry.a, entry.b, by_plane, parting);
       if (tried && by_plane) front_.note_parting(i, parting, leaf_b);
+      if (by_plane && !parting.parts) ++planes_missed_;
     }
     front_.set_expiry(i, expiry_of(parting));
     return goes_on;
@@ -249,9 +250,9 @@ class Incremental {
   void keep_near(const Expanded<L>& expanded, const float (&gap)[wide_lanes], KineticFront::Entry& entry) noexcept {
     // Where B moves by much of a node in a run, others are near each other soon.
     const float radius = std::sqrt(squared_radius(met_.numbers(1, entry.b)));
-    // A budget of a few pairs has none for each of them.
+    // A budget of a few pairs has none for each of them, and beside a hit nobody asks.
     if (front_.skin() > 0.5 * static_cast<double>(radius) || !front_.has_room_for_near() ||
-        !is_enough_from_roots(task_.request.budget)) {
+        !is_enough_from_roots(task_.request.budget) || !task_.hits.empty()) {
       return;
     }
     const float skin = met_.margin() + static_cast<float>(front_.skin());
@@ -336,6 +337,14 @@ class Incremental {
     return goes_on;
   }
 
+  /// Not beside a hit: that is all a verdict wants, and contacts want the time. Nor where none is found: faces that lie
+  /// on each other are near each other everywhere, and no plane parts them.
+  [[nodiscard]] bool looks_for_plane(std::uint32_t i, const LaneNumbers& leaf_b) noexcept {
+    constexpr std::uint32_t enough_missed = 4;  // in a run
+    return task_.hits.empty() && planes_missed_ < enough_missed && front_.takes_look(i, leaf_b) &&
+           task_.spending.may_go_on() && !task_.spending.nears_end();
+  }
+
   /// Of two leaves that do not meet. False: there was no time for all of it.
   bool part(Slot a, Slot b, bool by_plane, Parting& parting) noexcept {
     float shift[3];
@@ -367,6 +376,7 @@ class Incremental {
   KineticFront::Outcome outcome_;
   std::uint64_t last_unit_ = std::numeric_limits<std::uint64_t>::max();  ///< for what is not yet known to meet
   std::uint32_t first_left_ = no_feature;
+  std::uint32_t planes_missed_ = 0;
   std::array<SlotPair, 8> around_;
   std::size_t around_count_ = 0;
   Slot slots_[2][2 * wide_stack_capacity];
