@@ -247,6 +247,41 @@ TEST_P(IncrementalSmallBudget, ProvesContactsThatLast) {
   EXPECT_GE(proved_percent(GetParam(), 1e-3, 100), GetParam().percent_of_100);
 }
 
+/// Counts its readings, which stand for 20 ns each.
+struct CountingClock {
+  std::int64_t now_ns = 0;
+  int readings = 0;
+
+  static std::int64_t read(void* self) noexcept {
+    auto& clock = *static_cast<CountingClock*>(self);
+    ++clock.readings;
+    return clock.now_ns += 20;
+  }
+};
+
+// A nanometre apart, hundreds of leaves of two bricks are near each other, and single precision finds no plane between
+// any two. The clock is looked at twice for each that is looked for.
+TEST(IncrementalOfFlushFaces, LooksForFewPlanesInVain) {
+  const auto mesh = mesh::made::make_shape("made:box:x=0.2,y=0.2,z=0.1,cells=11").value();
+  const auto shape = Shape::build(std::make_shared<const mesh::TriangleMesh>(mesh)).value();
+  Pair pair = Pair::make(shape, shape).value();
+  CountingClock clock;
+  Request request;
+  request.method = Method::incremental;
+  request.max_contacts = 0;
+  request.budget = Budget::time(1e9);
+  request.budget.clock = {&CountingClock::read, &clock};
+  int fresh = 0;
+  for (int i = 0; i < 5; ++i) {
+    clock.readings = 0;
+    const Answer& answer = pair.run({Mat3::Identity(), {0.003 + 1e-7 * i, 0.002, 0.1 + 1e-9}}, request);
+    ASSERT_EQ(answer.verdict, Verdict::clear);
+    if (i == 0) fresh = clock.readings;
+    EXPECT_LE(clock.readings, fresh + 8) << i;
+  }
+  EXPECT_GT(fresh, 1000);
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Meshes, IncrementalSmallBudget,
     ::testing::Values(Rocking{"box:x=0.2,y=0.2,z=0.04,cells=8", "icosphere:radius=0.01", 97, 90, 98},
