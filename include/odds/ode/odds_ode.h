@@ -213,7 +213,7 @@ int oddsForgetGeom(dGeomID geom) ODDS_NOTHROW;
 
 /* ---- Pairs ----------------------------------------------------------------------------------------------------- */
 
-/* Takes the memory that collisions between two meshes need (up to 0.4 MB, less of small meshes; and a megabyte that
+/* Takes the memory that collisions between two meshes need (up to 0.5 MB, less of small meshes; and a megabyte that
  * pairs share, or up to 32 for as many threads), in either order, and warms it; a mesh is a
  * geom of this class, a dTriMesh, or a heightfield with a stand-in. Call it before the loop for every pair that can
  * meet in a dSpaceCollide. Returns 1 (also if already prepared, and for a pair of a mesh with a primitive, which needs

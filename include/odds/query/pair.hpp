@@ -40,7 +40,7 @@ struct PairOptions {
 
 /// A workspace for queries between two shapes. All memory is taken in `make`; `run` never allocates, locks, throws or
 /// makes a system call (the clock is read from user space). One pair per thread; shapes may be shared. With the default
-/// options a pair keeps 0.4 MB, less of small meshes; a megabyte more is shared by all pairs with the same capacities,
+/// options a pair keeps 0.5 MB, less of small meshes; a megabyte more is shared by all pairs with the same capacities,
 /// once for each pair but no more than 32 times (or as many as the processor runs threads: of more than that at once,
 /// one waits for another).
 class Pair {

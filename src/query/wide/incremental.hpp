@@ -282,7 +282,7 @@ class Incremental {
         goes_on = test_leaves(entry.a, entry.b, close);
         if (goes_on && !close && !was_met_around(entry.a, entry.b)) {
           Parting parting;
-          static_cast<void>(part(entry.a, entry.b, false, parting));
+          part(entry.a, entry.b, false, parting);
           expiry = expiry_of(parting);
         }
       } else {

@@ -64,8 +64,6 @@ template <class L>
 ODDS_LANES_INLINE void part_by_triangles(const SpreadLeaves<L>& spread, unsigned count_a, unsigned count_b,
                                          Parting& parting) noexcept {
   using F = typename L::Float;
-  constexpr float shortest_normal = 1e-18F;  // shorter ones have lost digits to underflow
-  constexpr float below = 0.999999F;         // covers the rounding of roots and quotients
   const TwoLeaves<L>& leaves = spread.leaves;
   alignas(64) float corner_a[3][3][wide_lanes];
   for (int k = 0; k < 3; ++k) {
@@ -76,7 +74,7 @@ ODDS_LANES_INLINE void part_by_triangles(const SpreadLeaves<L>& spread, unsigned
   float best = 0.0F;
   for (const EightTriangles<L>* eight : {&leaves.a, &leaves.b}) {
     const F length = eight->lengths_of_normals();
-    const F inverse = L::divide(L::all(below), L::max(length, L::all(shortest_normal)));
+    const F inverse = L::divide(L::all(just_below_one), L::max(length, L::all(shortest_normal)));
     const Reach<L> a(corner_a, count_a, eight->normal);
     const Reach<L> b(spread.rows_of_b.corner, count_b, eight->normal);
     const F above = b.low - a.high;

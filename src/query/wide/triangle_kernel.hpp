@@ -160,6 +160,11 @@ ODDS_LANES_INLINE LeafPairs leaf_pairs(const PlacedLeaf& in_a, const PlacedLeaf&
   return found;
 }
 
+/// Shorter normals have lost digits to underflow.
+inline constexpr float shortest_normal = 1e-18F;
+/// Covers the rounding of roots and quotients.
+inline constexpr float just_below_one = 0.999999F;
+
 /// Two leaves with all that is compared of their triangles, B's one by one.
 template <class L>
 struct SpreadLeaves {
@@ -178,18 +183,16 @@ struct SpreadLeaves {
 };
 
 /// For each of B's triangles (rows) and A's (lanes) a lower bound of their distance, from boxes and planes and, where
-/// those say nothing, from outlines; 0 or less says nothing. Metres. Lanes beyond A's count repeat its first triangle's;
-/// rows beyond B's are not written.
+/// those say nothing, from outlines; 0 or less says nothing. Metres. Lanes beyond A's count repeat its first
+/// triangle's; rows beyond B's are not written.
 template <class L>
 ODDS_LANES_INLINE void triangle_gaps(const SpreadLeaves<L>& spread, std::uint32_t rows,
                                      float (&gaps)[wide_lanes][wide_lanes]) noexcept {
   using F = typename L::Float;
-  constexpr float shortest_normal = 1e-18F;  // shorter ones have lost digits to underflow
-  constexpr float below = 0.999999F;         // covers the rounding of roots and quotients
   const TwoLeaves<L>& leaves = spread.leaves;
   const EightTriangles<L>& a = leaves.a;
   const Rows<L>& b = spread.rows_of_b;
-  const F inverse_a = L::divide(L::all(below), L::max(a.lengths_of_normals(), L::all(shortest_normal)));
+  const F inverse_a = L::divide(L::all(just_below_one), L::max(a.lengths_of_normals(), L::all(shortest_normal)));
   alignas(64) float lengths_b[wide_lanes];
   L::store(lengths_b, leaves.b.lengths_of_normals());
   const F slack = L::all(2.0F * leaves.delta);
@@ -200,15 +203,15 @@ ODDS_LANES_INLINE void triangle_gaps(const SpreadLeaves<L>& spread, std::uint32_
       const F leg = L::max(L::all(b.lower[i][row]) - a.upper[i], a.lower[i] - L::all(b.upper[i][row])) - slack;
       squares = squares + L::max(leg, L::all(0.0F)) * L::max(leg, L::all(0.0F));
     }
-    F gap = L::root(squares) * L::all(below);
+    F gap = L::root(squares) * L::all(just_below_one);
     if (lengths_b[row] > shortest_normal) {
       const F planes_b = plane_gap_of_b<L>(a, b, row) - L::all(b.tolerance[row]);
-      gap = L::max(gap, planes_b * L::all(below / lengths_b[row]));
+      gap = L::max(gap, planes_b * L::all(just_below_one / lengths_b[row]));
     }
     const F planes_a = plane_gap_of_a<L>(a, b, row) - a.tolerance;
     gap = L::max(gap, planes_a * inverse_a);
     if ((L::less_equal(gap, L::all(0.0F)) & leaves.lanes_a) != 0) {
-      gap = L::max(gap, outline_gap<L, true>(a, b, row, 6.0F * leaves.delta) * L::all(below));
+      gap = L::max(gap, outline_gap<L, true>(a, b, row, 6.0F * leaves.delta) * L::all(just_below_one));
     }
     L::store(gaps[row], gap * unscale);
   }
