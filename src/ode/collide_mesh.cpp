@@ -5,6 +5,7 @@
 
 #include "odds/math/motion.hpp"
 #include "ode/broad_phase.hpp"
+#include "ode/budget_clock.hpp"
 #include "ode/colliders.hpp"
 #include "ode/contact_writer.hpp"
 #include "ode/frame_share.hpp"
@@ -20,6 +21,7 @@ query::Request request_for(const Settings& settings, int limit) noexcept {
   request.method = settings.method;
   request.estimator = settings.estimator;
   request.budget.microseconds = settings.budget_us;
+  request.budget.clock = budget_clock();
   if (settings.work_units > 0) request.budget.work_units = settings.work_units;
   request.p_min = settings.p_min;
   request.k_min = settings.k_min;

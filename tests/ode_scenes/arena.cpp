@@ -9,6 +9,7 @@
 
 #include "odds/mesh/made/by_name.hpp"
 #include "odds/scene/simulation.hpp"
+#include "ode/budget_clock.hpp"
 #include "ode/mass_properties.hpp"
 #include "ode/vectors.hpp"
 #include "ode_scenes/bullet.hpp"
@@ -40,6 +41,7 @@ std::string Collider::name() const {
       return (!std::isfinite(budget_us) ? std::string("odds, no limit")
               : in_work                 ? fmt::format("odds, {} units", work_units())
                                         : fmt::format("odds, {:g} µs", budget_us)) +
+             (look_ns > 0 ? " counted" : "") +
              (margin_m > 0.0 ? fmt::format(", margin {:g} mm", 1e3 * margin_m) : std::string()) +
              (frame_us > 0.0
                   ? fmt::format(", {:g} {} a frame", in_work ? static_cast<double>(units_of(frame_us)) : frame_us,
@@ -78,7 +80,7 @@ struct Arena::Data {
 };
 
 Arena::Arena(const Collider& collider, const Physics& physics, double gravity)
-    : collider_(collider), physics_(physics), gravity_(gravity) {
+    : collider_(collider), physics_(physics), gravity_(gravity), clock_(collider.look_ns) {
   if (oddsInitODE(0) == 0) throw std::runtime_error(oddsGetLastError());
   dSetMessageHandler(&swallow);
   dRandSetSeed(1);
@@ -87,6 +89,7 @@ Arena::Arena(const Collider& collider, const Physics& physics, double gravity)
     oddsTakeOverParamsInit(&params);
     params.budget_us = collider_.in_work ? dInfinity : collider_.budget_us;
     if (collider_.in_work) params.work_units = collider_.work_units();
+    if (collider_.look_ns > 0) ode::use_budget_clock(clock_.clock());
     if (oddsTakeOverTriMesh(&params) == 0) throw std::runtime_error(oddsGetLastError());
   }
   if (collider_.kind == Collider::Kind::gimpact) bullet_ = std::make_unique<Bullet>();
@@ -106,6 +109,7 @@ Arena::~Arena() {
   dWorldDestroy(world_);
   data_.clear();
   if (collider_.kind == Collider::Kind::odds) oddsGiveBackTriMesh();
+  ode::use_budget_clock({});
   oddsCloseODE();
 }
 

@@ -15,6 +15,7 @@
 #include "odds/mesh/triangle_mesh.hpp"
 #include "odds/ode/odds_frame.h"
 #include "odds/ode/odds_ode.h"
+#include "odds/realtime/clock.hpp"
 #include "ode_scenes/truth.hpp"
 
 namespace odds::ode_scenes {
@@ -32,8 +33,9 @@ struct Collider {
   Kind kind = Kind::odds;
   double budget_us = 100.0;  ///< of odds
   bool in_work = false;      ///< as work units in place of microseconds: the same bits on every run, on any machine
-  double margin_m = 0.0;     ///< of odds: surfaces that part by less keep their contacts
-  double frame_us = 0.0;     ///< of odds: limit of all collisions of a step together; 0: none
+  long look_ns = 0;       ///< so much time passes at each look at the clock, and else none: repeats, too; 0: true time
+  double margin_m = 0.0;  ///< of odds: surfaces that part by less keep their contacts
+  double frame_us = 0.0;  ///< of odds: limit of all collisions of a step together; 0: none
 
   [[nodiscard]] bool ours() const noexcept { return kind == Kind::odds; }
   [[nodiscard]] std::string name() const;
@@ -133,6 +135,7 @@ class Arena {
   Collider collider_;
   Physics physics_;
   double gravity_;
+  realtime::ManualClock clock_;  ///< of collisions that are counted
   dWorldID world_;
   dSpaceID space_;
   dJointGroupID joints_;

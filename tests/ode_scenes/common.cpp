@@ -6,7 +6,8 @@ namespace odds::ode_scenes {
 
 std::vector<Collider> colliders(const Plan& plan, bool primitive) {
   std::vector<Collider> list;
-  for (const double budget : plan.budgets_us) list.push_back({Collider::Kind::odds, budget, plan.in_work});
+  for (const double budget : plan.budgets_us)
+    list.push_back({Collider::Kind::odds, budget, plan.in_work, plan.look_ns});
   if (!plan.others) return list;
   list.push_back({Collider::Kind::stock});
   if (primitive) list.push_back({Collider::Kind::primitive});

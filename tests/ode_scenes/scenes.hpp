@@ -14,6 +14,7 @@ struct Plan {
   bool others = true;                                         ///< also the colliders that ours is compared with
   bool gimpact = false;                                       ///< among them Bullet's
   bool in_work = false;                                       ///< ours in work units
+  long look_ns = 0;                                           ///< of ours, see Collider
   std::vector<double> budgets_us = {100.0, 5.0, 10.0, 20.0};  ///< the usual one, and starved ones
 };
 
