@@ -12,33 +12,49 @@
 
 namespace odds::query {
 
-/// Twelve numbers in, a probability out: a logistic regression, and a monotone line that bends what it says to what was
-/// seen.
+/// Numbers in, a probability out: a logistic regression, and monotone lines that bend what it says to what was seen.
 struct AnswerOdds {
-  static constexpr std::size_t count = 12;
-  static constexpr std::size_t most_pieces = 20;
+  static constexpr std::size_t count = 19;
+  static constexpr std::size_t pieces = 20;  ///< of the line, all of one length
   std::array<float, count> weights{};
-  /// Shares of hits where the regression says 0, 1 / pieces, ... 1; ascending. What follows is not used.
-  std::array<float, most_pieces + 1> seen{};
-  std::size_t pieces = 10;  ///< of the line, all of one length
+  using Line = std::array<float, pieces + 1>;  ///< shares of hits where the regression says 0, 1/20, ... 1; ascending
+  Line seen{};                                 ///< of surfaces that face each other or cross
+  Line seen_of_shells{};                       ///< of those that face the same way
 };
 
-/// Of the wide engine a finer line, and how thin surfaces are, make odds truer on meshes that they were not fitted on;
-/// of kdop18 they did not, and of the other volumes nobody tried.
-[[nodiscard]] constexpr std::size_t pieces_of(volume::Kind kind) noexcept {
-  return kind == volume::Kind::wide ? AnswerOdds::most_pieces : 10;
-}
-/// Where a search goes depth-first, what it leaves open is any pair, and how thin that is says nothing.
-[[nodiscard]] constexpr bool counts_thin(volume::Kind kind, Method method) noexcept {
-  return kind == volume::Kind::wide && method == Method::time_critical;
-}
-
-/// Surfaces that face the same way, as of nested shells, follow a law of their own: all numbers count once as they are
-/// and once times `facing`.
+/// Surfaces that face the same way, as of nested shells, follow a law of their own: what is known counts once times how
+/// much they do, and once times how little. That several numbers are high at once says more than each alone, but of
+/// shells nothing that would hold for others.
 [[nodiscard]] constexpr std::array<float, AnswerOdds::count> numbers_of(const Remains& r) noexcept {
   const float f = r.facing;
-  return {1.0F,        r.spent,    r.open,      r.logit,    r.rank, f,
-          f * r.spent, f * r.open, f * r.logit, f * r.rank, r.thin, f * r.thin};
+  const float g = 1.0F - f;
+  constexpr float to_order_of_ten = 0.1F;
+  const float h = to_order_of_ten * g;
+  return {1.0F,
+          f,
+          g * r.spent,
+          f * r.spent,
+          g * r.tested,
+          f * r.tested,
+          g * r.open,
+          f * r.open,
+          g * r.logit,
+          f * r.logit,
+          g * r.rank,
+          f * r.rank,
+          g * r.thin,
+          f * r.thin,
+          g * r.small,
+          f * r.small,
+          h * r.rank * r.open,
+          h * r.spent * r.spent,
+          h * r.spent * r.small};
+}
+
+/// Whether such a number speaks of surfaces that face the same way. Those of one pair of shells tell little of another,
+/// so their weights are held small when they are fitted.
+[[nodiscard]] constexpr bool is_of_shells(std::size_t number) noexcept {
+  return number % 2 == 1 && number > 1 && number < 16;
 }
 
 /// What the regression says, in [0, 1].
@@ -60,10 +76,15 @@ inline constexpr std::size_t odds_tables = 4 * volume::kind_names.size();
 
 /// Probability of a hit, in (0, 1): among searches that left this undecided, such a share met a hit.
 [[nodiscard]] inline double probability_of_hit(const AnswerOdds& odds, const Remains& remains) noexcept {
-  const float at = static_cast<float>(odds.pieces) * std::clamp(regression(odds, remains), 0.0F, 1.0F);
-  const auto knot = std::min(static_cast<std::size_t>(at), odds.pieces - 1);
+  constexpr std::size_t pieces = AnswerOdds::pieces;
+  const float at = static_cast<float>(pieces) * std::clamp(regression(odds, remains), 0.0F, 1.0F);
+  const auto knot = std::min(static_cast<std::size_t>(at), pieces - 1);
   const float part = at - static_cast<float>(knot);
-  return static_cast<double>(odds.seen[knot] + part * (odds.seen[knot + 1] - odds.seen[knot]));
+  const auto bent = [&](const AnswerOdds::Line& line) noexcept {
+    return line[knot] + part * (line[knot + 1] - line[knot]);
+  };
+  const float apart = bent(odds.seen);
+  return static_cast<double>(apart + remains.facing * (bent(odds.seen_of_shells) - apart));
 }
 
 }  // namespace odds::query

@@ -148,11 +148,15 @@ class Encounter {
     return {b_in_a_ * corners[0], b_in_a_ * corners[1], b_in_a_ * corners[2]};
   }
 
-  /// Where the surfaces of the pair most probably meet.
   /// Of the thinner of both surfaces, metres.
   [[nodiscard]] double thickness(std::uint32_t i, std::uint32_t j) const noexcept {
     return thickness_of(a_.statistics()[i], b_.statistics()[j]);
   }
+  /// Of the smaller of both bounding volumes, metres.
+  [[nodiscard]] double smaller_radius(std::uint32_t i, std::uint32_t j) const noexcept {
+    return static_cast<double>(std::min(a_.nodes()[i].radius, b_.nodes()[j].radius));
+  }
+  /// Where the surfaces of the pair most probably meet.
   [[nodiscard]] MetPlace place(std::uint32_t i, std::uint32_t j) const noexcept {
     return met_place(a_.statistics()[i], b_.statistics()[j], static_cast<double>(a_.nodes()[i].radius),
                      static_cast<double>(b_.nodes()[j].radius), b_in_a_);

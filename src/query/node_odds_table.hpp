@@ -1,5 +1,5 @@
-// Printed by odds_calibration --nodes --poses 6 (tests/calibration), which names the meshes that it was fitted on; the
-// last row of node_weights with --poses 80. Do not edit by hand.
+// Printed by odds_calibration --nodes --poses 6 (tests/calibration) of the meshes that it names as `former`; the last
+// row of node_weights with --poses 80. Do not edit by hand.
 #pragma once
 
 #include <array>

@@ -14,8 +14,10 @@ struct Case {
   double weight = 1.0;
 };
 
-/// Weights w for which 1 / (1 + exp(-w . x)) has the greatest likelihood, less `ridge` / 2 times the squares of all but
-/// the first weight (which belongs to the constant). Not empty, and `ridge` > 0.
+/// Weights w for which 1 / (1 + exp(-w . x)) has the greatest likelihood, less half of the squares of the weights, each
+/// times its `ridge`. Not empty; a ridge for each number, > 0.
+[[nodiscard]] std::vector<double> fit_logistic(std::span<const Case> cases, std::span<const double> ridge);
+/// The same with one `ridge` for all weights but the first, which belongs to the constant.
 [[nodiscard]] std::vector<double> fit_logistic(std::span<const Case> cases, double ridge);
 
 /// -w . x through the logistic function.

@@ -77,35 +77,48 @@ Tables gather(const std::vector<Meeting>& meetings, volume::Kind volume, const O
 /// Each meeting counts the same, however many of its answers have no proof; but a handful does not outweigh a thousand.
 double weight_in(const Kept& kept) { return 1000.0 / std::max(300.0, static_cast<double>(kept.answers.size())); }
 
-/// Shares of hits by what the regression says: pooled until they ascend (isotonic regression), read at every knot.
-void bend(const std::vector<Kept>& all, query::AnswerOdds& odds) {
+/// Shares of hits by what the regression says: pooled until they ascend (isotonic regression), read at every knot. Of
+/// shells, or of all else.
+query::AnswerOdds::Line line_seen(const std::vector<Kept>& all, const query::AnswerOdds& odds, bool of_shells) {
   std::vector<Case> cases;
   for (const Kept& kept : all) {
     for (const Unproved& one : kept.answers) {
-      cases.push_back({{static_cast<double>(query::regression(odds, one.remains))}, one.hit, weight_in(kept)});
+      const auto facing = static_cast<double>(one.remains.facing);
+      const double weight = weight_in(kept) * (of_shells ? facing : 1.0 - facing);
+      if (weight > 0.0) cases.push_back({{static_cast<double>(query::regression(odds, one.remains))}, one.hit, weight});
     }
   }
-  const std::vector<Level> levels = ascending_levels(std::move(cases), 40);
-  for (std::size_t k = 0; k <= odds.pieces; ++k) {
-    odds.seen[k] = static_cast<float>(level_at(levels, static_cast<double>(k) / static_cast<double>(odds.pieces)));
+  query::AnswerOdds::Line line{};
+  if (cases.empty()) return line;
+  const std::vector<Level> levels = ascending_levels(std::move(cases), of_shells ? 5 : 40);  // shells are few
+  constexpr std::size_t pieces = query::AnswerOdds::pieces;
+  for (std::size_t k = 0; k <= pieces; ++k) {
+    line[k] = static_cast<float>(level_at(levels, static_cast<double>(k) / static_cast<double>(pieces)));
   }
+  return line;
 }
 
-query::AnswerOdds fit(const std::vector<Kept>& all, std::size_t pieces, bool counts_thin) {
+query::AnswerOdds fit(const std::vector<Kept>& all) {
   std::vector<Case> cases;
   for (const Kept& kept : all) {
     for (const Unproved& one : kept.answers) {
-      query::Remains remains = one.remains;
-      if (!counts_thin) remains.thin = 0.0F;
-      const auto numbers = query::numbers_of(remains);
+      const auto numbers = query::numbers_of(one.remains);
       cases.push_back({{numbers.begin(), numbers.end()}, one.hit, weight_in(kept)});
     }
   }
-  const std::vector<double> weights = fit_logistic(cases, 1.0);
+  // Each meeting counts 1000: what is learnt of shells moves only where all of them agree.
+  constexpr double usual = 1.0;
+  constexpr double of_shells = 1e5;
+  constexpr double of_constants = 1e-9;
+  std::array<double, query::AnswerOdds::count> ridge{};
+  for (std::size_t i = 0; i < ridge.size(); ++i) {
+    ridge[i] = i < 2 ? of_constants : query::is_of_shells(i) ? of_shells : usual;
+  }
+  const std::vector<double> weights = fit_logistic(cases, ridge);
   query::AnswerOdds odds;
-  odds.pieces = pieces;
   std::transform(weights.begin(), weights.end(), odds.weights.begin(), [](double w) { return static_cast<float>(w); });
-  bend(all, odds);
+  odds.seen = line_seen(all, odds, false);
+  odds.seen_of_shells = line_seen(all, odds, true);
   return odds;
 }
 
@@ -151,10 +164,8 @@ void print(const query::AnswerOdds& odds, const std::string& comment) {
     for (const float x : numbers) text += fmt::format("{}{:.4f}F", text.empty() ? "" : ", ", x);
     return text;
   };
-  constexpr std::size_t usual = query::AnswerOdds{}.pieces;
-  fmt::print("    // {}\n    {{{{{}}},\n     {{{}}}{}}},\n", comment, list(odds.weights),
-             list(std::span(odds.seen).first(odds.pieces + 1)),
-             odds.pieces == usual ? "" : fmt::format(",\n     {}", odds.pieces));
+  fmt::print("    // {}\n    {{{{{}}},\n     {{{}}},\n     {{{}}}}},\n", comment, list(odds.weights), list(odds.seen),
+             list(odds.seen_of_shells));
 }
 
 void run(const Options& options) {
@@ -172,8 +183,7 @@ void run(const Options& options) {
         judge(held_out[i], query::answer_odds[first + i], (name + ": held out, as it stands").c_str());
         continue;
       }
-      const query::Method method = i % 2 == 1 ? query::Method::time_critical : query::Method::exact;
-      const query::AnswerOdds odds = fit(training[i], query::pieces_of(volume), query::counts_thin(volume, method));
+      const query::AnswerOdds odds = fit(training[i]);
       print(odds, name);
       judge(training[i], odds, (name + ": fitted on").c_str());
       judge(held_out[i], odds, (name + ": held out").c_str());

@@ -83,6 +83,7 @@ class Encounter {
   [[nodiscard]] double thickness(Slot slot_a, Slot slot_b) const noexcept {
     return thickness_of(a_.statistics(slot_a), b_.statistics(slot_b));
   }
+  [[nodiscard]] double smaller_radius(Slot slot_a, Slot slot_b) const noexcept;
   [[nodiscard]] MetPlace place(Slot slot_a, Slot slot_b) const noexcept;
 
  private:
