@@ -1,5 +1,6 @@
 #include "query/patch_eight.hpp"
 
+#include <algorithm>
 #include <bit>
 
 namespace odds::query::patch {
@@ -24,6 +25,17 @@ std::array<std::uint16_t, eight> CornersOfEight::kinds_of_lanes() const noexcept
     }
   }
   return kinds_of;
+}
+
+std::array<double, eight> CornersOfEight::deepest_of_lanes() const noexcept {
+  std::array<double, eight> deepest{};
+  for (std::size_t kind = 0; kind < kinds; ++kind) {
+    for (unsigned left = found[kind]; left != 0; left &= left - 1U) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(left));
+      deepest[lane] = std::max(deepest[lane], depth[kind][lane]);
+    }
+  }
+  return deepest;
 }
 
 Witness CornersOfEight::witness(const PlacedPair& placed, const Frame& frame, std::size_t kind,

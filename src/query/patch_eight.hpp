@@ -44,8 +44,10 @@ struct CornersOfEight {
   alignas(64) double share[kinds][eight];  ///< along A's side; of crossings only
   std::array<std::uint8_t, kinds> found;   ///< lanes; depth is finite and no less than the least that was asked for
 
-  /// The same by lanes: bits of kinds.
+  /// What was found by lanes: bits of kinds.
   [[nodiscard]] std::array<std::uint16_t, eight> kinds_of_lanes() const noexcept;
+  /// The largest depths of the lanes, at least 0; of lanes that were not asked for 0.
+  [[nodiscard]] std::array<double, eight> deepest_of_lanes() const noexcept;
   /// What was found in a lane, of the pair that it was asked for, without a shift.
   [[nodiscard]] Witness witness(const PlacedPair& placed, const Frame& frame, std::size_t kind,
                                 std::size_t lane) const noexcept;
@@ -103,8 +105,8 @@ struct FaceSums {
 };
 
 struct Kernels {
-  /// Fetches the triangles of up to eight pairs; returns how many. Those with an index out of range or a coordinate that
-  /// is not finite are left out.
+  /// Fetches the triangles of up to eight pairs; returns how many. Those with an index out of range or a coordinate
+  /// that is not finite are left out.
   std::size_t (*place)(const PatchInput& input, std::span<const TrianglePair> hits, PlacedPair* placed) noexcept;
   /// As `rim_pieces` of placed[0] .. placed[count - 1], count in 1 .. 8.
   void (*cut)(const PlacedPair* placed, std::size_t count, CutEight& pieces) noexcept;

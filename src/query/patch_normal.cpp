@@ -229,12 +229,21 @@ class LeastOverlap {
     const Frame frame(direction);
     const double enough = found_ && factor > 0.0 ? least_ : std::numeric_limits<double>::infinity();
     double deepest = 0.0;
-    std::size_t step = 0;
-    for (std::size_t i = 0; i < view_.pieces.size() && factor * deepest < enough; i += stride()) {
-      if (watch_.late_in_large_steps(step++)) break;
-      deepest = std::max(deepest, pair_depth(pair_at(i), frame, shift));
+    for (std::size_t i = 0; i < view_.pieces.size() && factor * deepest < enough && !watch_.late();) {
+      const std::array<double, eight> depths = depths_of_next(i, frame, shift);
+      deepest = std::max(deepest, *std::max_element(depths.begin(), depths.end()));
     }
     return deepest;
+  }
+  /// Of up to eight pairs of the sample, from that of piece `i` on, which is moved on.
+  [[nodiscard]] std::array<double, eight> depths_of_next(std::size_t& i, const Frame& frame,
+                                                         const Vec3& shift) const noexcept {
+    std::array<const PlacedPair*, eight> asked;
+    std::size_t count = 0;
+    for (; i < view_.pieces.size() && count < asked.size(); i += stride()) asked[count++] = &pair_at(i);
+    CornersOfEight corners;
+    kernels().corners({asked.data(), count}, frame, shift, 0.0, corners);
+    return corners.deepest_of_lanes();
   }
 
   /// Places inside the overlap where directions are measured: the middle of the rim, and, between solids, a little
@@ -255,12 +264,15 @@ class LeastOverlap {
     std::size_t deepest = 0;
     double depth = -1.0;
     Vec3 into_all = Vec3::Zero();  // from a crumb at a corner, one face's side is not inside of the others
-    std::size_t step = 0;
-    for (std::size_t i = 0; i < view_.pieces.size() && !watch_.late_in_large_steps(step++); i += stride()) {
-      into_all -= pair_at(i).normal_a + pair_at(i).normal_b;
-      const double here = pair_depth(pair_at(i), pressing, shift_);
-      if (here > depth) deepest = i;
-      depth = std::max(depth, here);
+    for (std::size_t next = 0; next < view_.pieces.size() && !watch_.late();) {
+      std::size_t i = next;
+      for (const double here : depths_of_next(next, pressing, shift_)) {
+        if (i >= next) break;
+        into_all -= pair_at(i).normal_a + pair_at(i).normal_b;
+        if (here > depth) deepest = i;
+        depth = std::max(depth, here);
+        i += stride();
+      }
     }
     if (is_part_of_a_rim(view_)) places_[place_count_++] = places_[0] + 2.0 * inwards * unit_or_zero(into_all);
     add(deepest);

@@ -39,7 +39,7 @@ int usage() {
       "       odds_ode_scenes --soak [--seconds S] [--out FOLDER]   (stacks of five, ten minutes)\n"
       "--quick: ten seconds, one gap, stacks of 2 and 5; --bricks, --gaps: of stacks, else 2,5,10 and 0,0.1,0.5,1 mm;\n"
       "--budgets: of ours, else 100,5,10,20 us; --work: as 20 work units each, the same on every run;\n"
-      "--counted: so much time passes at each look at the clock (140 ns on a quiet EPYC of 2.4 GHz), and none "
+      "--counted: so much time passes at each look at the clock (some 350 ns on an EPYC of 2.4 GHz), and none "
       "between:\n"
       "the same on every run, too, and with contacts that are late;\n"
       "--ours: without those that it is compared with;\n"
