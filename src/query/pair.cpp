@@ -88,7 +88,7 @@ SearchResult search(const Encounter<V>& encounter, const PosedMeshes&, const Req
 
 /// Whether searches from the roots are tried. Shorter budgets find next to nothing from there, and keep the front; but
 /// where contacts come late, from work that a search leaves time for, it pays down to a few microseconds: a front that
-/// has nearly all expired takes all of them. Gears, and a bolt in its nut, are held by it from 20 us and from 5 us on.
+/// has nearly all expired takes all of them, as of gears, or of a bolt in its nut.
 [[nodiscard]] bool may_search_from_roots(const Request& request, const Pair::Implementation& pair) noexcept {
   constexpr double least_us = 4.0;
   return wide::is_enough_from_roots(request.budget) ||

@@ -21,8 +21,6 @@ class Watch {
   }
   /// The same in a loop of `between_polls` steps at a time: every time but the first.
   [[nodiscard]] bool late_before_next(std::size_t step) noexcept { return step != 0 ? late() : late_; }
-  /// The same in a loop whose steps take a quarter of a microsecond.
-  [[nodiscard]] bool late_in_large_steps(std::size_t step) noexcept { return step % 2 == 1 ? late() : late_; }
   /// The same in a loop whose steps take nanoseconds.
   [[nodiscard]] bool late_in_small_steps(std::size_t step) noexcept {
     return step % (4 * between_polls) == 4 * between_polls - 1 ? late() : late_;

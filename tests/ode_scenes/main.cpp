@@ -98,6 +98,7 @@ bool read(int argc, char** argv, Options& options) {
       return false;
     }
   }
+  if (options.plan.in_work && options.plan.look_ns > 0) return false;  // one kind of budget
   if (seconds > 0.0) (options.soak_s > 0.0 ? options.soak_s : options.plan.seconds) = seconds;
   return true;
 }
