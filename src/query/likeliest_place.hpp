@@ -36,7 +36,8 @@ template <class Met, class Apart>
     const MetPlace& place = places[count] = met.place(pair.a, pair.b);
     if (count == 0) mean.position = place.position;
     const double weight =
-        static_cast<double>(math::rough_exp2(std::clamp(pair.rank, -20.0F, 4.0F))) * place.inverse_size;
+        static_cast<double>(math::rough_exp2(std::clamp(pair.rank, -20.0F, 4.0F) + place.log_likelihood)) *
+        place.inverse_size;
     weights[count++] = weight;
     position += weight * place.position;
     facing += weight * (both_solid ? least_opposition + place.opposition : 1.0) * place.facing;

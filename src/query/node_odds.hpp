@@ -150,13 +150,14 @@ using NodeWeights = std::array<float, NodeNumbers::count>;
 
 /// What a pair of nodes says about where the surfaces meet; in A's tree frame, metres.
 struct MetPlace {
-  Vec3 position;        ///< between both centroids, nearer to that of the smaller node, which says more about where
-  Vec3 facing;          ///< from outwards of A to into A: see facing_where_they_touch; 0 .. 2 long
-  double opposition;    ///< 0 .. 1: how much the mean normals face each other; 0 of sides of an edge, that cannot meet
-  Vec3 beyond;          ///< from A's centroid to B's
-  double thickness;     ///< of the thinner of both patches
-  double flatness;      ///< 0 .. 1: a patch that faces all ways, as of a whole closed body, has no side to be beyond
-  double inverse_size;  ///< of both bounding volumes together, 1/m
+  Vec3 position;         ///< see where_they_meet
+  float log_likelihood;  ///< to base 2, that they meet: by how far both have to reach for it and how thin they are
+  Vec3 facing;           ///< from outwards of A to into A: see facing_where_they_touch; 0 .. 2 long
+  double opposition;     ///< 0 .. 1: how much the mean normals face each other; 0 of sides of an edge, that cannot meet
+  Vec3 beyond;           ///< from A's centroid to B's
+  double thickness;      ///< of the thinner of both patches
+  double flatness;       ///< 0 .. 1: a patch that faces all ways, as of a whole closed body, has no side to be beyond
+  double inverse_size;   ///< of both bounding volumes together, 1/m
 };
 
 /// 1/m: of a cap of a ball of that area whose normals have that mean; it may be bent either way. 0 of what is no patch.
@@ -186,6 +187,55 @@ struct MetPlace {
   return length > 2.0 ? Vec3(facing * (2.0 / length)) : facing;
 }
 
+/// Where a patch of surface probably is: normally distributed about its centroid, with half of its radius along it and
+/// with as much across it as a slab's points have that are evenly spread in it.
+struct PatchSpread {
+  double along;   ///< 1 over the variance; no unit, of lengths over some `size`
+  double across;  ///< how much more that is across it, >= 0
+  Vec3 normal;
+
+  [[nodiscard]] static PatchSpread of(const tree::NodeStatistics& patch, double radius, double size,
+                                      const Vec3& normal) noexcept {
+    constexpr double least = 1e-3;  // of the size: nothing is thinner, so that two planes have a place in common
+    const double reach = std::max(0.5 * radius / size, least);
+    const double thick = static_cast<double>(patch.slab_half) / size;
+    const double along = 1.0 / (reach * reach);
+    return {along, std::max(1.0 / (thick * thick / 3.0 + least * least) - along, 0.0), normal};
+  }
+  [[nodiscard]] double squared_density() const noexcept { return along * along * (along + across); }
+  /// Of a point that is so far from the centroid, over twice the variance.
+  [[nodiscard]] double squared(const Vec3& away) const noexcept {
+    const double height = normal.dot(away);
+    return along * away.squaredNorm() + across * height * height;
+  }
+};
+
+/// The likeliest place of a point of two patches, and how likely it is: of two normal distributions the product is one,
+/// too.
+struct Meeting {
+  Vec3 from_a;           ///< from A's centroid, in the unit of `beyond`
+  float log_likelihood;  ///< to base 2
+};
+
+/// `beyond`: from A's centroid to B's, over the spreads' size.
+[[nodiscard]] inline Meeting where_they_meet(const PatchSpread& a, const PatchSpread& b, const Vec3& beyond) noexcept {
+  // (sum I + a.across m m' + b.across n n') x = (b.along I + b.across n n') beyond, by Woodbury's identity.
+  const double sum = a.along + b.along;
+  const double cosine = a.normal.dot(b.normal);
+  const double of_a = a.across / (sum + a.across);
+  const double of_b = b.across / (sum + b.across);
+  const double rest = 1.0 - of_a * of_b * cosine * cosine;
+  const Vec3 right = b.along * beyond + b.across * b.normal.dot(beyond) * b.normal;
+  const double up_a = of_a * a.normal.dot(right);
+  const double up_b = of_b * b.normal.dot(right);
+  const Vec3 x =
+      (right - ((up_a - of_a * cosine * up_b) * a.normal + (up_b - of_b * cosine * up_a) * b.normal) / rest) / sum;
+  const double common = sum * (sum + a.across) * (sum + b.across) * rest;
+  const double squared = a.squared(x) + b.squared(x - beyond);
+  const double density = a.squared_density() * b.squared_density() / common;
+  return {x, 0.5F * (math::rough_log2(density) - static_cast<float>(squared / std::numbers::ln2))};
+}
+
 /// Of the thinner of both patches, metres.
 [[nodiscard]] inline double thickness_of(const tree::NodeStatistics& a, const tree::NodeStatistics& b) noexcept {
   return 2.0 * static_cast<double>(std::min(a.slab_half, b.slab_half));
@@ -200,10 +250,16 @@ struct MetPlace {
   const Vec3 normal_b = b_in_a.rotation * b.mean_normal.cast<double>();
   MetPlace place;
   place.inverse_size = 1.0 / std::max(radius_a + radius_b, 1e-300);
-  const double share = radius_b * place.inverse_size;
-  const double weight_a = std::isfinite(share) ? share : 0.5;  // radii of 1e19 m are infinite
   place.beyond = centroid_b - centroid_a;
-  place.position = centroid_a + (1.0 - weight_a) * place.beyond;
+  const double size = 1.0 / place.inverse_size;
+  const Meeting meeting =
+      where_they_meet(PatchSpread::of(a, radius_a, size, a.slab_normal.cast<double>()),
+                      PatchSpread::of(b, radius_b, size, b_in_a.rotation * b.slab_normal.cast<double>()),
+                      place.inverse_size * place.beyond);
+  // Radii of 1e19 m are infinite.
+  const bool known = meeting.from_a.allFinite() && std::isfinite(meeting.log_likelihood);
+  place.position = centroid_a + (known ? Vec3(size * meeting.from_a) : Vec3(0.5 * place.beyond));
+  place.log_likelihood = known ? std::clamp(meeting.log_likelihood, -40.0F, 40.0F) : 0.0F;
   place.facing = facing_where_they_touch(normal_a, static_cast<double>(a.area), normal_b, static_cast<double>(b.area),
                                          -place.beyond);
   place.opposition = std::clamp(-normal_a.dot(normal_b), 0.0, 1.0);

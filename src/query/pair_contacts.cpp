@@ -6,6 +6,7 @@
 
 #include "odds/math/tolerances.hpp"
 #include "odds/query/ray.hpp"
+#include "query/direction_about.hpp"
 #include "query/flush_answer.hpp"
 #include "query/rough_contacts.hpp"
 #include "query/short_budget.hpp"
@@ -130,6 +131,11 @@ void make_rough_contacts(const PosedMeshes& meshes, const Vec3* known_normal, bo
   pair.answer.contact_pairs = static_cast<std::uint32_t>(count);
 }
 
+/// A single contact is made of one pair of triangles, which says little about where curved bodies push each other.
+void look_around(const PosedMeshes& meshes, Pair::Implementation& pair) noexcept {
+  for (Contact& contact : own_contacts(pair)) contact.normal = direction_about(*pair.a, *pair.b, meshes, contact);
+}
+
 /// Along the direction that is known, if any, metres: what was measured and what the bodies have come since, or what
 /// nobody need have measured.
 double believed_depth(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Vec3* known_normal,
@@ -220,6 +226,7 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   } else if (!whole) {  // a single contact, or one far from where the depth was known
     for (Contact& contact : own_contacts(pair)) contact.depth = std::min(contact.depth, most_depth);
   }
+  if (single && patches.finished() && spending.may_make_contacts()) look_around(meshes, pair);
   const bool flush = answer_by_flat_faces(meshes, pose_b_in_a, request, pair, spending);
   if (patches.finished() && request.max_contacts > 1) {
     const Contact& first = pair.answer.contacts.front();

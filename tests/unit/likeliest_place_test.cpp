@@ -115,6 +115,39 @@ TEST(FacingWhereTheyTouch, OfFlatAndOfUnknownPatchesIsTheDifferenceOfTheNormals)
   }
 }
 
+/// A disc: thin, about a point.
+PatchSpread disc(const Vec3& normal, double thickness) {
+  tree::NodeStatistics statistics;
+  statistics.slab_half = static_cast<float>(thickness);
+  return PatchSpread::of(statistics, 0.5, 1.0, normal);
+}
+
+TEST(WhereTheyMeet, OfTwoPlanesIsOnBoth) {
+  const Vec3 up = Vec3::UnitZ();
+  for (const double angle : {0.3, 1.0, 1.57}) {
+    const Vec3 aslant(std::sin(angle), 0.0, std::cos(angle));
+    const Vec3 beyond(0.05, 0.2, 0.03);
+    const Meeting met = where_they_meet(disc(up, 0.0), disc(aslant, 0.0), beyond);
+    EXPECT_NEAR(up.dot(met.from_a), 0.0, 1e-3);
+    EXPECT_NEAR(aslant.dot(met.from_a - beyond), 0.0, 1e-3);
+    EXPECT_NEAR(met.from_a.y(), 0.1, 1e-3) << "half-way along the line in which they meet";
+    const Meeting back = where_they_meet(disc(aslant, 0.0), disc(up, 0.0), -beyond);
+    EXPECT_LT((beyond + back.from_a - met.from_a).norm(), 1e-9);
+    EXPECT_NEAR(back.log_likelihood, met.log_likelihood, 1e-4);
+  }
+}
+
+TEST(WhereTheyMeet, OfParallelSheetsIsBetweenAndTheLessLikelyTheFartherTheyAreApart) {
+  const Vec3 up = Vec3::UnitZ();
+  float last = std::numeric_limits<float>::infinity();
+  for (const double apart : {0.0, 0.01, 0.03, 0.1}) {
+    const Meeting met = where_they_meet(disc(up, 0.02), disc(up, 0.02), apart * up);
+    EXPECT_NEAR(met.from_a.z(), 0.5 * apart, 1e-9);
+    EXPECT_LT(met.log_likelihood, last);
+    last = met.log_likelihood;
+  }
+}
+
 TEST(WayApart, IsAlongTheSideOfLeastOverlap) {
   const auto slab = made("box:x=4,y=1,z=0.1,cells=1");
   const auto brick = made("box:x=0.2,y=0.1,z=0.057,cells=1");

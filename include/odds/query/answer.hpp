@@ -90,7 +90,7 @@ struct Answer {
   /// Where contacts_complete is false, it had no time for a patch: all that is known of, but something else may touch.
   bool contacts_flush = false;
   bool has_cell_pair = false;  ///< whether `cell_pair` is set: some pair of nodes remained undecided
-  Contact cell_pair;           ///< where the surfaces most probably meet: centroids, mean normals, depth estimate
+  Contact cell_pair;           ///< where the surfaces most probably meet: of patches of surface, not of triangles
   double cell_pair_probability = 0.0;  ///< of an intersection within that pair of nodes
   Cost cost;
 };
