@@ -36,6 +36,7 @@ unsigned long units_of(double us) {
 }  // namespace
 
 std::string Collider::name() const {
+  const char* const anchored = anchored_m > 0.0 ? ", anchored" : "";
   switch (kind) {
     case Kind::odds:
       return (!std::isfinite(budget_us) ? std::string("odds, no limit")
@@ -46,13 +47,14 @@ std::string Collider::name() const {
              (frame_us > 0.0
                   ? fmt::format(", {:g} {} a frame", in_work ? static_cast<double>(units_of(frame_us)) : frame_us,
                                 in_work ? "units" : "µs")
-                  : std::string());
+                  : std::string()) +
+             anchored;
     case Kind::stock:
-      return "ODE's dTriMesh";
+      return std::string("ODE's dTriMesh") + anchored;
     case Kind::primitive:
-      return "ODE's primitive";
+      return std::string("ODE's primitive") + anchored;
     case Kind::gimpact:
-      return "Bullet's GImpact";
+      return std::string("Bullet's GImpact") + anchored;
   }
   return "";
 }
@@ -151,6 +153,10 @@ dGeomID Arena::add(dGeomID primitive, const dMass& mass, const Vec3& position) {
 }
 
 void Arena::prepare() {
+  if (collider_.anchored_m > 0.0) {
+    anchors_.reset(oddsFrictionAnchorsCreate(4096, collider_.anchored_m));
+    if (!anchors_) throw std::runtime_error(oddsGetLastError());
+  }
   if (collider_.kind != Collider::Kind::odds) return;
   for (std::size_t i = 0; i < items_.size(); ++i) {
     for (std::size_t j = i + 1; j < items_.size(); ++j) {
@@ -206,7 +212,12 @@ void Arena::near(void* self, dGeomID a, dGeomID b) {
       contact.surface.soft_erp = arena.physics_.soft_erp;
     }
     oddsMakeSpeculative(&contact, step_s);
-    const dJointID joint = dJointCreateContact(arena.world_, arena.joints_, &contact);
+  }
+  if (arena.anchors_ && oddsFrictionAnchorsHold(arena.anchors_.get(), body_a, body_b, contacts, count, step_s) == 0) {
+    throw std::runtime_error("friction anchors: no room for a pair");
+  }
+  for (int i = 0; i < count; ++i) {
+    const dJointID joint = dJointCreateContact(arena.world_, arena.joints_, &contacts[i]);
     dJointAttach(joint, body_a, body_b);
     // ODE makes the only body of a joint its first.
     arena.of_contacts_.push_back({body_a != nullptr ? body_a : body_b, body_a != nullptr ? body_b : nullptr, {}});
@@ -216,6 +227,7 @@ void Arena::near(void* self, dGeomID a, dGeomID b) {
 
 void Arena::step() {
   const double before = thread_us();
+  oddsFrictionAnchorsNextStep(anchors_.get());
   if (frame_) {
     oddsSpaceCollide(space_, this, &Arena::near, frame_.get());
   } else {

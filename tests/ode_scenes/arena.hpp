@@ -14,6 +14,7 @@
 #include "odds/math/pose.hpp"
 #include "odds/mesh/triangle_mesh.hpp"
 #include "odds/ode/odds_frame.h"
+#include "odds/ode/odds_friction.h"
 #include "odds/ode/odds_ode.h"
 #include "odds/realtime/clock.hpp"
 #include "ode_scenes/truth.hpp"
@@ -36,6 +37,7 @@ struct Collider {
   long look_ns = 0;       ///< so much time passes at each look at the clock, and else none: repeats, too; 0: true time
   double margin_m = 0.0;  ///< of odds: surfaces that part by less keep their contacts
   double frame_us = 0.0;  ///< of odds: limit of all collisions of a step together; 0: none
+  double anchored_m = 0.0;  ///< friction holds places, and gives by so much; 0: speeds, as ODE's does
 
   [[nodiscard]] bool ours() const noexcept { return kind == Kind::odds; }
   [[nodiscard]] std::string name() const;
@@ -143,6 +145,8 @@ class Arena {
   std::vector<Item> items_;
   std::unique_ptr<Bullet> bullet_;
   std::unique_ptr<oddsFrameBudget, decltype(&oddsFrameBudgetDestroy)> frame_{nullptr, &oddsFrameBudgetDestroy};
+  std::unique_ptr<oddsFrictionAnchors, decltype(&oddsFrictionAnchorsDestroy)> anchors_{nullptr,
+                                                                                       &oddsFrictionAnchorsDestroy};
   struct Motion {
     dBodyID body;
     Vec3 velocity;

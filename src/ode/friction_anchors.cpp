@@ -1,0 +1,190 @@
+#include "ode/friction_anchors.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <functional>
+#include <new>
+#include <utility>
+
+#include "ode/last_error.hpp"
+#include "ode/vectors.hpp"
+
+namespace {
+
+using odds::Vec3;
+using odds::ode::vector_of;
+
+/// Of what has been slid, taken back in a step: ODE's usual ERP.
+constexpr double taken_back = 0.2;
+/// Slots that are looked at for a pair. With half of all in use such a run of taken ones is as good as never met.
+constexpr std::size_t most_looked_at = 32;
+
+/// Two directions in which a contact's friction acts, as ODE chooses them, and whose velocity along them its motion1
+/// and motion2 are: of b1 against b2, but of b2 where b1 is the world.
+struct FrictionAxes {
+  Vec3 first;
+  Vec3 second;
+  double sign;
+
+  FrictionAxes(const dContact& contact, bool b1_is_world) noexcept : sign(b1_is_world ? -1.0 : 1.0) {
+    const Vec3 normal = sign * vector_of(contact.geom.normal);
+    if ((contact.surface.mode & dContactFDir1) != 0) {
+      first = vector_of(contact.fdir1);
+      second = normal.cross(first);
+      return;
+    }
+    const dVector3 n = {normal.x(), normal.y(), normal.z(), 0};
+    dVector3 p = {};
+    dVector3 q = {};
+    dPlaneSpace(n, p, q);
+    first = vector_of(p);
+    second = vector_of(q);
+  }
+};
+
+double motion1_of(const dSurfaceParameters& surface) noexcept {
+  return (surface.mode & dContactMotion1) != 0 ? double{surface.motion1} : 0.0;
+}
+double motion2_of(const dSurfaceParameters& surface) noexcept {
+  return (surface.mode & dContactMotion2) != 0 ? double{surface.motion2} : 0.0;
+}
+
+/// Of a body's point, m/s; null: the world.
+Vec3 velocity_at(dBodyID body, const Vec3& point) noexcept {
+  if (body == nullptr) return Vec3::Zero();
+  const Vec3 arm = point - vector_of(dBodyGetPosition(body));
+  return vector_of(dBodyGetLinearVel(body)) + vector_of(dBodyGetAngularVel(body)).cross(arm);
+}
+Vec3 spin_of(dBodyID body) noexcept {
+  return body == nullptr ? Vec3(Vec3::Zero()) : Vec3(vector_of(dBodyGetAngularVel(body)));
+}
+
+/// The middle of all contacts.
+struct Middle {
+  Vec3 place = Vec3::Zero();
+  Vec3 normal = Vec3::Zero();   ///< unit; zero where contacts push against each other
+  Vec3 carried = Vec3::Zero();  ///< mean velocity of b1 against b2 that the contacts ask for: of a conveyor, m/s
+  double reach = 0.0;           ///< distance of the farthest contact
+
+  Middle(const dContact* contacts, int count, bool b1_is_world) noexcept {
+    constexpr double one_way = 0.1;  // of the sum of normals: less, and they hold from both sides
+    for (int i = 0; i < count; ++i) {
+      const FrictionAxes axes(contacts[i], b1_is_world);
+      place += vector_of(contacts[i].geom.pos) / count;
+      normal += vector_of(contacts[i].geom.normal) / count;
+      carried += axes.sign / count *
+                 (motion1_of(contacts[i].surface) * axes.first + motion2_of(contacts[i].surface) * axes.second);
+    }
+    for (int i = 0; i < count; ++i) reach = std::max(reach, (vector_of(contacts[i].geom.pos) - place).norm());
+    normal = normal.norm() > one_way ? Vec3(normal.normalized()) : Vec3(Vec3::Zero());
+  }
+};
+
+bool is_finite(dBodyID body) noexcept {
+  return body == nullptr || (vector_of(dBodyGetPosition(body)).allFinite() &&
+                             vector_of(dBodyGetLinearVel(body)).allFinite() && spin_of(body).allFinite());
+}
+
+bool is_finite(const dContact& contact) noexcept {
+  return vector_of(contact.geom.pos).allFinite() && vector_of(contact.geom.normal).allFinite() &&
+         ((contact.surface.mode & dContactFDir1) == 0 || vector_of(contact.fdir1).allFinite()) &&
+         std::isfinite(motion1_of(contact.surface)) && std::isfinite(motion2_of(contact.surface));
+}
+
+int refuse(const char* rule) noexcept {
+  odds::ode::set_last_error(rule);
+  return 0;
+}
+
+}  // namespace
+
+oddsFrictionAnchors::oddsFrictionAnchors(std::size_t most_pairs, double most_slip_m)
+    : most_slip_m_(most_slip_m), anchors_(std::bit_ceil(2 * most_pairs)) {}
+
+oddsFrictionAnchors::Anchor* oddsFrictionAnchors::find(dGeomID first, dGeomID second) noexcept {
+  // Mixing after splitmix64: addresses are multiples of 16.
+  auto key = std::hash<dGeomID>{}(first)*0x9e3779b97f4a7c15u ^ std::hash<dGeomID>{}(second)*0xc2b2ae3d27d4eb4fu;
+  key ^= key >> 31U;
+  key *= 0xbf58476d1ce4e5b9u;
+  key ^= key >> 29U;
+  Anchor* free = nullptr;
+  for (std::size_t i = 0; i < std::min(most_looked_at, anchors_.size()); ++i) {
+    Anchor& anchor = anchors_[(key + i) & (anchors_.size() - 1)];
+    const bool is_old = anchor.step + 1 < step_;
+    if (!is_old && anchor.first == first && anchor.second == second) return &anchor;
+    if (is_old && free == nullptr) free = &anchor;
+  }
+  if (free != nullptr) *free = {first, second, step_, {}};
+  return free;
+}
+
+bool oddsFrictionAnchors::hold(dBodyID b1, dBodyID b2, dContact* contacts, int count, double step_s) noexcept {
+  const dGeomID g1 = contacts[0].geom.g1;
+  const dGeomID g2 = contacts[0].geom.g2;
+  const bool in_order = std::less<>{}(g1, g2);
+  Anchor* const anchor = in_order ? find(g1, g2) : find(g2, g1);
+  if (anchor == nullptr) return false;
+  const Middle middle(contacts, count, b1 == nullptr);
+  const double sign = in_order ? 1.0 : -1.0;
+  Slid& slid = anchor->slid;
+  if (anchor->step != step_) {
+    const auto along = [&middle](const Vec3& v) -> Vec3 { return middle.normal.dot(v) * middle.normal; };
+    const Vec3 velocity = velocity_at(b1, middle.place) - velocity_at(b2, middle.place) - middle.carried;
+    slid.by += sign * step_s * velocity;
+    slid.by -= along(slid.by);
+    slid.turn = along(slid.turn + sign * step_s * (spin_of(b1) - spin_of(b2)));
+    const double most = slid.by.norm() + slid.turn.norm() * middle.reach;
+    if (most > most_slip_m_) {  // the bristles slip
+      slid.by *= most_slip_m_ / most;
+      slid.turn *= most_slip_m_ / most;
+    }
+    anchor->step = step_;
+  }
+  for (int i = 0; i < count; ++i) {
+    const Vec3 arm = vector_of(contacts[i].geom.pos) - middle.place;
+    const FrictionAxes axes(contacts[i], b1 == nullptr);
+    const Vec3 back = -axes.sign * sign * taken_back / step_s * (slid.by + slid.turn.cross(arm));
+    dSurfaceParameters& surface = contacts[i].surface;
+    surface.motion1 = motion1_of(surface) + back.dot(axes.first);
+    surface.motion2 = motion2_of(surface) + back.dot(axes.second);
+    surface.mode |= dContactMotion1 | dContactMotion2;
+  }
+  return true;
+}
+
+oddsFrictionAnchorsID oddsFrictionAnchorsCreate(int most_pairs, dReal most_slip) noexcept {
+  if (most_pairs < 1 || most_pairs > 1048576 || !(most_slip > 0) || !std::isfinite(most_slip)) {
+    refuse("oddsFrictionAnchorsCreate: needs 1 .. 1048576 pairs, and a slip > 0 metres");
+    return nullptr;
+  }
+  try {
+    return new oddsFrictionAnchors(static_cast<std::size_t>(most_pairs), most_slip);
+  } catch (const std::bad_alloc&) {
+    refuse("oddsFrictionAnchorsCreate: out of memory");
+    return nullptr;
+  }
+}
+
+void oddsFrictionAnchorsDestroy(oddsFrictionAnchorsID anchors) noexcept { delete anchors; }
+
+void oddsFrictionAnchorsNextStep(oddsFrictionAnchorsID anchors) noexcept {
+  if (anchors != nullptr) anchors->next_step();
+}
+
+int oddsFrictionAnchorsHold(oddsFrictionAnchorsID anchors, dBodyID b1, dBodyID b2, dContact* contacts, int count,
+                            dReal step_s) noexcept {
+  if (anchors == nullptr || contacts == nullptr || count < 1) {
+    return refuse("oddsFrictionAnchorsHold: needs anchors and at least one contact");
+  }
+  if (b1 == b2) return refuse("oddsFrictionAnchorsHold: needs two bodies, at most one of them null");
+  if (!(step_s > 0) || !std::isfinite(step_s)) return refuse("oddsFrictionAnchorsHold: the step must be > 0 seconds");
+  if (!is_finite(b1) || !is_finite(b2)) return refuse("oddsFrictionAnchorsHold: a body is not finite");
+  for (int i = 0; i < count; ++i) {
+    if (contacts[i].geom.g1 != contacts[0].geom.g1 || contacts[i].geom.g2 != contacts[0].geom.g2) {
+      return refuse("oddsFrictionAnchorsHold: the contacts must be of one pair of geoms, in one order");
+    }
+    if (!is_finite(contacts[i])) return refuse("oddsFrictionAnchorsHold: a contact is not finite");
+  }
+  return anchors->hold(b1, b2, contacts, count, step_s) ? 1 : 0;
+}

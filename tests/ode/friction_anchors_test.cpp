@@ -1,0 +1,337 @@
+// Friction that holds places: what rests stays, and what slides, rolls or is carried does so as without.
+#include "odds/ode/odds_friction.h"
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "ode/ode_fixture.hpp"
+#include "support/allocation_counter.hpp"
+
+namespace odds {
+namespace {
+
+constexpr double step_s = 0.001;
+constexpr double slip_m = 1e-5;
+
+using Anchors = std::unique_ptr<oddsFrictionAnchors, decltype(&oddsFrictionAnchorsDestroy)>;
+Anchors make_anchors(int pairs = 64, double slip = slip_m) {
+  return {oddsFrictionAnchorsCreate(pairs, slip), &oddsFrictionAnchorsDestroy};
+}
+
+struct Surface {
+  double mu = 0.5;
+  double conveyor_m_per_s = 0.0;  ///< along x, of b1 against b2 as ODE has it; 0: none
+  bool bodies_swapped = false;    ///< geoms, and bodies, in the other order
+};
+
+/// A world of ODE's own geoms, with or without anchors.
+class World {
+ public:
+  World(const Surface& surface, bool anchored, const Vec3& gravity, int iterations = 20)
+      : surface_(surface), anchors_(anchored ? make_anchors() : Anchors{nullptr, &oddsFrictionAnchorsDestroy}) {
+    world_ = dWorldCreate();
+    space_ = dHashSpaceCreate(nullptr);
+    joints_ = dJointGroupCreate(0);
+    dWorldSetGravity(world_, gravity.x(), gravity.y(), gravity.z());
+    dWorldSetQuickStepNumIterations(world_, iterations);
+    dCreatePlane(space_, 0, 0, 1, 0);
+  }
+  ~World() {
+    dJointGroupDestroy(joints_);
+    dSpaceDestroy(space_);
+    dWorldDestroy(world_);
+  }
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+
+  dBodyID add_box(const Vec3& sides, const Vec3& place) {
+    dMass mass;
+    dMassSetBox(&mass, 1000.0, sides.x(), sides.y(), sides.z());
+    return add(dCreateBox(space_, sides.x(), sides.y(), sides.z()), mass, place);
+  }
+  dBodyID add_ball(double radius, const Vec3& place) {
+    dMass mass;
+    dMassSetSphere(&mass, 1000.0, radius);
+    return add(dCreateSphere(space_, radius), mass, place);
+  }
+  void run(double seconds) {
+    for (int i = 0; i < static_cast<int>(seconds / step_s); ++i) {
+      oddsFrictionAnchorsNextStep(anchors_.get());
+      dSpaceCollide(space_, this, &World::near);
+      dWorldQuickStep(world_, step_s);
+      dJointGroupEmpty(joints_);
+    }
+  }
+
+ private:
+  dBodyID add(dGeomID geom, const dMass& mass, const Vec3& place) {
+    const dBodyID body = dBodyCreate(world_);
+    dBodySetMass(body, &mass);
+    dGeomSetBody(geom, body);
+    dBodySetPosition(body, place.x(), place.y(), place.z());
+    return body;
+  }
+  static void near(void* self, dGeomID a, dGeomID b) {
+    auto& world = *static_cast<World*>(self);
+    if (world.surface_.bodies_swapped) std::swap(a, b);
+    const dBodyID body_a = dGeomGetBody(a);
+    const dBodyID body_b = dGeomGetBody(b);
+    dContact contacts[8];
+    const int count = dCollide(a, b, 8, &contacts[0].geom, sizeof(dContact));
+    for (int i = 0; i < count; ++i) {
+      contacts[i].surface = {};
+      contacts[i].surface.mode = dContactApprox1;
+      contacts[i].surface.mu = world.surface_.mu;
+      if (world.surface_.conveyor_m_per_s == 0.0) continue;
+      contacts[i].surface.mode |= dContactFDir1 | dContactMotion1;
+      contacts[i].surface.motion1 = world.surface_.conveyor_m_per_s;
+      contacts[i].fdir1[0] = 1.0;
+      contacts[i].fdir1[1] = contacts[i].fdir1[2] = 0.0;
+    }
+    if (count > 0 && world.anchors_) {
+      EXPECT_EQ(oddsFrictionAnchorsHold(world.anchors_.get(), body_a, body_b, contacts, count, step_s), 1);
+    }
+    for (int i = 0; i < count; ++i) {
+      dJointAttach(dJointCreateContact(world.world_, world.joints_, &contacts[i]), body_a, body_b);
+    }
+  }
+
+  Surface surface_;
+  Anchors anchors_;
+  dWorldID world_;
+  dSpaceID space_;
+  dJointGroupID joints_;
+};
+
+Vec3 place_of(dBodyID body) { return Eigen::Map<const Vec3>(dBodyGetPosition(body)); }
+Vec3 speed_of(dBodyID body) { return Eigen::Map<const Vec3>(dBodyGetLinearVel(body)); }
+Vec3 spin_of(dBodyID body) { return Eigen::Map<const Vec3>(dBodyGetAngularVel(body)); }
+
+class FrictionAnchors : public test::OdeTest {};
+
+const Vec3 down(0.0, 0.0, -9.81);
+
+/// Gravity leans by less than what friction bears. Twenty iterations leave a speed at the contacts in every step.
+TEST_F(FrictionAnchors, HoldABoxOnASlopeInItsPlace) {
+  for (const bool swapped : {false, true}) {
+    const auto crept = [&](bool anchored) {
+      World world({.mu = 0.5, .bodies_swapped = swapped}, anchored, Vec3(3.0, 1.0, -9.0), 20);
+      const dBodyID box = world.add_box({0.2, 0.1, 0.1}, {0.0, 0.0, 0.05});
+      world.run(1.0);
+      const Vec3 begun = place_of(box);
+      world.run(30.0);
+      return (place_of(box) - begun).norm();
+    };
+    const double without = crept(false);
+    const double with = crept(true);
+    EXPECT_GT(without, 1e-3) << "there is something to hold";
+    EXPECT_LT(with, 0.05 * without) << swapped;
+  }
+}
+
+TEST_F(FrictionAnchors, HoldAStackInItsPlace) {
+  const auto crept = [&](bool anchored) {
+    World world({.mu = 1.0}, anchored, down, 20);
+    std::vector<dBodyID> boxes;
+    for (int i = 0; i < 5; ++i) boxes.push_back(world.add_box({0.2, 0.5, 0.25}, {0.0, 0.0, 0.125 + 0.2501 * i}));
+    world.run(2.0);
+    std::vector<Vec3> begun;
+    for (const dBodyID box : boxes) begun.push_back(place_of(box));
+    world.run(30.0);
+    double most = 0.0;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      most = std::max(most, (place_of(boxes[i]) - begun[i]).head<2>().norm());
+    }
+    return most;
+  };
+  const double without = crept(false);
+  EXPECT_GT(without, 5e-5) << "there is something to hold";
+  EXPECT_LT(crept(true), 0.1 * without);
+}
+
+TEST_F(FrictionAnchors, LetABoxSlideAsWithout) {
+  for (const bool swapped : {false, true}) {
+    const auto slid = [&](bool anchored) {
+      World world({.mu = 0.3, .bodies_swapped = swapped}, anchored, down);
+      const dBodyID box = world.add_box({0.2, 0.2, 0.1}, {0.0, 0.0, 0.05});
+      dBodySetLinearVel(box, 1.0, 0.4, 0.0);
+      world.run(1.0);
+      return place_of(box);
+    };
+    EXPECT_LT((slid(true) - slid(false)).norm(), 2e-3 * slid(false).norm());
+  }
+}
+
+TEST_F(FrictionAnchors, LetABallRollAsWithout) {
+  const auto rolled = [&](bool anchored) {
+    World world({.mu = 1.0}, anchored, down);
+    const dBodyID ball = world.add_ball(0.05, {0.0, 0.0, 0.05});
+    dBodySetLinearVel(ball, 0.5, 0.0, 0.0);
+    dBodySetAngularVel(ball, 0.0, 10.0, 0.0);
+    world.run(2.0);
+    return std::pair(place_of(ball), spin_of(ball));
+  };
+  const auto [place, spin] = rolled(true);
+  EXPECT_NEAR(place.x(), rolled(false).first.x(), 1e-4);
+  EXPECT_NEAR(place.x(), 1.0, 0.01);
+  EXPECT_NEAR(spin.y(), 10.0, 0.1);
+}
+
+TEST_F(FrictionAnchors, LetAConveyorCarryAsWithout) {
+  for (const bool swapped : {false, true}) {
+    const auto speed = [&](bool anchored) {
+      World world({.mu = 1.0, .conveyor_m_per_s = 0.2, .bodies_swapped = swapped}, anchored, down);
+      const dBodyID box = world.add_box({0.2, 0.2, 0.1}, {0.0, 0.0, 0.05});
+      world.run(1.0);
+      return speed_of(box).x();
+    };
+    EXPECT_NEAR(std::abs(speed(false)), 0.2, 1e-6);
+    EXPECT_NEAR(speed(true), speed(false), 1e-6) << swapped;
+  }
+}
+
+/// No contact gets more force than its mu allows, and nobody is pulled back by more than the slip.
+TEST_F(FrictionAnchors, PullNothingBackByMoreThanTheSlip) {
+  World world({.mu = 0.5}, true, down);
+  const dBodyID box = world.add_box({0.2, 0.2, 0.1}, {0.0, 0.0, 0.05});
+  world.run(0.5);
+  dBodySetLinearVel(box, 0.3, 0.0, 0.0);
+  double farthest = 0.0;
+  for (int i = 0; i < 500; ++i) {
+    world.run(step_s * 1.01);
+    farthest = std::max(farthest, place_of(box).x());
+  }
+  EXPECT_GT(farthest, 0.3 * 0.3 / (2.0 * 0.5 * 9.81) * 0.9);
+  EXPECT_GT(place_of(box).x(), farthest - 2.0 * slip_m);
+}
+
+/// One pair of bodies, as a near callback has it.
+struct Touching {
+  dWorldID world = dWorldCreate();
+  dBodyID body = dBodyCreate(world);
+  dGeomID geom = dCreateSphere(nullptr, 0.1);
+  dGeomID ground = dCreatePlane(nullptr, 0, 0, 1, 0);
+  dContact contact = {};
+
+  Touching() {
+    dGeomSetBody(geom, body);
+    contact.geom.normal[2] = 1.0;
+    contact.geom.g1 = geom;
+    contact.geom.g2 = ground;
+    contact.surface.mu = 1.0;
+  }
+  ~Touching() {
+    dGeomDestroy(geom);
+    dGeomDestroy(ground);
+    dWorldDestroy(world);
+  }
+  Touching(const Touching&) = delete;
+  Touching& operator=(const Touching&) = delete;
+};
+
+TEST_F(FrictionAnchors, BeginAnewAfterAStepApart) {
+  Touching touching;
+  const Anchors anchors = make_anchors();
+  const auto motion = [&] {
+    dContact contact = touching.contact;
+    EXPECT_EQ(oddsFrictionAnchorsHold(anchors.get(), touching.body, nullptr, &contact, 1, step_s), 1);
+    return Vec3(contact.surface.motion1, contact.surface.motion2, 0.0).norm();
+  };
+  dBodySetLinearVel(touching.body, 1e-3, 0.0, 0.0);
+  oddsFrictionAnchorsNextStep(anchors.get());
+  EXPECT_EQ(motion(), 0.0) << "they have only just met";
+  oddsFrictionAnchorsNextStep(anchors.get());
+  EXPECT_NEAR(motion(), 0.2e-3, 1e-9);
+  EXPECT_NEAR(motion(), 0.2e-3, 1e-9) << "asked twice in a step, it is the same";
+  oddsFrictionAnchorsNextStep(anchors.get());
+  EXPECT_NEAR(motion(), 0.4e-3, 1e-9);
+  oddsFrictionAnchorsNextStep(anchors.get());
+  oddsFrictionAnchorsNextStep(anchors.get());
+  EXPECT_EQ(motion(), 0.0) << "they were apart";
+}
+
+TEST_F(FrictionAnchors, SayWhenThereIsNoRoomAndTakeItBack) {
+  Touching touching;
+  const Anchors anchors = make_anchors(1);
+  std::vector<dGeomID> others;
+  for (int i = 0; i < 40; ++i) others.push_back(dCreateSphere(nullptr, 0.1));
+  const auto held = [&] {
+    int count = 0;
+    for (const dGeomID other : others) {
+      dContact contact = touching.contact;
+      contact.geom.g2 = other;
+      const int done = oddsFrictionAnchorsHold(anchors.get(), touching.body, nullptr, &contact, 1, step_s);
+      count += done;
+      if (done == 0) {
+        EXPECT_EQ(contact.surface.mode, touching.contact.surface.mode) << "unchanged";
+      }
+    }
+    return count;
+  };
+  oddsFrictionAnchorsNextStep(anchors.get());
+  EXPECT_GE(held(), 1);
+  EXPECT_LT(held(), 40);
+  oddsFrictionAnchorsNextStep(anchors.get());
+  oddsFrictionAnchorsNextStep(anchors.get());
+  EXPECT_GE(held(), 1) << "those of old steps make room";
+  for (const dGeomID other : others) dGeomDestroy(other);
+}
+
+TEST_F(FrictionAnchors, RefuseWhatMakesNoSense) {
+  const double nan = std::nan("");
+  const double infinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(oddsFrictionAnchorsCreate(0, slip_m), nullptr);
+  EXPECT_EQ(oddsFrictionAnchorsCreate(1048577, slip_m), nullptr);
+  for (const double bad : {0.0, -1.0, nan, infinity}) EXPECT_EQ(oddsFrictionAnchorsCreate(8, bad), nullptr) << bad;
+  EXPECT_STRNE(oddsGetLastError(), "");
+  oddsFrictionAnchorsDestroy(nullptr);
+  oddsFrictionAnchorsNextStep(nullptr);
+  Touching touching;
+  const Anchors anchors = make_anchors();
+  const auto hold = [&](dContact contact, dBodyID b1, dBodyID b2, double step) {
+    const dContact before = contact;
+    const int done = oddsFrictionAnchorsHold(anchors.get(), b1, b2, &contact, 1, step);
+    if (done == 0) {
+      EXPECT_EQ(contact.surface.mode, before.surface.mode);
+    }
+    return done;
+  };
+  EXPECT_EQ(hold(touching.contact, nullptr, nullptr, step_s), 0);
+  EXPECT_EQ(hold(touching.contact, touching.body, touching.body, step_s), 0);
+  for (const double bad : {0.0, -1.0, nan, infinity}) EXPECT_EQ(hold(touching.contact, touching.body, nullptr, bad), 0);
+  dContact odd = touching.contact;
+  odd.geom.pos[1] = nan;
+  EXPECT_EQ(hold(odd, touching.body, nullptr, step_s), 0);
+  odd = touching.contact;
+  odd.surface.mode = dContactMotion1;
+  odd.surface.motion1 = infinity;
+  EXPECT_EQ(hold(odd, touching.body, nullptr, step_s), 0);
+  dContact two[2] = {touching.contact, touching.contact};
+  std::swap(two[1].geom.g1, two[1].geom.g2);
+  EXPECT_EQ(oddsFrictionAnchorsHold(anchors.get(), touching.body, nullptr, two, 2, step_s), 0);
+  EXPECT_EQ(oddsFrictionAnchorsHold(nullptr, touching.body, nullptr, two, 1, step_s), 0);
+  EXPECT_EQ(oddsFrictionAnchorsHold(anchors.get(), touching.body, nullptr, nullptr, 1, step_s), 0);
+  EXPECT_EQ(oddsFrictionAnchorsHold(anchors.get(), touching.body, nullptr, two, 0, step_s), 0);
+  dBodySetLinearVel(touching.body, nan, 0.0, 0.0);
+  EXPECT_EQ(hold(touching.contact, touching.body, nullptr, step_s), 0);
+  dBodySetLinearVel(touching.body, 1.0, 0.0, 0.0);
+  EXPECT_EQ(hold(touching.contact, touching.body, nullptr, step_s), 1);
+}
+
+TEST_F(FrictionAnchors, AllocateNothingInTheLoop) {
+  if (!support::counts_allocations) GTEST_SKIP() << "the sanitizer's own malloc is in place";
+  Touching touching;
+  const Anchors anchors = make_anchors(4);
+  const support::AllocationCounter counter;
+  for (int i = 0; i < 100; ++i) {
+    dContact contact = touching.contact;
+    oddsFrictionAnchorsNextStep(anchors.get());
+    ASSERT_EQ(oddsFrictionAnchorsHold(anchors.get(), touching.body, nullptr, &contact, 1, step_s), 1);
+  }
+  EXPECT_EQ(counter.allocations(), 0u);
+}
+
+}  // namespace
+}  // namespace odds
