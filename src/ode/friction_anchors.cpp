@@ -17,7 +17,9 @@ using odds::ode::vector_of;
 
 /// Of what has been slid, taken back in a step: ODE's usual ERP.
 constexpr double taken_back = 0.2;
-/// Slots that are looked at for a pair. With half of all in use such a run of taken ones is as good as never met.
+/// Slots for a pair: those of this step and of the one before are in use, half of all at most.
+constexpr std::size_t slots_of_a_pair = 4;
+/// Slots that are looked at for a pair: a run of as many that are in use is as good as never met.
 constexpr std::size_t most_looked_at = 32;
 
 /// Two directions in which a contact's friction acts, as ODE chooses them, and whose velocity along them its motion1
@@ -60,26 +62,48 @@ Vec3 spin_of(dBodyID body) noexcept {
   return body == nullptr ? Vec3(Vec3::Zero()) : Vec3(vector_of(dBodyGetAngularVel(body)));
 }
 
+/// The velocity of b1 against b2 that a contact asks for, as of a conveyor, m/s.
+Vec3 asked_of(const dContact& contact, bool b1_is_world) noexcept {
+  const FrictionAxes axes(contact, b1_is_world);
+  const auto along = [](const Vec3& axis, double speed) -> Vec3 {
+    const double squared = axis.squaredNorm();  // a direction of the caller's may have any length
+    return squared > 0.0 ? Vec3(speed / squared * axis) : Vec3(Vec3::Zero());
+  };
+  return axes.sign * (along(axes.first, motion1_of(contact.surface)) + along(axes.second, motion2_of(contact.surface)));
+}
+
 /// The middle of all contacts.
 struct Middle {
   Vec3 place = Vec3::Zero();
-  Vec3 normal = Vec3::Zero();   ///< unit; zero where contacts push against each other
-  Vec3 carried = Vec3::Zero();  ///< mean velocity of b1 against b2 that the contacts ask for: of a conveyor, m/s
-  double reach = 0.0;           ///< distance of the farthest contact
+  Vec3 normal = Vec3::Zero();      ///< unit; zero where contacts push against each other
+  Vec3 asked = Vec3::Zero();       ///< mean velocity of b1 against b2 that they ask for, m/s
+  Vec3 asked_spin = Vec3::Zero();  ///< the same of the spin about the normal, rad/s: of a turntable
+  double reach = 0.0;              ///< distance of the farthest contact
 
   Middle(const dContact* contacts, int count, bool b1_is_world) noexcept {
     constexpr double one_way = 0.1;  // of the sum of normals: less, and they hold from both sides
     for (int i = 0; i < count; ++i) {
-      const FrictionAxes axes(contacts[i], b1_is_world);
       place += vector_of(contacts[i].geom.pos) / count;
       normal += vector_of(contacts[i].geom.normal) / count;
-      carried += axes.sign / count *
-                 (motion1_of(contacts[i].surface) * axes.first + motion2_of(contacts[i].surface) * axes.second);
+      asked += asked_of(contacts[i], b1_is_world) / count;
     }
-    for (int i = 0; i < count; ++i) reach = std::max(reach, (vector_of(contacts[i].geom.pos) - place).norm());
     normal = normal.norm() > one_way ? Vec3(normal.normalized()) : Vec3(Vec3::Zero());
+    Vec3 moment = Vec3::Zero();
+    double squares = 0.0;
+    for (int i = 0; i < count; ++i) {
+      const Vec3 arm = vector_of(contacts[i].geom.pos) - place;
+      moment += arm.cross(asked_of(contacts[i], b1_is_world));
+      squares += arm.squaredNorm();
+      reach = std::max(reach, arm.norm());
+    }
+    if (squares > 0.0) asked_spin = normal.dot(moment) / squares * normal;
   }
 };
+
+void limit(Vec3& v, double most) noexcept {
+  const double length = v.norm();
+  if (length > most) v *= most / length;
+}
 
 bool is_finite(dBodyID body) noexcept {
   return body == nullptr || (vector_of(dBodyGetPosition(body)).allFinite() &&
@@ -100,11 +124,12 @@ int refuse(const char* rule) noexcept {
 }  // namespace
 
 oddsFrictionAnchors::oddsFrictionAnchors(std::size_t most_pairs, double most_slip_m)
-    : most_slip_m_(most_slip_m), anchors_(std::bit_ceil(2 * most_pairs)) {}
+    : most_slip_m_(most_slip_m), anchors_(std::bit_ceil(slots_of_a_pair * most_pairs)) {}
 
-oddsFrictionAnchors::Anchor* oddsFrictionAnchors::find(dGeomID first, dGeomID second) noexcept {
+oddsFrictionAnchors::Anchor* oddsFrictionAnchors::find(const Touching& pair) noexcept {
   // Mixing after splitmix64: addresses are multiples of 16.
-  auto key = std::hash<dGeomID>{}(first)*0x9e3779b97f4a7c15u ^ std::hash<dGeomID>{}(second)*0xc2b2ae3d27d4eb4fu;
+  const std::hash<dGeomID> number;
+  auto key = number(pair.geoms[0]) * 0x9e3779b97f4a7c15u ^ number(pair.geoms[1]) * 0xc2b2ae3d27d4eb4fu;
   key ^= key >> 31U;
   key *= 0xbf58476d1ce4e5b9u;
   key ^= key >> 29U;
@@ -112,43 +137,52 @@ oddsFrictionAnchors::Anchor* oddsFrictionAnchors::find(dGeomID first, dGeomID se
   for (std::size_t i = 0; i < std::min(most_looked_at, anchors_.size()); ++i) {
     Anchor& anchor = anchors_[(key + i) & (anchors_.size() - 1)];
     const bool is_old = anchor.step + 1 < step_;
-    if (!is_old && anchor.first == first && anchor.second == second) return &anchor;
+    if (!is_old && anchor.pair == pair) return &anchor;
     if (is_old && free == nullptr) free = &anchor;
   }
-  if (free != nullptr) *free = {first, second, step_, {}};
+  if (free != nullptr) *free = {pair, step_, {}};
   return free;
 }
 
 bool oddsFrictionAnchors::hold(dBodyID b1, dBodyID b2, dContact* contacts, int count, double step_s) noexcept {
-  const dGeomID g1 = contacts[0].geom.g1;
-  const dGeomID g2 = contacts[0].geom.g2;
-  const bool in_order = std::less<>{}(g1, g2);
-  Anchor* const anchor = in_order ? find(g1, g2) : find(g2, g1);
+  const bool in_order = std::less<>{}(contacts[0].geom.g1, contacts[0].geom.g2);
+  Touching pair{{contacts[0].geom.g1, contacts[0].geom.g2}, {b1, b2}};
+  if (!in_order) pair = {{pair.geoms[1], pair.geoms[0]}, {b2, b1}};
+  Anchor* const anchor = find(pair);
   if (anchor == nullptr) return false;
   const Middle middle(contacts, count, b1 == nullptr);
   const double sign = in_order ? 1.0 : -1.0;
   Slid& slid = anchor->slid;
   if (anchor->step != step_) {
     const auto along = [&middle](const Vec3& v) -> Vec3 { return middle.normal.dot(v) * middle.normal; };
-    const Vec3 velocity = velocity_at(b1, middle.place) - velocity_at(b2, middle.place) - middle.carried;
+    const Vec3 velocity = velocity_at(b1, middle.place) - velocity_at(b2, middle.place) - middle.asked;
     slid.by += sign * step_s * velocity;
     slid.by -= along(slid.by);
-    slid.turn = along(slid.turn + sign * step_s * (spin_of(b1) - spin_of(b2)));
-    const double most = slid.by.norm() + slid.turn.norm() * middle.reach;
-    if (most > most_slip_m_) {  // the bristles slip
-      slid.by *= most_slip_m_ / most;
-      slid.turn *= most_slip_m_ / most;
-    }
+    slid.turn = along(slid.turn + sign * step_s * (spin_of(b1) - spin_of(b2) - middle.asked_spin));
+    limit(slid.by, most_slip_m_);  // beyond it the bristles slip
     anchor->step = step_;
   }
+  if (middle.reach > 0.0) {
+    limit(slid.turn, most_slip_m_ / middle.reach);
+  } else {
+    slid.turn.setZero();  // one contact holds no turn
+  }
+  if (!slid.by.allFinite() || !slid.turn.allFinite()) slid = {};
   for (int i = 0; i < count; ++i) {
-    const Vec3 arm = vector_of(contacts[i].geom.pos) - middle.place;
+    Vec3 here = slid.by + slid.turn.cross(vector_of(contacts[i].geom.pos) - middle.place);
+    limit(here, most_slip_m_);
     const FrictionAxes axes(contacts[i], b1 == nullptr);
-    const Vec3 back = -axes.sign * sign * taken_back / step_s * (slid.by + slid.turn.cross(arm));
+    const Vec3 back = -axes.sign * sign * taken_back / step_s * here;
     dSurfaceParameters& surface = contacts[i].surface;
-    surface.motion1 = motion1_of(surface) + back.dot(axes.first);
-    surface.motion2 = motion2_of(surface) + back.dot(axes.second);
-    surface.mode |= dContactMotion1 | dContactMotion2;
+    // Along an axis with slip of its own (dContactSlip1, 2) the bodies are meant to slide.
+    if ((surface.mode & dContactSlip1) == 0) {
+      surface.motion1 = motion1_of(surface) + back.dot(axes.first);
+      surface.mode |= dContactMotion1;
+    }
+    if ((surface.mode & dContactSlip2) == 0) {
+      surface.motion2 = motion2_of(surface) + back.dot(axes.second);
+      surface.mode |= dContactMotion2;
+    }
   }
   return true;
 }
@@ -174,9 +208,9 @@ void oddsFrictionAnchorsNextStep(oddsFrictionAnchorsID anchors) noexcept {
 
 int oddsFrictionAnchorsHold(oddsFrictionAnchorsID anchors, dBodyID b1, dBodyID b2, dContact* contacts, int count,
                             dReal step_s) noexcept {
-  if (anchors == nullptr || contacts == nullptr || count < 1) {
-    return refuse("oddsFrictionAnchorsHold: needs anchors and at least one contact");
-  }
+  if (anchors == nullptr || count < 0) return refuse("oddsFrictionAnchorsHold: needs anchors and a count >= 0");
+  if (count == 0 || (b1 == nullptr && b2 == nullptr)) return 1;
+  if (contacts == nullptr) return refuse("oddsFrictionAnchorsHold: the contacts are null");
   if (b1 == b2) return refuse("oddsFrictionAnchorsHold: needs two bodies, at most one of them null");
   if (!(step_s > 0) || !std::isfinite(step_s)) return refuse("oddsFrictionAnchorsHold: the step must be > 0 seconds");
   if (!is_finite(b1) || !is_finite(b2)) return refuse("oddsFrictionAnchorsHold: a body is not finite");
@@ -186,5 +220,8 @@ int oddsFrictionAnchorsHold(oddsFrictionAnchorsID anchors, dBodyID b1, dBodyID b
     }
     if (!is_finite(contacts[i])) return refuse("oddsFrictionAnchorsHold: a contact is not finite");
   }
-  return anchors->hold(b1, b2, contacts, count, step_s) ? 1 : 0;
+  if (!anchors->hold(b1, b2, contacts, count, step_s)) {
+    return refuse("oddsFrictionAnchorsHold: no room for one more pair; create anchors for more");
+  }
+  return 1;
 }

@@ -22,8 +22,10 @@ Anchors make_anchors(int pairs = 64, double slip = slip_m) {
 
 struct Surface {
   double mu = 0.5;
-  double conveyor_m_per_s = 0.0;  ///< along x, of b1 against b2 as ODE has it; 0: none
-  bool bodies_swapped = false;    ///< geoms, and bodies, in the other order
+  double turntable_rad_per_s = 0.0;  ///< about z, of b1 against b2; 0: none
+  double slip1 = 0.0;                ///< dContactSlip1 and 2; 0: none
+  double conveyor_m_per_s = 0.0;     ///< along x, of b1 against b2 as ODE has it; 0: none
+  bool bodies_swapped = false;       ///< geoms, and bodies, in the other order
 };
 
 /// A world of ODE's own geoms, with or without anchors.
@@ -84,6 +86,20 @@ class World {
       contacts[i].surface = {};
       contacts[i].surface.mode = dContactApprox1;
       contacts[i].surface.mu = world.surface_.mu;
+      if (world.surface_.slip1 > 0.0) {
+        contacts[i].surface.mode |= dContactSlip1 | dContactSlip2;
+        contacts[i].surface.slip1 = contacts[i].surface.slip2 = world.surface_.slip1;
+      }
+      if (world.surface_.turntable_rad_per_s != 0.0) {
+        const double x = contacts[i].geom.pos[0];
+        const double y = contacts[i].geom.pos[1];
+        const double radius = std::hypot(x, y);
+        contacts[i].surface.mode |= dContactFDir1 | dContactMotion1;
+        contacts[i].surface.motion1 = world.surface_.turntable_rad_per_s * radius;
+        contacts[i].fdir1[0] = -y / radius;
+        contacts[i].fdir1[1] = x / radius;
+        contacts[i].fdir1[2] = 0.0;
+      }
       if (world.surface_.conveyor_m_per_s == 0.0) continue;
       contacts[i].surface.mode |= dContactFDir1 | dContactMotion1;
       contacts[i].surface.motion1 = world.surface_.conveyor_m_per_s;
@@ -192,6 +208,31 @@ TEST_F(FrictionAnchors, LetAConveyorCarryAsWithout) {
   }
 }
 
+TEST_F(FrictionAnchors, LetATurntableTurnAsWithout) {
+  for (const double wanted : {0.01, 0.2, 2.0}) {
+    const auto spin = [&](bool anchored) {
+      World world({.mu = 1.0, .turntable_rad_per_s = wanted}, anchored, down);
+      const dBodyID box = world.add_box({0.2, 0.2, 0.1}, {0.0, 0.0, 0.05});
+      world.run(1.0);
+      return spin_of(box).z();
+    };
+    EXPECT_NEAR(std::abs(spin(false)), wanted, 1e-3 * wanted);
+    EXPECT_NEAR(spin(true), spin(false), 1e-3 * wanted);
+  }
+}
+
+/// Force-dependent slip is what the caller asks for.
+TEST_F(FrictionAnchors, LeaveAnAxisWithASlipOfItsOwn) {
+  const auto slid = [&](bool anchored) {
+    World world({.mu = 1.0, .slip1 = 1e-3}, anchored, Vec3(1.0, 0.0, -9.81));
+    const dBodyID box = world.add_box({0.2, 0.2, 0.1}, {0.0, 0.0, 0.05});
+    world.run(2.0);
+    return place_of(box).x();
+  };
+  EXPECT_GT(slid(false), 1e-3);
+  EXPECT_NEAR(slid(true), slid(false), 0.02 * slid(false));
+}
+
 /// No contact gets more force than its mu allows, and nobody is pulled back by more than the slip.
 TEST_F(FrictionAnchors, PullNothingBackByMoreThanTheSlip) {
   World world({.mu = 0.5}, true, down);
@@ -252,11 +293,69 @@ TEST_F(FrictionAnchors, BeginAnewAfterAStepApart) {
   EXPECT_EQ(motion(), 0.0) << "they were apart";
 }
 
+/// A body that spins on one contact holds no turn, nor does what it has turned meanwhile.
+TEST_F(FrictionAnchors, PullNoContactBackByMoreThanTheSlip) {
+  Touching touching;
+  const Anchors anchors = make_anchors();
+  dBodySetLinearVel(touching.body, 3e-3, 0.0, 0.0);
+  dBodySetAngularVel(touching.body, 0.0, 0.0, 10.0);
+  for (int i = 0; i < 100; ++i) {
+    oddsFrictionAnchorsNextStep(anchors.get());
+    for (const int count : {1, 4}) {
+      dContact contacts[4];
+      for (int k = 0; k < count; ++k) {
+        contacts[k] = touching.contact;
+        contacts[k].geom.pos[0] = 0.1 * (k % 2);
+        contacts[k].geom.pos[1] = 0.1 * (k / 2);
+      }
+      ASSERT_EQ(oddsFrictionAnchorsHold(anchors.get(), touching.body, nullptr, contacts, count, step_s), 1);
+      for (int k = 0; k < count; ++k) {
+        const double motion = std::hypot(contacts[k].surface.motion1, contacts[k].surface.motion2);
+        EXPECT_LE(motion, 0.2 * slip_m / step_s * (1.0 + 1e-9));
+      }
+    }
+  }
+}
+
+TEST_F(FrictionAnchors, ForgetWhatOverflowed) {
+  Touching touching;
+  const Anchors anchors = make_anchors();
+  const auto motion = [&] {
+    dContact contact = touching.contact;
+    contact.geom.pos[0] = 1e10;
+    oddsFrictionAnchorsNextStep(anchors.get());
+    EXPECT_EQ(oddsFrictionAnchorsHold(anchors.get(), touching.body, nullptr, &contact, 1, step_s), 1);
+    return std::hypot(contact.surface.motion1, contact.surface.motion2);
+  };
+  EXPECT_EQ(motion(), 0.0);
+  dBodySetAngularVel(touching.body, 0.0, 0.0, 1e306);
+  EXPECT_TRUE(std::isfinite(motion()));
+  dBodySetAngularVel(touching.body, 0.0, 0.0, 0.0);
+  EXPECT_EQ(motion(), 0.0);
+}
+
+TEST_F(FrictionAnchors, HaveRoomForAllPairsOfTwoStepsThatShareNone) {
+  Touching touching;
+  constexpr int most = 1024;
+  const Anchors anchors = make_anchors(most);
+  std::vector<dGeomID> others;
+  for (int i = 0; i < 2 * most; ++i) others.push_back(dCreateSphere(nullptr, 0.1));
+  for (int step = 0; step < 4; ++step) {
+    oddsFrictionAnchorsNextStep(anchors.get());
+    for (int i = 0; i < most; ++i) {
+      dContact contact = touching.contact;
+      contact.geom.g2 = others[static_cast<std::size_t>(step % 2 * most + i)];
+      ASSERT_EQ(oddsFrictionAnchorsHold(anchors.get(), touching.body, nullptr, &contact, 1, step_s), 1) << i;
+    }
+  }
+  for (const dGeomID other : others) dGeomDestroy(other);
+}
+
 TEST_F(FrictionAnchors, SayWhenThereIsNoRoomAndTakeItBack) {
   Touching touching;
   const Anchors anchors = make_anchors(1);
   std::vector<dGeomID> others;
-  for (int i = 0; i < 40; ++i) others.push_back(dCreateSphere(nullptr, 0.1));
+  for (int i = 0; i < 400; ++i) others.push_back(dCreateSphere(nullptr, 0.1));
   const auto held = [&] {
     int count = 0;
     for (const dGeomID other : others) {
@@ -272,7 +371,7 @@ TEST_F(FrictionAnchors, SayWhenThereIsNoRoomAndTakeItBack) {
   };
   oddsFrictionAnchorsNextStep(anchors.get());
   EXPECT_GE(held(), 1);
-  EXPECT_LT(held(), 40);
+  EXPECT_LT(held(), 400);
   oddsFrictionAnchorsNextStep(anchors.get());
   oddsFrictionAnchorsNextStep(anchors.get());
   EXPECT_GE(held(), 1) << "those of old steps make room";
@@ -298,7 +397,7 @@ TEST_F(FrictionAnchors, RefuseWhatMakesNoSense) {
     }
     return done;
   };
-  EXPECT_EQ(hold(touching.contact, nullptr, nullptr, step_s), 0);
+  EXPECT_EQ(hold(touching.contact, nullptr, nullptr, step_s), 1) << "nothing to hold";
   EXPECT_EQ(hold(touching.contact, touching.body, touching.body, step_s), 0);
   for (const double bad : {0.0, -1.0, nan, infinity}) EXPECT_EQ(hold(touching.contact, touching.body, nullptr, bad), 0);
   dContact odd = touching.contact;
@@ -313,7 +412,8 @@ TEST_F(FrictionAnchors, RefuseWhatMakesNoSense) {
   EXPECT_EQ(oddsFrictionAnchorsHold(anchors.get(), touching.body, nullptr, two, 2, step_s), 0);
   EXPECT_EQ(oddsFrictionAnchorsHold(nullptr, touching.body, nullptr, two, 1, step_s), 0);
   EXPECT_EQ(oddsFrictionAnchorsHold(anchors.get(), touching.body, nullptr, nullptr, 1, step_s), 0);
-  EXPECT_EQ(oddsFrictionAnchorsHold(anchors.get(), touching.body, nullptr, two, 0, step_s), 0);
+  EXPECT_EQ(oddsFrictionAnchorsHold(anchors.get(), touching.body, nullptr, two, -1, step_s), 0);
+  EXPECT_EQ(oddsFrictionAnchorsHold(anchors.get(), touching.body, nullptr, nullptr, 0, step_s), 1) << "nothing to hold";
   dBodySetLinearVel(touching.body, nan, 0.0, 0.0);
   EXPECT_EQ(hold(touching.contact, touching.body, nullptr, step_s), 0);
   dBodySetLinearVel(touching.body, 1.0, 0.0, 0.0);

@@ -214,7 +214,7 @@ void Arena::near(void* self, dGeomID a, dGeomID b) {
     oddsMakeSpeculative(&contact, step_s);
   }
   if (arena.anchors_ && oddsFrictionAnchorsHold(arena.anchors_.get(), body_a, body_b, contacts, count, step_s) == 0) {
-    throw std::runtime_error("friction anchors: no room for a pair");
+    throw std::runtime_error(oddsGetLastError());
   }
   for (int i = 0; i < count; ++i) {
     const dJointID joint = dJointCreateContact(arena.world_, arena.joints_, &contacts[i]);
