@@ -5,18 +5,25 @@
 #include <cmath>
 #include <functional>
 #include <new>
+#include <span>
 #include <utility>
 
+#include "odds/math/pose.hpp"
 #include "ode/last_error.hpp"
 #include "ode/vectors.hpp"
 
 namespace {
 
+namespace math = odds::math;
+using odds::Mat3;
 using odds::Vec3;
 using odds::ode::vector_of;
 
 /// Of what has been slid, taken back in a step: ODE's usual ERP.
 constexpr double taken_back = 0.2;
+/// Steps that a pair may be apart and still be held where it was: bodies that rock lose their contacts for a step or
+/// two.
+constexpr std::uint64_t most_apart = 16;
 /// Slots for a pair: those of this step and of the one before are in use, half of all at most.
 constexpr std::size_t slots_of_a_pair = 4;
 /// Slots that are looked at for a pair: a run of as many that are in use is as good as never met.
@@ -52,14 +59,10 @@ double motion2_of(const dSurfaceParameters& surface) noexcept {
   return (surface.mode & dContactMotion2) != 0 ? double{surface.motion2} : 0.0;
 }
 
-/// Of a body's point, m/s; null: the world.
-Vec3 velocity_at(dBodyID body, const Vec3& point) noexcept {
-  if (body == nullptr) return Vec3::Zero();
-  const Vec3 arm = point - vector_of(dBodyGetPosition(body));
-  return vector_of(dBodyGetLinearVel(body)) + vector_of(dBodyGetAngularVel(body)).cross(arm);
-}
-Vec3 spin_of(dBodyID body) noexcept {
-  return body == nullptr ? Vec3(Vec3::Zero()) : Vec3(vector_of(dBodyGetAngularVel(body)));
+/// Null: the world.
+math::Pose pose_of(dBodyID body) noexcept {
+  if (body == nullptr) return {};
+  return {odds::ode::matrix_of(dBodyGetRotation(body)), vector_of(dBodyGetPosition(body))};
 }
 
 /// The velocity of b1 against b2 that a contact asks for, as of a conveyor, m/s.
@@ -72,42 +75,17 @@ Vec3 asked_of(const dContact& contact, bool b1_is_world) noexcept {
   return axes.sign * (along(axes.first, motion1_of(contact.surface)) + along(axes.second, motion2_of(contact.surface)));
 }
 
-/// The middle of all contacts.
-struct Middle {
-  Vec3 place = Vec3::Zero();
-  Vec3 normal = Vec3::Zero();      ///< unit; zero where contacts push against each other
-  Vec3 asked = Vec3::Zero();       ///< mean velocity of b1 against b2 that they ask for, m/s
-  Vec3 asked_spin = Vec3::Zero();  ///< the same of the spin about the normal, rad/s: of a turntable
-  double reach = 0.0;              ///< distance of the farthest contact
-
-  Middle(const dContact* contacts, int count, bool b1_is_world) noexcept {
-    constexpr double one_way = 0.1;  // of the sum of normals: less, and they hold from both sides
-    for (int i = 0; i < count; ++i) {
-      place += vector_of(contacts[i].geom.pos) / count;
-      normal += vector_of(contacts[i].geom.normal) / count;
-      asked += asked_of(contacts[i], b1_is_world) / count;
-    }
-    normal = normal.norm() > one_way ? Vec3(normal.normalized()) : Vec3(Vec3::Zero());
-    Vec3 moment = Vec3::Zero();
-    double squares = 0.0;
-    for (int i = 0; i < count; ++i) {
-      const Vec3 arm = vector_of(contacts[i].geom.pos) - place;
-      moment += arm.cross(asked_of(contacts[i], b1_is_world));
-      squares += arm.squaredNorm();
-      reach = std::max(reach, arm.norm());
-    }
-    if (squares > 0.0) asked_spin = normal.dot(moment) / squares * normal;
-  }
-};
-
-void limit(Vec3& v, double most) noexcept {
+/// Whether it was longer.
+bool limit(Vec3& v, double most) noexcept {
   const double length = v.norm();
-  if (length > most) v *= most / length;
+  if (!(length > most)) return false;
+  v *= most / length;
+  return true;
 }
 
 bool is_finite(dBodyID body) noexcept {
-  return body == nullptr || (vector_of(dBodyGetPosition(body)).allFinite() &&
-                             vector_of(dBodyGetLinearVel(body)).allFinite() && spin_of(body).allFinite());
+  const math::Pose pose = pose_of(body);
+  return pose.translation.allFinite() && pose.rotation.allFinite();
 }
 
 bool is_finite(const dContact& contact) noexcept {
@@ -123,6 +101,49 @@ int refuse(const char* rule) noexcept {
 
 }  // namespace
 
+/// The middle of all contacts.
+struct oddsFrictionAnchors::Middle {
+  Vec3 place = Vec3::Zero();
+  Vec3 normal = Vec3::Zero();      ///< unit; zero where contacts push against each other
+  Vec3 asked = Vec3::Zero();       ///< mean velocity of b1 against b2 that they ask for, m/s
+  Vec3 asked_spin = Vec3::Zero();  ///< the same of the spin about the normal, rad/s: of a turntable
+
+  Middle(const dContact* contacts, int count, bool b1_is_world) noexcept {
+    constexpr double one_way = 0.1;  // of the sum of normals: less, and they hold from both sides
+    for (int i = 0; i < count; ++i) {
+      place += vector_of(contacts[i].geom.pos) / count;
+      normal += vector_of(contacts[i].geom.normal) / count;
+      asked += asked_of(contacts[i], b1_is_world) / count;
+    }
+    normal = normal.norm() > one_way ? Vec3(normal.normalized()) : Vec3(Vec3::Zero());
+    Vec3 moment = Vec3::Zero();
+    double squares = 0.0;
+    for (int i = 0; i < count; ++i) {
+      const Vec3 arm = vector_of(contacts[i].geom.pos) - place;
+      moment += arm.cross(asked_of(contacts[i], b1_is_world));
+      squares += arm.squaredNorm();
+    }
+    if (squares > 0.0) asked_spin = normal.dot(moment) / squares * normal;
+    contacts_ = {contacts, static_cast<std::size_t>(count)};
+  }
+  /// Distance of the farthest contact.
+  [[nodiscard]] double reach_from(const Vec3& point) const noexcept {
+    double reach = 0.0;
+    for (const dContact& contact : contacts_) reach = std::max(reach, (vector_of(contact.geom.pos) - point).norm());
+    return reach;
+  }
+
+ private:
+  std::span<const dContact> contacts_;
+};
+
+/// At the points that the pair is anchored at; world frame.
+struct oddsFrictionAnchors::Slid {
+  Vec3 place;  ///< of the first body's point
+  Vec3 by;
+  Vec3 turn;  ///< about the normal
+};
+
 oddsFrictionAnchors::oddsFrictionAnchors(std::size_t most_pairs, double most_slip_m)
     : most_slip_m_(most_slip_m), anchors_(std::bit_ceil(slots_of_a_pair * most_pairs)) {}
 
@@ -133,15 +154,63 @@ oddsFrictionAnchors::Anchor* oddsFrictionAnchors::find(const Touching& pair) noe
   key ^= key >> 31U;
   key *= 0xbf58476d1ce4e5b9u;
   key ^= key >> 29U;
-  Anchor* free = nullptr;
+  Anchor* oldest = nullptr;
   for (std::size_t i = 0; i < std::min(most_looked_at, anchors_.size()); ++i) {
     Anchor& anchor = anchors_[(key + i) & (anchors_.size() - 1)];
-    const bool is_old = anchor.step + 1 < step_;
-    if (!is_old && anchor.pair == pair) return &anchor;
-    if (is_old && free == nullptr) free = &anchor;
+    if (anchor.pair == pair && anchor.step + most_apart >= step_) return &anchor;
+    if (oldest == nullptr || anchor.step < oldest->step) oldest = &anchor;
   }
-  if (free != nullptr) *free = {pair, step_, {}};
-  return free;
+  if (oldest->step + 1 >= step_) return nullptr;  // all of this step, or of the one before
+  *oldest = {};
+  oldest->pair = pair;
+  return oldest;
+}
+
+oddsFrictionAnchors::Slid oddsFrictionAnchors::slid(Anchor& anchor, const Middle& middle, double sign,
+                                                    double step_s) const noexcept {
+  constexpr double small_angle = 0.1;
+  const double least_reach = 10.0 * most_slip_m_;
+  const math::Pose first = pose_of(anchor.pair.bodies[0]);
+  const math::Pose second = pose_of(anchor.pair.bodies[1]);
+  const Mat3 turned = second.rotation.transpose() * first.rotation;
+  bool begins = anchor.step == 0;
+  Vec3 place = first * anchor.points[0];
+  // A body that rolls touches elsewhere now; one that rocks does so within what its contacts reach.
+  begins = begins || (middle.place - place).norm() > std::max(anchor.reach, least_reach);
+  Vec3 by = Vec3::Zero();
+  double turn = 0.0;
+  double turned_by = 0.0;
+  if (anchor.step != 0) {
+    by = place - second * anchor.points[1];
+    by -= middle.normal.dot(by) * middle.normal;
+    const Mat3 since = turned * anchor.turned.transpose();
+    const Vec3 axis(since(2, 1) - since(1, 2), since(0, 2) - since(2, 0), since(1, 0) - since(0, 1));
+    turned_by = 0.5 * axis.norm();
+    turn = anchor.turn + 0.5 * middle.normal.dot(second.rotation * axis);
+  }
+  bool moves = begins || turned_by > small_angle;
+  const bool is_carried = !middle.asked.isZero() || !middle.asked_spin.isZero();
+  if (is_carried && anchor.step != 0 && anchor.step != step_) {  // what was asked for has come in the step since
+    by -= sign * step_s * middle.asked;
+    turn -= sign * step_s * middle.normal.dot(middle.asked_spin);
+    moves = true;
+  }
+  if (begins) {
+    place = middle.place;
+    anchor.reach = 0.0;
+  }
+  anchor.reach = std::max(anchor.reach, middle.reach_from(place));
+  // Beyond that the bristles slip. One contact holds no turn.
+  const double most_turn = anchor.reach > 0.0 ? most_slip_m_ / anchor.reach : 0.0;
+  moves = limit(by, most_slip_m_) || moves || std::abs(turn) > most_turn;
+  turn = std::clamp(turn, -most_turn, most_turn);
+  if (moves) {
+    anchor.points[0] = first.inverse() * place;
+    anchor.points[1] = second.inverse() * Vec3(place - by);
+    anchor.turned = turned;
+    anchor.turn = turn;
+  }
+  return {place, by, turn * middle.normal};
 }
 
 bool oddsFrictionAnchors::hold(dBodyID b1, dBodyID b2, dContact* contacts, int count, double step_s) noexcept {
@@ -150,27 +219,16 @@ bool oddsFrictionAnchors::hold(dBodyID b1, dBodyID b2, dContact* contacts, int c
   if (!in_order) pair = {{pair.geoms[1], pair.geoms[0]}, {b2, b1}};
   Anchor* const anchor = find(pair);
   if (anchor == nullptr) return false;
-  const Middle middle(contacts, count, b1 == nullptr);
   const double sign = in_order ? 1.0 : -1.0;
-  Slid& slid = anchor->slid;
-  if (anchor->step != step_) {
-    const auto along = [&middle](const Vec3& v) -> Vec3 { return middle.normal.dot(v) * middle.normal; };
-    const Vec3 velocity = velocity_at(b1, middle.place) - velocity_at(b2, middle.place) - middle.asked;
-    slid.by += sign * step_s * velocity;
-    slid.by -= along(slid.by);
-    slid.turn = along(slid.turn + sign * step_s * (spin_of(b1) - spin_of(b2) - middle.asked_spin));
-    limit(slid.by, most_slip_m_);  // beyond it the bristles slip
-    anchor->step = step_;
-  }
-  if (middle.reach > 0.0) {
-    limit(slid.turn, most_slip_m_ / middle.reach);
-  } else {
-    slid.turn.setZero();  // one contact holds no turn
-  }
-  if (!slid.by.allFinite() || !slid.turn.allFinite()) slid = {};
+  const Slid slid = this->slid(*anchor, Middle(contacts, count, b1 == nullptr), sign, step_s);
+  anchor->step = step_;
   for (int i = 0; i < count; ++i) {
-    Vec3 here = slid.by + slid.turn.cross(vector_of(contacts[i].geom.pos) - middle.place);
+    Vec3 here = slid.by + slid.turn.cross(vector_of(contacts[i].geom.pos) - slid.place);
     limit(here, most_slip_m_);
+    if (!here.allFinite()) {
+      anchor->step = 0;
+      here.setZero();
+    }
     const FrictionAxes axes(contacts[i], b1 == nullptr);
     const Vec3 back = -axes.sign * sign * taken_back / step_s * here;
     dSurfaceParameters& surface = contacts[i].surface;

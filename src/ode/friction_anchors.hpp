@@ -8,7 +8,11 @@
 #include "odds/math/types.hpp"
 #include "odds/ode/odds_friction.h"
 
-/// A table of a fixed size, by the unordered pair of geoms. World frame, metres, radians.
+/// A table of a fixed size, by the unordered pair of geoms. Metres, radians.
+///
+/// A pair is anchored at a point of each body, which coincided where and when they came to rest: how far those have
+/// come apart does not depend on the way there, as a sum of speeds does that bodies have where they happen to touch
+/// while they rock. As a body rolls on, the points are chosen anew where it touches then.
 struct oddsFrictionAnchors {
  public:
   oddsFrictionAnchors(std::size_t most_pairs, double most_slip_m);
@@ -27,21 +31,23 @@ struct oddsFrictionAnchors {
 
     [[nodiscard]] bool operator==(const Touching&) const noexcept = default;
   };
-  /// Of the first geom's body against the second's.
-  struct Slid {
-    odds::Vec3 by = odds::Vec3::Zero();    ///< at the middle of their contacts
-    odds::Vec3 turn = odds::Vec3::Zero();  ///< about the normal there
-  };
   struct Anchor {
     Touching pair;
-    std::uint64_t step = 0;  ///< the last one in which they touched; 0: never
-    Slid slid;
+    std::uint64_t step = 0;                                           ///< the last one in which they touched; 0: never
+    odds::Vec3 points[2] = {odds::Vec3::Zero(), odds::Vec3::Zero()};  ///< one of each body, in its frame
+    odds::Mat3 turned = odds::Mat3::Identity();                       ///< of the first body in the second's frame then
+    double turn = 0.0;   ///< about the normal, what the first had turned against the second then
+    double reach = 0.0;  ///< distance of the farthest contact from the points since then
   };
+  struct Middle;
+  struct Slid;
 
-  /// That of the pair; where there is none yet, one that begins now. Null: no room.
+  /// That of the pair; of one that has just met its step is 0. Null: no room.
   [[nodiscard]] Anchor* find(const Touching& pair) noexcept;
+  /// By how much the first body has slid against the second. Moves the anchor where that is too far.
+  [[nodiscard]] Slid slid(Anchor& anchor, const Middle& middle, double sign, double step_s) const noexcept;
 
   double most_slip_m_;
-  std::uint64_t step_ = 2;  ///< so that an anchor of step 0 is old
+  std::uint64_t step_ = 64;  ///< so that an anchor of step 0 is old
   std::vector<Anchor> anchors_;
 };

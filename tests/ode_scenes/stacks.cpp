@@ -199,7 +199,7 @@ Section soak(double seconds) {
     for (const Physics* physics : {&issue_3335, &ode_defaults}) {
       const Stack stack{5, cells, true, 0.1, physics};
       for (const double anchored_m : {anchor_slip_m, 0.0}) {
-        section.runs.push_back(run_soak(stack, {.anchored_m = anchored_m}, seconds));
+        section.runs.push_back(run_soak(stack, {.in_work = true, .anchored_m = anchored_m}, seconds));
         if (cells == 1) {
           section.runs.push_back(
               run_soak(stack, {.kind = Collider::Kind::primitive, .anchored_m = anchored_m}, seconds));
