@@ -17,93 +17,57 @@ constexpr std::size_t sizes = 3;  ///< of nodes about a place: a leaf, about 8 a
 /// The smallest first. A tree that has fewer levels repeats its largest.
 using NodesAbout = std::array<const tree::NodeStatistics*, sizes>;
 
-/// The last nodes of a way down.
-template <std::size_t levels_between>
-class WayDown {
- public:
-  void add(const tree::NodeStatistics& statistics) noexcept { last_[count_++ % last_.size()] = &statistics; }
-  /// Precondition: at least one was added.
-  [[nodiscard]] NodesAbout nodes() const noexcept {
-    NodesAbout about;
-    for (std::size_t i = 0; i < sizes; ++i) {
-      about[i] = last_[(count_ - 1 - std::min(i * levels_between, count_ - 1)) % last_.size()];
-    }
-    return about;
+/// Asks the caches for what is needed next.
+void prefetch(const NodesAbout& nodes) noexcept {
+  for (const tree::NodeStatistics* const at : nodes) {
+    __builtin_prefetch(at);
+    __builtin_prefetch(reinterpret_cast<const char*>(at + 1) - 1);
   }
-
- private:
-  std::array<const tree::NodeStatistics*, (sizes - 1) * levels_between + 1> last_;
-  std::size_t count_ = 0;
-};
-
-float beyond(float length, float limit) noexcept { return std::max(std::abs(length) - limit, 0.0F); }
-
-/// How far a place is from a node's middle, over the node's size, the more if it lies outside; all squared.
-float strangeness(float away, float outside, float size) noexcept {
-  constexpr float weight = 16.0F;
-  return (away + weight * outside) / std::max(size, 1e-37F);
 }
 
+NodesAbout nodes_about(const tree::WideTree& tree, const wide::Searches& searches, const Vec3f& place) noexcept {
+  NodesAbout about;
+  const wide::SlotsAbout slots = searches.slots_about(tree, place);
+  for (std::size_t i = 0; i < sizes; ++i) about[i] = &tree.statistics(slots[i]);
+  return about;
+}
+
+/// How far a place is from a node's middle, over the node's size, the more if it lies outside; squared.
 float strangeness(const tree::NodeStatistics& statistics, float radius, const Vec3f& place) noexcept {
-  const float above = beyond(statistics.slab_normal.dot(place) - statistics.slab_center, statistics.slab_half);
-  return strangeness((place - statistics.centroid).squaredNorm(), above * above, radius * radius);
-}
-
-/// The lane to which a place belongs. Of sizes of 1e19 m any.
-std::uint32_t lane_about(const tree::WideNode& node, const Vec3f& place) noexcept {
-  std::array<float, tree::wide_lanes> strange;
-  for (std::uint32_t lane = 0; lane < tree::wide_lanes; ++lane) {
-    float away = 0.0F;
-    float outside = 0.0F;
-    float size = 0.0F;
-    float along = -node.offset[lane];
-    for (int i = 0; i < 3; ++i) {
-      const float d = place[i] - node.center[i][lane];
-      const float half = node.half[i][lane];
-      const float out = beyond(d, half);
-      along += node.normal[i][lane] * d;
-      away += d * d;
-      size += half * half;
-      outside += out * out;
-    }
-    const float above = beyond(along, node.thickness[lane]);
-    strange[lane] = strangeness(away, outside + above * above, size);
-  }
-  std::uint32_t best = 0;
-  for (std::uint32_t lane = 1; lane < tree::wide_lanes && !node.child[lane].is_nothing(); ++lane) {
-    if (strange[lane] < strange[best]) best = lane;
-  }
-  return best;
-}
-
-NodesAbout nodes_about(const tree::WideTree& tree, const Vec3f& place) noexcept {
-  WayDown<1> way;
-  tree::Slot slot = tree::WideTree::root;
-  while (true) {
-    way.add(tree.statistics(slot));
-    const tree::ChildRef child = tree.nodes()[slot / tree::wide_lanes].child[slot % tree::wide_lanes];
-    if (child.is_leaf()) return way.nodes();
-    slot = child.node_index() * tree::wide_lanes + lane_about(tree.nodes()[child.node_index()], place);
-  }
+  constexpr float outside_counts = 16.0F;
+  const float along = statistics.slab_normal.dot(place) - statistics.slab_center;
+  const float above = std::max(std::abs(along) - statistics.slab_half, 0.0F);
+  return ((place - statistics.centroid).squaredNorm() + outside_counts * above * above) /
+         std::max(radius * radius, 1e-37F);
 }
 
 template <volume::BoundingVolume V>
-NodesAbout nodes_about(const tree::Hierarchy<V>& tree, const Vec3f& place) noexcept {
-  WayDown<3> way;  // three levels of two are one of eight
+NodesAbout nodes_about(const tree::Hierarchy<V>& tree, const wide::Searches&, const Vec3f& place) noexcept {
+  constexpr std::size_t levels_between = 3;  // three levels of two are one of eight
+  std::array<std::uint32_t, (sizes - 1) * levels_between + 1> last{};
+  std::size_t count = 0;
   std::uint32_t index = 0;
   while (true) {
-    way.add(tree.statistics()[index]);
+    last[count++ % last.size()] = index;
     const auto& node = tree.nodes()[index];
-    if (node.is_leaf()) return way.nodes();
+    if (node.is_leaf()) break;
     const auto strange = [&](std::uint32_t child) noexcept {
       return strangeness(tree.statistics()[child], tree.nodes()[child].radius, place);
     };
     index = node.first + (strange(node.first + 1) < strange(node.first) ? 1U : 0U);
   }
+  NodesAbout about;
+  for (std::size_t i = 0; i < sizes; ++i) {
+    about[i] = &tree.statistics()[last[(count - 1 - std::min(i * levels_between, count - 1)) % last.size()]];
+  }
+  return about;
 }
 
-NodesAbout nodes_about(const Shape& shape, const Vec3f& place) noexcept {
-  return std::visit([&](const auto& tree) noexcept { return nodes_about(tree, place); }, shape.data().tree);
+NodesAbout nodes_about(const Shape& shape, const wide::Searches& searches, const Vec3f& place) noexcept {
+  const NodesAbout about =
+      std::visit([&](const auto& tree) noexcept { return nodes_about(tree, searches, place); }, shape.data().tree);
+  prefetch(about);
+  return about;
 }
 
 /// What one pair of nodes says: the direction, and how much it is worth.
@@ -134,21 +98,22 @@ double longest_side(const tree::TriangleCorners& t) noexcept {
 /// How much the triangles' word is worth beside that of nodes that face each other, which say up to 2 each.
 double worth_of_triangles(const PosedMeshes& meshes, const Contact& contact, double flat) noexcept {
   constexpr double least = 0.15;
-  constexpr double at_a_touch = 10.0;
-  constexpr double touching = 0.006;  // of a triangle: deeper, and more than these two meet
+  constexpr double touching = 0.014;  // of a triangle: deeper, and more than these two meet
+  constexpr double most = 1e12;
   const double side =
       std::min(longest_side(meshes.corners_a(contact.triangle_a)), longest_side(meshes.corners_b(contact.triangle_b)));
-  const double depth = side > 0.0 ? contact.depth / (touching * side) : 0.0;
-  return least + 1.0 - std::clamp(flat, 0.0, 1.0) + at_a_touch / (1.0 + depth * depth);
+  const double at_a_touch = std::min(touching * side / std::max(contact.depth, 1e-300), std::sqrt(most));
+  return least + 1.0 - std::clamp(flat, 0.0, 1.0) + at_a_touch * at_a_touch;
 }
 
 }  // namespace
 
-Vec3 direction_about(const Shape& a, const Shape& b, const PosedMeshes& meshes, const Contact& contact) noexcept {
+Vec3 direction_about(const Shape& a, const Shape& b, const wide::Searches& searches, const PosedMeshes& meshes,
+                     const Contact& contact) noexcept {
   const math::Pose& b_in_a = meshes.pose();
   const Vec3 place = contact.position - meshes.origin_a();
-  const NodesAbout about_a = nodes_about(a, place.cast<float>());
-  const NodesAbout about_b = nodes_about(b, (b_in_a.inverse() * place).cast<float>());
+  const NodesAbout about_a = nodes_about(a, searches, place.cast<float>());
+  const NodesAbout about_b = nodes_about(b, searches, (b_in_a.inverse() * place).cast<float>());
   const bool both_solid = a.is_solid() && b.is_solid();
   if (!both_solid && is_met_from_behind(about_a, about_b, b_in_a, contact.normal)) return contact.normal;
   const auto flat = static_cast<double>(about_a[0]->mean_normal.norm() * about_b[0]->mean_normal.norm());

@@ -200,7 +200,7 @@ struct PatchSpread {
     const double reach = std::max(0.5 * radius / size, least);
     const double thick = static_cast<double>(patch.slab_half) / size;
     const double along = 1.0 / (reach * reach);
-    return {along, std::max(1.0 / (thick * thick / 3.0 + least * least) - along, 0.0), normal};
+    return {along, std::max(1.0 / (thick * thick / 3.0 + least * least) - along, 0.0), normal.normalized()};
   }
   [[nodiscard]] double squared_density() const noexcept { return along * along * (along + across); }
   /// Of a point that is so far from the centroid, over twice the variance.
@@ -236,6 +236,12 @@ struct Meeting {
   return {x, 0.5F * (math::rough_log2(density) - static_cast<float>(squared / std::numbers::ln2))};
 }
 
+/// As far as that, and in the same direction.
+[[nodiscard]] inline Vec3 within(double radius, const Vec3& away) noexcept {
+  const double squared = away.squaredNorm();
+  return squared > radius * radius ? Vec3(radius / std::sqrt(squared) * away) : away;
+}
+
 /// Of the thinner of both patches, metres.
 [[nodiscard]] inline double thickness_of(const tree::NodeStatistics& a, const tree::NodeStatistics& b) noexcept {
   return 2.0 * static_cast<double>(std::min(a.slab_half, b.slab_half));
@@ -258,7 +264,9 @@ struct Meeting {
                       place.inverse_size * place.beyond);
   // Radii of 1e19 m are infinite.
   const bool known = meeting.from_a.allFinite() && std::isfinite(meeting.log_likelihood);
-  place.position = centroid_a + (known ? Vec3(size * meeting.from_a) : Vec3(0.5 * place.beyond));
+  // Planes that are nearly parallel cross far from both patches.
+  const Vec3 from_a = known ? within(radius_a, size * meeting.from_a) : Vec3(0.5 * place.beyond);
+  place.position = centroid_b + within(radius_b, from_a - place.beyond);
   place.log_likelihood = known ? std::clamp(meeting.log_likelihood, -40.0F, 40.0F) : 0.0F;
   place.facing = facing_where_they_touch(normal_a, static_cast<double>(a.area), normal_b, static_cast<double>(b.area),
                                          -place.beyond);

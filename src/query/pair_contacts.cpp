@@ -131,9 +131,15 @@ void make_rough_contacts(const PosedMeshes& meshes, const Vec3* known_normal, bo
   pair.answer.contact_pairs = static_cast<std::uint32_t>(count);
 }
 
-/// A single contact is made of one pair of triangles, which says little about where curved bodies push each other.
-void look_around(const PosedMeshes& meshes, Pair::Implementation& pair) noexcept {
-  for (Contact& contact : own_contacts(pair)) contact.normal = direction_about(*pair.a, *pair.b, meshes, contact);
+/// A single contact is made of one pair of triangles, which says little about where curved bodies push each other. Its
+/// depth remains that of the two along their own direction: along another they may overlap by as much as they are
+/// large.
+void look_around(const PosedMeshes& meshes, Pair::Implementation& pair, Spending& spending) noexcept {
+  constexpr double takes_us = 2.0;
+  if (!spending.may_make_contacts() || !(spending.left_us() > takes_us)) return;
+  for (Contact& contact : own_contacts(pair))
+    contact.normal = direction_about(*pair.a, *pair.b, *pair.wide, meshes, contact);
+  static_cast<void>(spending.may_finish_contacts());  // if this was too long the next run keeps more
 }
 
 /// Along the direction that is known, if any, metres: what was measured and what the bodies have come since, or what
@@ -226,7 +232,7 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   } else if (!whole) {  // a single contact, or one far from where the depth was known
     for (Contact& contact : own_contacts(pair)) contact.depth = std::min(contact.depth, most_depth);
   }
-  if (single && patches.finished() && spending.may_make_contacts()) look_around(meshes, pair);
+  if (single && patches.finished()) look_around(meshes, pair, spending);
   const bool flush = answer_by_flat_faces(meshes, pose_b_in_a, request, pair, spending);
   if (patches.finished() && request.max_contacts > 1) {
     const Contact& first = pair.answer.contacts.front();

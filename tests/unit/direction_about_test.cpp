@@ -65,6 +65,26 @@ INSTANTIATE_TEST_SUITE_P(EveryVolume, DirectionAbout,
                                            volume::Kind::kdop26, volume::Kind::hull),
                          [](const auto& kind) { return std::string(volume::name(kind.param)); });
 
+TEST(DirectionAboutAnything, IsTheSameByEveryInstructionSet) {
+  const auto knot = shape_of(made("torus_knot"));
+  math::Random random(3);
+  const PosedMeshes meshes(knot->mesh(), knot->mesh(), Vec3::Zero(), Vec3::Zero(),
+                           {random.rotation().toRotationMatrix(), Vec3(0.01, 0.02, 0.0)});
+  int compared = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 place = knot->mesh().vertices()[static_cast<std::size_t>(i) * 37U];
+    const Contact contact{place, random.direction(), 1e-4, 5, 7};
+    const Vec3 best = direction_about(*knot, *knot, *wide::searches_for(InstructionSet::best), meshes, contact);
+    for (const InstructionSet set : {InstructionSet::avx2, InstructionSet::sse2, InstructionSet::portable}) {
+      const wide::Searches* const searches = wide::searches_for(set);
+      if (searches == nullptr) continue;
+      ++compared;
+      EXPECT_EQ(direction_about(*knot, *knot, *searches, meshes, contact), best) << i;
+    }
+  }
+  EXPECT_GE(compared, 200);
+}
+
 /// A corner that has just come through a large triangle is pushed out as by that.
 TEST(DirectionAboutATouch, IsThatOfTheTriangles) {
   const auto slab = shape_of(made("box:x=4,y=4,z=1,cells=1"));
@@ -91,7 +111,8 @@ TEST(DirectionAboutASheet, StaysOnTheSideThatTheTrianglesSay) {
   const PosedMeshes meshes(sheet->mesh(), ball->mesh(), Vec3::Zero(), Vec3::Zero(), {});
   for (const Vec3& says : {Vec3(Vec3::UnitZ()), Vec3(-Vec3::UnitZ())}) {
     const Contact contact{Vec3::Zero(), says, 0.01, 0, 0};
-    EXPECT_GT(direction_about(*sheet, *ball, meshes, contact).dot(says), 0.0);
+    EXPECT_GT(direction_about(*sheet, *ball, *wide::searches_for(InstructionSet::best), meshes, contact).dot(says),
+              0.0);
   }
 }
 
@@ -110,7 +131,9 @@ TEST(DirectionAboutAnything, IsAUnitVector) {
       const PosedMeshes meshes(ball->mesh(), ball->mesh(), Vec3::Zero(), Vec3::Zero(), {});
       for (const double x : {0.0, 1.0, 1e30, std::nan(""), HUGE_VAL}) {
         const Contact contact{Vec3(x * scale, 0.0, 0.0), Vec3::UnitX(), 0.01 * scale, 0, 0};
-        EXPECT_NEAR(direction_about(*ball, *ball, meshes, contact).norm(), 1.0, 1e-9) << scale << " " << x;
+        EXPECT_NEAR(direction_about(*ball, *ball, *wide::searches_for(InstructionSet::best), meshes, contact).norm(),
+                    1.0, 1e-9)
+            << scale << " " << x;
       }
     }
   }

@@ -148,6 +148,26 @@ TEST(WhereTheyMeet, OfParallelSheetsIsBetweenAndTheLessLikelyTheFartherTheyAreAp
   }
 }
 
+/// Nearly parallel sheets, of which nothing but the roots was looked at: their planes cross far away.
+TEST(LikeliestPlace, OfNearlyParallelSheetsLiesInTheirBoxes) {
+  auto quad =
+      mesh::TriangleMesh::make({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}, "quad");
+  ASSERT_TRUE(quad.ok());
+  const auto sheet = Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(quad).value())).value();
+  auto pair = std::move(Pair::make(sheet, sheet)).value();
+  int guessed = 0;
+  for (const double tilt : {1e-3, 0.01, 0.03, 0.1}) {
+    for (const double height : {0.001, 0.01, 0.05}) {
+      const Mat3 turned = Eigen::AngleAxisd(tilt, Vec3(1.0, 0.3, 0.0).normalized()).toRotationMatrix();
+      const Answer& answer = pair.run({turned, Vec3(0.1, 0.2, height)}, {.budget = Budget::work(1)});
+      if (answer.basis == Basis::proved || !answer.has_cell_pair) continue;
+      ++guessed;
+      EXPECT_LT(answer.cell_pair.position.cwiseAbs().maxCoeff(), 1.5) << tilt << " " << height;
+    }
+  }
+  EXPECT_GT(guessed, 3);
+}
+
 TEST(WayApart, IsAlongTheSideOfLeastOverlap) {
   const auto slab = made("box:x=4,y=1,z=0.1,cells=1");
   const auto brick = made("box:x=0.2,y=0.1,z=0.057,cells=1");

@@ -48,7 +48,9 @@ constexpr std::uint32_t no_feature = std::numeric_limits<std::uint32_t>::max();
 struct Contact {
   Vec3 position = Vec3::Zero();  ///< metres
   Vec3 normal = Vec3::UnitZ();   ///< unit; points into A: moving A along it by `depth` ends this contact (ODE's rule)
-  double depth = 0.0;            ///< metres, >= 0; of surfaces that have come apart (Request::margin) minus the gap
+  /// Metres, >= 0; of surfaces that have come apart (Request::margin) minus the gap. Of a query for one contact it is
+  /// that of one pair of triangles along their own direction, while the normal is that of the surfaces about them.
+  double depth = 0.0;
   std::uint32_t triangle_a = no_feature;  ///< index into A's mesh, or no_feature where the contact is an estimate
   std::uint32_t triangle_b = no_feature;  ///< index into B's mesh, or no_feature
 };
@@ -58,11 +60,11 @@ struct Cost {
   std::uint64_t node_pairs = 0;      ///< pairs of bounding volumes tested
   std::uint64_t triangle_pairs = 0;  ///< pairs of triangles tested exactly, or found certain to meet; of the wide
                                      ///< engine also each comparison of one triangle with the eight of a leaf
-  std::uint64_t queue_full = 0;   ///< pairs that found the queue full and were searched at once instead
-  double gross_us = 0.0;          ///< from call to return
-  double stall_us = 0.0;          ///< gaps between two clock polls too long to be the query's own work (pre-emption)
-  double overshoot_us = 0.0;      ///< gross time beyond the budget, >= 0
-  double net_overshoot_us = 0.0;  ///< the same without the stalls, >= 0
+  std::uint64_t queue_full = 0;      ///< pairs that found the queue full and were searched at once instead
+  double gross_us = 0.0;             ///< from call to return
+  double stall_us = 0.0;             ///< gaps between two clock polls too long to be the query's own work (pre-emption)
+  double overshoot_us = 0.0;         ///< gross time beyond the budget, >= 0
+  double net_overshoot_us = 0.0;     ///< the same without the stalls, >= 0
   std::uint32_t longest_unpolled_units = 0;  ///< most work units done between two polls of the clock
   [[nodiscard]] double net_us() const noexcept { return gross_us - stall_us; }
 };

@@ -2,6 +2,7 @@
 // instruction set.
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "odds/primitive/triangle_distance.hpp"
@@ -60,6 +61,9 @@ struct RayTask {
   RayEffort& effort;  ///< what it took
 };
 
+/// A leaf, its parent and the parent of that; the root repeats where there are fewer.
+using SlotsAbout = std::array<tree::Slot, 3>;
+
 /// One instruction set's searches. Each of two trees starts from the pair of roots, which is known to overlap.
 struct Searches {
   const char* instruction_set;
@@ -70,6 +74,8 @@ struct Searches {
   /// The nearest points; the bodies may be apart.
   void (*nearest)(NearestTask& task) noexcept;
   std::optional<RayHit> (*ray)(const RayTask& task) noexcept;
+  /// The leaf that a place, in the tree's frame, belongs to, and the next larger nodes about it.
+  SlotsAbout (*slots_about)(const tree::WideTree& tree, const Vec3f& place) noexcept;
   patch::Kernels patch;
 };
 

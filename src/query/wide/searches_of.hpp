@@ -7,13 +7,14 @@
 #include "query/wide/patch_kernel.hpp"
 #include "query/wide/ray_cast.hpp"
 #include "query/wide/time_critical.hpp"
+#include "query/wide/way_down.hpp"
 
 namespace odds::query::wide {
 
 template <class L>
 constexpr Searches searches_of() noexcept {
-  return {L::name,          &Exact<L>::run_from_roots, &TimeCritical<L>::run,  &Incremental<L>::run,
-          &Nearest<L>::run, &RayCast<L>::run,          PatchKernel<L>::table()};
+  return {L::name,          &Exact<L>::run_from_roots, &TimeCritical<L>::run, &Incremental<L>::run,
+          &Nearest<L>::run, &RayCast<L>::run,          &WayDown<L>::run,      PatchKernel<L>::table()};
 }
 
 }  // namespace odds::query::wide
