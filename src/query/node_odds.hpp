@@ -188,25 +188,20 @@ struct MetPlace {
 }
 
 /// Where a patch of surface probably is: normally distributed about its centroid, with half of its radius along it and
-/// with as much across it as a slab's points have that are evenly spread in it.
+/// with as much across it as a slab's points have that are evenly spread in it. Lengths over some size.
 struct PatchSpread {
-  double along;   ///< 1 over the variance; no unit, of lengths over some `size`
-  double across;  ///< how much more that is across it, >= 0
-  Vec3 normal;
+  double along;    ///< variance along it
+  double thinner;  ///< how much less that across it is, >= 0
+  Vec3 normal;     ///< unit, but for rounding
 
-  [[nodiscard]] static PatchSpread of(const tree::NodeStatistics& patch, double radius, double size,
+  [[nodiscard]] static PatchSpread of(const tree::NodeStatistics& patch, double radius, double inverse_size,
                                       const Vec3& normal) noexcept {
-    constexpr double least = 1e-3;  // of the size: nothing is thinner, so that two planes have a place in common
-    const double reach = std::max(0.5 * radius / size, least);
-    const double thick = static_cast<double>(patch.slab_half) / size;
-    const double along = 1.0 / (reach * reach);
-    return {along, std::max(1.0 / (thick * thick / 3.0 + least * least) - along, 0.0), normal.normalized()};
-  }
-  [[nodiscard]] double squared_density() const noexcept { return along * along * (along + across); }
-  /// Of a point that is so far from the centroid, over twice the variance.
-  [[nodiscard]] double squared(const Vec3& away) const noexcept {
-    const double height = normal.dot(away);
-    return along * away.squaredNorm() + across * height * height;
+    // Of the size: nothing is thinner, so that two planes have a place in common, and rounding does not matter.
+    constexpr double least = 1e-4;
+    const double reach = 0.5 * radius * inverse_size;
+    const double thick = static_cast<double>(patch.slab_half) * inverse_size;
+    const double along = std::max(reach * reach, least);
+    return {along, std::max(along - std::max(thick * thick * (1.0 / 3.0), least), 0.0), normal};
   }
 };
 
@@ -217,23 +212,25 @@ struct Meeting {
   float log_likelihood;  ///< to base 2
 };
 
-/// `beyond`: from A's centroid to B's, over the spreads' size.
+/// `beyond`: from A's centroid to B's, over the spreads' size. With covariances C and D the place is C (C + D)^-1
+/// beyond, and -2 ln of the likelihood is ln det (C + D) + beyond' (C + D)^-1 beyond.
 [[nodiscard]] inline Meeting where_they_meet(const PatchSpread& a, const PatchSpread& b, const Vec3& beyond) noexcept {
-  // (sum I + a.across m m' + b.across n n') x = (b.along I + b.across n n') beyond, by Woodbury's identity.
+  // C + D = sum I - a.thinner m m' - b.thinner n n', inverted by Woodbury's identity.
   const double sum = a.along + b.along;
   const double cosine = a.normal.dot(b.normal);
-  const double of_a = a.across / (sum + a.across);
-  const double of_b = b.across / (sum + b.across);
-  const double rest = 1.0 - of_a * of_b * cosine * cosine;
-  const Vec3 right = b.along * beyond + b.across * b.normal.dot(beyond) * b.normal;
-  const double up_a = of_a * a.normal.dot(right);
-  const double up_b = of_b * b.normal.dot(right);
-  const Vec3 x =
-      (right - ((up_a - of_a * cosine * up_b) * a.normal + (up_b - of_b * cosine * up_a) * b.normal) / rest) / sum;
-  const double common = sum * (sum + a.across) * (sum + b.across) * rest;
-  const double squared = a.squared(x) + b.squared(x - beyond);
-  const double density = a.squared_density() * b.squared_density() / common;
-  return {x, 0.5F * (math::rough_log2(density) - static_cast<float>(squared / std::numbers::ln2))};
+  const double left_a = sum - a.thinner;
+  const double left_b = sum - b.thinner;
+  const double both = a.thinner * b.thinner * cosine;
+  const double rest = left_a * left_b - both * cosine;
+  const double up_a = a.normal.dot(beyond);
+  const double up_b = b.normal.dot(beyond);
+  const double by_rest = 1.0 / rest;
+  const double more_a = (a.thinner * left_b * up_a + both * up_b) * by_rest;
+  const double more_b = (b.thinner * left_a * up_b + both * up_a) * by_rest;
+  const Vec3 solved = (beyond + more_a * a.normal + more_b * b.normal) * (1.0 / sum);
+  const double squared = beyond.dot(solved);
+  return {a.along * solved - a.thinner * a.normal.dot(solved) * a.normal,
+          -0.5F * (math::rough_log2(sum * rest) + static_cast<float>(squared * std::numbers::log2e))};
 }
 
 /// As far as that, and in the same direction.
@@ -257,14 +254,14 @@ struct Meeting {
   MetPlace place;
   place.inverse_size = 1.0 / std::max(radius_a + radius_b, 1e-300);
   place.beyond = centroid_b - centroid_a;
-  const double size = 1.0 / place.inverse_size;
   const Meeting meeting =
-      where_they_meet(PatchSpread::of(a, radius_a, size, a.slab_normal.cast<double>()),
-                      PatchSpread::of(b, radius_b, size, b_in_a.rotation * b.slab_normal.cast<double>()),
+      where_they_meet(PatchSpread::of(a, radius_a, place.inverse_size, a.slab_normal.cast<double>()),
+                      PatchSpread::of(b, radius_b, place.inverse_size, b_in_a.rotation * b.slab_normal.cast<double>()),
                       place.inverse_size * place.beyond);
   // Radii of 1e19 m are infinite.
   const bool known = meeting.from_a.allFinite() && std::isfinite(meeting.log_likelihood);
   // Planes that are nearly parallel cross far from both patches.
+  const double size = std::max(radius_a + radius_b, 1e-300);
   const Vec3 from_a = known ? within(radius_a, size * meeting.from_a) : Vec3(0.5 * place.beyond);
   place.position = centroid_b + within(radius_b, from_a - place.beyond);
   place.log_likelihood = known ? std::clamp(meeting.log_likelihood, -40.0F, 40.0F) : 0.0F;
