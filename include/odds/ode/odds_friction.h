@@ -20,7 +20,7 @@ extern "C" {
  * contact gets more force than its mu allows. */
 typedef struct oddsFrictionAnchors* oddsFrictionAnchorsID;
 
-/* Takes memory for at most `most_pairs` pairs of geoms that touch in a step (1 .. 1048576; 0.9 to 1.8 KB each).
+/* Takes memory for at most `most_pairs` pairs of geoms that touch in a step (1 .. 1048576; 0.7 to 1.4 KB each).
  * `most_slip`: metres, > 0, finite. A ten-thousandth of a body's size will do, 1e-5 for bricks of 0.1 m; bodies that
  * give by more swing back as on springs. Null with an error otherwise. Any number may be alive; at most one thread at a
  * time may use one. */
@@ -38,7 +38,7 @@ void oddsFrictionAnchorsNextStep(oddsFrictionAnchorsID anchors) ODDS_NOTHROW;
  * nothing to hold: no contacts, or both bodies null. 0, with an error and nothing changed: there is no room for one
  * more pair, a pointer is null, the step is not > 0, it is one body twice, the contacts are of several pairs, or
  * something is not finite. No allocation, no lock; some
- * 0.4 us for four contacts. */
+ * 0.6 us for four contacts. */
 int oddsFrictionAnchorsHold(oddsFrictionAnchorsID anchors, dBodyID b1, dBodyID b2, dContact* contacts, int count,
                             dReal step_s) ODDS_NOTHROW;
 
