@@ -5,21 +5,15 @@
 #include <functional>
 #include <utility>
 
+#include "ode/pair_hash.hpp"
+
 namespace odds::ode {
 namespace {
-
-std::size_t mix(dGeomID a, dGeomID b) noexcept {
-  std::uint64_t key = reinterpret_cast<std::uintptr_t>(a) * 0x9e3779b97f4a7c15U ^
-                      reinterpret_cast<std::uintptr_t>(b) * 0xc2b2ae3d27d4eb4fU;
-  key ^= key >> 29;
-  key *= 0xbf58476d1ce4e5b9U;
-  return static_cast<std::size_t>(key ^ (key >> 32));
-}
 
 // The entry of that pair and frame, or the free one where it belongs.
 FramePair& find(std::vector<FramePair>& slots, dGeomID a, dGeomID b, std::uint64_t frame) noexcept {
   const std::size_t mask = slots.size() - 1;
-  std::size_t i = mix(a, b) & mask;
+  std::size_t i = hash_of_pair(a, b) & mask;
   while (slots[i].seen == frame && (slots[i].a != a || slots[i].b != b)) i = (i + 1) & mask;
   return slots[i];
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "ode/last_error.hpp"
+#include "ode/pair_hash.hpp"
 #include "ode/partners.hpp"
 #include "ode/statistics.hpp"
 
@@ -75,12 +76,7 @@ PairTable& pair_table() noexcept {
 }
 
 std::size_t PairTable::bucket_of(const GeomData& a, const GeomData& b) noexcept {
-  // Mixing after splitmix64: neighbouring numbers spread over all buckets.
-  std::uint64_t key = a.number * 0x9e3779b97f4a7c15u ^ b.number * 0xc2b2ae3d27d4eb4fu;
-  key ^= key >> 31;
-  key *= 0xbf58476d1ce4e5b9u;
-  key ^= key >> 29;
-  return static_cast<std::size_t>(key % bucket_count);
+  return static_cast<std::size_t>(hash_of_pair(a.number, b.number) % bucket_count);
 }
 
 PairEntry* PairTable::find(const GeomData& x, const GeomData& y) const noexcept {
