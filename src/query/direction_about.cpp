@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <variant>
 
-#include "query/node_odds.hpp"
+#include "query/facing.hpp"
 #include "query/shape_data.hpp"
 
 namespace odds::query {
@@ -70,20 +70,6 @@ NodesAbout nodes_about(const Shape& shape, const wide::Searches& searches, const
   return about;
 }
 
-/// What one pair of nodes says: the direction, and how much it is worth.
-struct Facing {
-  Vec3 direction;
-  double opposition;  ///< 0 .. 1
-};
-
-Facing facing_of(const tree::NodeStatistics& a, const tree::NodeStatistics& b, const math::Pose& b_in_a) noexcept {
-  const Vec3 normal_a = a.mean_normal.cast<double>();
-  const Vec3 normal_b = b_in_a.rotation * b.mean_normal.cast<double>();
-  return {facing_where_they_touch(normal_a, static_cast<double>(a.area), normal_b, static_cast<double>(b.area),
-                                  a.centroid.cast<double>() - b_in_a * b.centroid.cast<double>()),
-          std::clamp(-normal_a.dot(normal_b), 0.0, 1.0)};
-}
-
 /// Whether a leaf is met from behind, as a sheet may be: then its normals say nothing of where it pushes.
 bool is_met_from_behind(const NodesAbout& a, const NodesAbout& b, const math::Pose& b_in_a,
                         const Vec3& into_a) noexcept {
@@ -99,11 +85,11 @@ double longest_side(const tree::TriangleCorners& t) noexcept {
 double worth_of_triangles(const PosedMeshes& meshes, const Contact& contact, double flat) noexcept {
   constexpr double least = 0.15;
   constexpr double touching = 0.014;  // of a triangle: deeper, and more than these two meet
-  constexpr double most = 1e12;
+  constexpr double most = 1e6;        // all there is to say, squared
   const double side =
       std::min(longest_side(meshes.corners_a(contact.triangle_a)), longest_side(meshes.corners_b(contact.triangle_b)));
-  const double at_a_touch = std::min(touching * side / std::max(contact.depth, 1e-300), std::sqrt(most));
-  return least + 1.0 - std::clamp(flat, 0.0, 1.0) + at_a_touch * at_a_touch;
+  const double at_a_touch = std::min(touching * side / std::max(contact.depth, 1e-300), most);
+  return least + 1.0 - flat + at_a_touch * at_a_touch;
 }
 
 }  // namespace
@@ -116,8 +102,7 @@ Vec3 direction_about(const Shape& a, const Shape& b, const wide::Searches& searc
   const NodesAbout about_b = nodes_about(b, searches, (b_in_a.inverse() * place).cast<float>());
   const bool both_solid = a.is_solid() && b.is_solid();
   if (!both_solid && is_met_from_behind(about_a, about_b, b_in_a, contact.normal)) return contact.normal;
-  const auto flat = static_cast<double>(about_a[0]->mean_normal.norm() * about_b[0]->mean_normal.norm());
-  Vec3 sum = worth_of_triangles(meshes, contact, flat) * contact.normal;
+  Vec3 sum = worth_of_triangles(meshes, contact, flatness_of(*about_a[0], *about_b[0])) * contact.normal;
   for (std::size_t i = 0; i < sizes; ++i) {
     const Facing facing = facing_of(*about_a[i], *about_b[i], b_in_a);
     sum += facing.opposition * facing.direction;

@@ -11,6 +11,7 @@
 #include "odds/query/request.hpp"
 #include "odds/tree/hierarchy.hpp"
 #include "query/bucket_queue.hpp"
+#include "query/met_place.hpp"
 #include "query/node_odds.hpp"
 #include "query/node_odds_table.hpp"
 #include "query/shape_data.hpp"

@@ -7,7 +7,7 @@
 
 #include "odds/math/elementary.hpp"
 #include "odds/query/answer.hpp"
-#include "query/node_odds.hpp"
+#include "query/met_place.hpp"
 #include "query/shortlist.hpp"
 
 namespace odds::query {
@@ -40,9 +40,9 @@ template <class Met, class Apart>
         place.inverse_size;
     weights[count++] = weight;
     position += weight * place.position;
-    facing += weight * (both_solid ? least_opposition + place.opposition : 1.0) * place.facing;
+    facing += weight * (both_solid ? least_opposition + place.facing.opposition : 1.0) * place.facing.direction;
     sum += weight;
-    opposed += weight * place.opposition;
+    opposed += weight * place.facing.opposition;
     flat += weight * place.flatness;
   }
   if (both_solid && opposed < unopposed * flat) facing = apart();

@@ -8,7 +8,7 @@
 
 #include "odds/mesh/made/by_name.hpp"
 #include "odds/query/pair.hpp"
-#include "query/node_odds.hpp"
+#include "query/met_place.hpp"
 #include "query/way_apart.hpp"
 
 namespace odds::query {

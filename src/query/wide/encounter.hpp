@@ -8,6 +8,7 @@
 #include "odds/tree/wide_tree.hpp"
 #include "odds/volume/aabb.hpp"
 #include "query/bucket_queue.hpp"
+#include "query/met_place.hpp"
 #include "query/node_odds.hpp"
 #include "query/posed_meshes.hpp"
 #include "query/wide/triangle_kernel.hpp"
