@@ -6,10 +6,10 @@
 #include <functional>
 #include <new>
 #include <span>
-#include <utility>
 
 #include "odds/math/pose.hpp"
 #include "ode/last_error.hpp"
+#include "ode/pair_hash.hpp"
 #include "ode/vectors.hpp"
 
 namespace {
@@ -24,7 +24,7 @@ constexpr double taken_back = 0.2;
 /// Steps that a pair may be apart and still be held where it was: bodies that rock lose their contacts for a step or
 /// two.
 constexpr std::uint64_t most_apart = 16;
-/// Slots for a pair: those of this step and of the one before are in use, half of all at most.
+/// Slots for a pair: those of this step and of the one before are not given away, half of all at most.
 constexpr std::size_t slots_of_a_pair = 4;
 /// Slots that are looked at for a pair: a run of as many that are in use is as good as never met.
 constexpr std::size_t most_looked_at = 32;
@@ -67,6 +67,7 @@ math::Pose pose_of(dBodyID body) noexcept {
 
 /// The velocity of b1 against b2 that a contact asks for, as of a conveyor, m/s.
 Vec3 asked_of(const dContact& contact, bool b1_is_world) noexcept {
+  if ((contact.surface.mode & (dContactMotion1 | dContactMotion2)) == 0) return Vec3::Zero();
   const FrictionAxes axes(contact, b1_is_world);
   const auto along = [](const Vec3& axis, double speed) -> Vec3 {
     const double squared = axis.squaredNorm();  // a direction of the caller's may have any length
@@ -137,23 +138,18 @@ struct oddsFrictionAnchors::Middle {
   std::span<const dContact> contacts_;
 };
 
-/// At the points that the pair is anchored at; world frame.
+/// World frame.
 struct oddsFrictionAnchors::Slid {
   Vec3 place;  ///< of the first body's point
-  Vec3 by;
-  Vec3 turn;  ///< about the normal
+  Vec3 by;     ///< there
+  Vec3 turn;   ///< about the normal
 };
 
 oddsFrictionAnchors::oddsFrictionAnchors(std::size_t most_pairs, double most_slip_m)
     : most_slip_m_(most_slip_m), anchors_(std::bit_ceil(slots_of_a_pair * most_pairs)) {}
 
 oddsFrictionAnchors::Anchor* oddsFrictionAnchors::find(const Touching& pair) noexcept {
-  // Mixing after splitmix64: addresses are multiples of 16.
-  const std::hash<dGeomID> number;
-  auto key = number(pair.geoms[0]) * 0x9e3779b97f4a7c15u ^ number(pair.geoms[1]) * 0xc2b2ae3d27d4eb4fu;
-  key ^= key >> 31U;
-  key *= 0xbf58476d1ce4e5b9u;
-  key ^= key >> 29U;
+  const std::uint64_t key = odds::ode::hash_of_pair(pair.geoms[0], pair.geoms[1]);
   Anchor* oldest = nullptr;
   for (std::size_t i = 0; i < std::min(most_looked_at, anchors_.size()); ++i) {
     Anchor& anchor = anchors_[(key + i) & (anchors_.size() - 1)];
@@ -166,45 +162,43 @@ oddsFrictionAnchors::Anchor* oddsFrictionAnchors::find(const Touching& pair) noe
   return oldest;
 }
 
-oddsFrictionAnchors::Slid oddsFrictionAnchors::slid(Anchor& anchor, const Middle& middle, double sign,
-                                                    double step_s) const noexcept {
+oddsFrictionAnchors::Slid oddsFrictionAnchors::follow(Anchor& anchor, const Middle& middle, double sign,
+                                                      double step_s) const noexcept {
   constexpr double small_angle = 0.1;
   const double least_reach = 10.0 * most_slip_m_;
   const math::Pose first = pose_of(anchor.pair.bodies[0]);
   const math::Pose second = pose_of(anchor.pair.bodies[1]);
   const Mat3 turned = second.rotation.transpose() * first.rotation;
-  bool begins = anchor.step == 0;
-  Vec3 place = first * anchor.points[0];
-  // A body that rolls touches elsewhere now; one that rocks does so within what its contacts reach.
-  begins = begins || (middle.place - place).norm() > std::max(anchor.reach, least_reach);
+  const bool is_new = anchor.step == 0;
+  Vec3 place = is_new ? middle.place : first * anchor.points[0];
   Vec3 by = Vec3::Zero();
   double turn = 0.0;
-  double turned_by = 0.0;
-  if (anchor.step != 0) {
+  bool moves = is_new;
+  if (!is_new) {
     by = place - second * anchor.points[1];
     by -= middle.normal.dot(by) * middle.normal;
     const Mat3 since = turned * anchor.turned.transpose();
-    const Vec3 axis(since(2, 1) - since(1, 2), since(0, 2) - since(2, 0), since(1, 0) - since(0, 1));
-    turned_by = 0.5 * axis.norm();
-    turn = anchor.turn + 0.5 * middle.normal.dot(second.rotation * axis);
-  }
-  bool moves = begins || turned_by > small_angle;
-  const bool is_carried = !middle.asked.isZero() || !middle.asked_spin.isZero();
-  if (is_carried && anchor.step != 0 && anchor.step != step_) {  // what was asked for has come in the step since
-    by -= sign * step_s * middle.asked;
-    turn -= sign * step_s * middle.normal.dot(middle.asked_spin);
-    moves = true;
-  }
-  if (begins) {
-    place = middle.place;
-    anchor.reach = 0.0;
+    const Vec3 twice_sine(since(2, 1) - since(1, 2), since(0, 2) - since(2, 0), since(1, 0) - since(0, 1));
+    turn = anchor.turn + 0.5 * middle.normal.dot(second.rotation * twice_sine);
+    moves = twice_sine.norm() > 2.0 * small_angle;
+    const bool is_carried = !middle.asked.isZero() || !middle.asked_spin.isZero();
+    if (is_carried && anchor.step != step_) {  // what was asked for has come in the step since
+      by -= sign * step_s * middle.asked;
+      turn -= sign * step_s * middle.normal.dot(middle.asked_spin);
+      moves = true;
+    }
+    // A body that rolls touches elsewhere now; one that rocks does so within what its contacts reach.
+    if ((middle.place - place).norm() > std::max(anchor.reach, least_reach)) {
+      place = middle.place;
+      anchor.reach = 0.0;
+      moves = true;
+    }
   }
   anchor.reach = std::max(anchor.reach, middle.reach_from(place));
-  // Beyond that the bristles slip. One contact holds no turn.
-  const double most_turn = anchor.reach > 0.0 ? most_slip_m_ / anchor.reach : 0.0;
-  moves = limit(by, most_slip_m_) || moves || std::abs(turn) > most_turn;
+  const double most_turn = anchor.reach > 0.0 ? most_slip_m_ / anchor.reach : 0.0;  // one contact holds no turn
+  const bool slips = limit(by, most_slip_m_) || std::abs(turn) > most_turn;
   turn = std::clamp(turn, -most_turn, most_turn);
-  if (moves) {
+  if (moves || slips) {
     anchor.points[0] = first.inverse() * place;
     anchor.points[1] = second.inverse() * Vec3(place - by);
     anchor.turned = turned;
@@ -220,7 +214,7 @@ bool oddsFrictionAnchors::hold(dBodyID b1, dBodyID b2, dContact* contacts, int c
   Anchor* const anchor = find(pair);
   if (anchor == nullptr) return false;
   const double sign = in_order ? 1.0 : -1.0;
-  const Slid slid = this->slid(*anchor, Middle(contacts, count, b1 == nullptr), sign, step_s);
+  const Slid slid = follow(*anchor, Middle(contacts, count, b1 == nullptr), sign, step_s);
   anchor->step = step_;
   for (int i = 0; i < count; ++i) {
     Vec3 here = slid.by + slid.turn.cross(vector_of(contacts[i].geom.pos) - slid.place);

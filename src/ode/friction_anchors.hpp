@@ -44,8 +44,9 @@ struct oddsFrictionAnchors {
 
   /// That of the pair; of one that has just met its step is 0. Null: no room.
   [[nodiscard]] Anchor* find(const Touching& pair) noexcept;
-  /// By how much the first body has slid against the second. Moves the anchor where that is too far.
-  [[nodiscard]] Slid slid(Anchor& anchor, const Middle& middle, double sign, double step_s) const noexcept;
+  /// By how much the first body has slid against the second, no farther than bristles give: beyond that, or where the
+  /// bodies have rolled on, the anchor is moved.
+  [[nodiscard]] Slid follow(Anchor& anchor, const Middle& middle, double sign, double step_s) const noexcept;
 
   double most_slip_m_;
   std::uint64_t step_ = 64;  ///< so that an anchor of step 0 is old

@@ -28,48 +28,47 @@ struct Surface {
   bool bodies_swapped = false;       ///< geoms, and bodies, in the other order
 };
 
+struct Destroy {
+  void operator()(dxWorld* world) const { dWorldDestroy(world); }
+  void operator()(dxSpace* space) const { dSpaceDestroy(space); }
+  void operator()(dxJointGroup* joints) const { dJointGroupDestroy(joints); }
+  void operator()(dxGeom* geom) const { dGeomDestroy(geom); }
+};
+template <class What>
+using Owned = std::unique_ptr<What, Destroy>;
+
 /// A world of ODE's own geoms, with or without anchors.
 class World {
  public:
-  World(const Surface& surface, bool anchored, const Vec3& gravity, int iterations = 20)
-      : surface_(surface), anchors_(anchored ? make_anchors() : Anchors{nullptr, &oddsFrictionAnchorsDestroy}) {
-    world_ = dWorldCreate();
-    space_ = dHashSpaceCreate(nullptr);
-    joints_ = dJointGroupCreate(0);
-    dWorldSetGravity(world_, gravity.x(), gravity.y(), gravity.z());
-    dWorldSetQuickStepNumIterations(world_, iterations);
-    dCreatePlane(space_, 0, 0, 1, 0);
+  World(const Surface& surface, bool anchored, const Vec3& gravity, int iterations = 20) : surface_(surface) {
+    if (anchored) anchors_ = make_anchors();
+    dWorldSetGravity(world_.get(), gravity.x(), gravity.y(), gravity.z());
+    dWorldSetQuickStepNumIterations(world_.get(), iterations);
+    dCreatePlane(space_.get(), 0, 0, 1, 0);
   }
-  ~World() {
-    dJointGroupDestroy(joints_);
-    dSpaceDestroy(space_);
-    dWorldDestroy(world_);
-  }
-  World(const World&) = delete;
-  World& operator=(const World&) = delete;
 
   dBodyID add_box(const Vec3& sides, const Vec3& place) {
     dMass mass;
     dMassSetBox(&mass, 1000.0, sides.x(), sides.y(), sides.z());
-    return add(dCreateBox(space_, sides.x(), sides.y(), sides.z()), mass, place);
+    return add(dCreateBox(space_.get(), sides.x(), sides.y(), sides.z()), mass, place);
   }
   dBodyID add_ball(double radius, const Vec3& place) {
     dMass mass;
     dMassSetSphere(&mass, 1000.0, radius);
-    return add(dCreateSphere(space_, radius), mass, place);
+    return add(dCreateSphere(space_.get(), radius), mass, place);
   }
   void run(double seconds) {
     for (int i = 0; i < static_cast<int>(seconds / step_s); ++i) {
       oddsFrictionAnchorsNextStep(anchors_.get());
-      dSpaceCollide(space_, this, &World::near);
-      dWorldQuickStep(world_, step_s);
-      dJointGroupEmpty(joints_);
+      dSpaceCollide(space_.get(), this, &World::near);
+      dWorldQuickStep(world_.get(), step_s);
+      dJointGroupEmpty(joints_.get());
     }
   }
 
  private:
   dBodyID add(dGeomID geom, const dMass& mass, const Vec3& place) {
-    const dBodyID body = dBodyCreate(world_);
+    const dBodyID body = dBodyCreate(world_.get());
     dBodySetMass(body, &mass);
     dGeomSetBody(geom, body);
     dBodySetPosition(body, place.x(), place.y(), place.z());
@@ -110,15 +109,15 @@ class World {
       EXPECT_EQ(oddsFrictionAnchorsHold(world.anchors_.get(), body_a, body_b, contacts, count, step_s), 1);
     }
     for (int i = 0; i < count; ++i) {
-      dJointAttach(dJointCreateContact(world.world_, world.joints_, &contacts[i]), body_a, body_b);
+      dJointAttach(dJointCreateContact(world.world_.get(), world.joints_.get(), &contacts[i]), body_a, body_b);
     }
   }
 
   Surface surface_;
-  Anchors anchors_;
-  dWorldID world_;
-  dSpaceID space_;
-  dJointGroupID joints_;
+  Anchors anchors_{nullptr, &oddsFrictionAnchorsDestroy};
+  Owned<dxWorld> world_{dWorldCreate()};
+  Owned<dxSpace> space_{dHashSpaceCreate(nullptr)};
+  Owned<dxJointGroup> joints_{dJointGroupCreate(0)};
 };
 
 Vec3 place_of(dBodyID body) { return Eigen::Map<const Vec3>(dBodyGetPosition(body)); }
@@ -251,26 +250,19 @@ TEST_F(FrictionAnchors, PullNothingBackByMoreThanTheSlip) {
 
 /// One pair of bodies, as a near callback has it.
 struct Touching {
-  dWorldID world = dWorldCreate();
-  dBodyID body = dBodyCreate(world);
-  dGeomID geom = dCreateSphere(nullptr, 0.1);
-  dGeomID ground = dCreatePlane(nullptr, 0, 0, 1, 0);
+  Owned<dxWorld> world{dWorldCreate()};
+  dBodyID body = dBodyCreate(world.get());
+  Owned<dxGeom> geom{dCreateSphere(nullptr, 0.1)};
+  Owned<dxGeom> ground{dCreatePlane(nullptr, 0, 0, 1, 0)};
   dContact contact = {};
 
   Touching() {
-    dGeomSetBody(geom, body);
+    dGeomSetBody(geom.get(), body);
     contact.geom.normal[2] = 1.0;
-    contact.geom.g1 = geom;
-    contact.geom.g2 = ground;
+    contact.geom.g1 = geom.get();
+    contact.geom.g2 = ground.get();
     contact.surface.mu = 1.0;
   }
-  ~Touching() {
-    dGeomDestroy(geom);
-    dGeomDestroy(ground);
-    dWorldDestroy(world);
-  }
-  Touching(const Touching&) = delete;
-  Touching& operator=(const Touching&) = delete;
 };
 
 TEST_F(FrictionAnchors, BeginAnewAfterSomeStepsApart) {
