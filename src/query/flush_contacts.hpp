@@ -79,6 +79,16 @@ class FlushContacts {
     if (all) is_denied_ = !explained;
     if (!explained && !all) doubt_ = longest_doubt;
     if (explained && all) doubt_ = 0;
+    if (!explained || all) doubts_only_beside_ = false;
+  }
+  /// What a search has seen that looks beside the faces only: something else that touches, or that there is nothing.
+  void note_beside(bool something) noexcept {
+    if (something) {
+      doubts_only_beside_ = doubts_only_beside_ || doubt_ == 0;
+      doubt_ = longest_doubt;
+    } else if (doubts_only_beside_) {
+      doubt_ = 0;
+    }
   }
   /// The bodies are proved apart: whatever else touched does no more, and faces that overlap all the same do not lie on
   /// each other but through the bodies.
@@ -97,6 +107,13 @@ class FlushContacts {
   [[nodiscard]] bool include(const Contact& contact) const noexcept;
   /// Whether their depths are given in full.
   [[nodiscard]] bool gives_all() const noexcept;
+  /// Calls `see` with both faces, A's first, of every pair that overlaps now, and how deep it does, metres.
+  template <class See>
+  void see_faces(See see) const noexcept {
+    for (const Entry& entry : entries()) {
+      if (entry.depth > 0.0) see(faces_a_[entry.face_a], faces_b_[entry.face_b], entry.depth);
+    }
+  }
   /// Whether some overlap by more than they are uneven: then the surfaces meet.
   [[nodiscard]] bool is_certain() const noexcept;
 
@@ -150,6 +167,7 @@ class FlushContacts {
     crowded_ = 0;
     is_denied_ = false;
     doubt_ = 0;
+    doubts_only_beside_ = false;
   }
   [[nodiscard]] std::span<const Entry> entries() const noexcept { return std::span(entries_).first(count_); }
   [[nodiscard]] double deepest() const noexcept;
@@ -209,6 +227,7 @@ class FlushContacts {
   bool measured_ = false;      ///< in this run
   bool is_denied_ = false;     ///< by a run that saw all
   std::uint32_t doubt_ = 0;    ///< runs
+  bool doubts_only_beside_ = false;
   math::Pose pose_;
   double size_ = 0.0;
 };

@@ -121,7 +121,7 @@ SearchResult search(const wide::Encounter& encounter, const PosedMeshes& meshes,
   SearchResult result;
   if (encounter.far_apart()) return result;
   const std::uint32_t wanted = wanted_hits(request, pair);
-  wide::Task task{encounter, request, wanted, queue, pair.hits, spending, result};
+  wide::Task task{encounter, request, wanted, &queue, pair.hits, spending, result};
   const Method order = order_of(request);
   if (order == Method::exact) {
     pair.wide->exact(task);
@@ -229,6 +229,7 @@ void forget_if_elsewhere(const PosedMeshes& meshes, Pair::Implementation& pair) 
       pair.previous_normal.setZero();
       pair.haste.forget();
       pair.flush.forget();
+      pair.nothing_beside_at.reset();
       if (!pair.apart_last) pair.apart_at.reset();
     }
   }
@@ -400,6 +401,7 @@ void Pair::note_apart(const math::Pose& pose_b_in_a) noexcept {
         pair.near.forget();
         pair.haste.forget();
         pair.flush.forget();
+        pair.nothing_beside_at.reset();
         if (pair.late) pair.late->forget();
         pair.within_is_of_front = false;
       },

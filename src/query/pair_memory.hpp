@@ -72,15 +72,16 @@ struct Pair::Implementation {
   bool has_witness = false;
   TrianglePair witness;  ///< the pair of triangles that proved the last incremental hit
   const wide::Searches* wide;
-  Within within = Within::neither;        ///< as last looked at, where no surfaces met
-  bool within_is_of_front = false;        ///< that was where the front is, and no run has been elsewhere since
-  bool polygon_free;                      ///< every query has to be
-  Recalibration recalibration;            ///< of stated probabilities
-  Vec3 previous_normal = Vec3::Zero();    ///< of the last run's first contact, in A's frame; zero: none
-  Vec3 previous_position = Vec3::Zero();  ///< of that contact
-  FlushContacts flush;                    ///< of flat faces that lie on each other
-  HastyMemory haste;                      ///< of contacts that are guessed
-  std::uint32_t hasty_runs = 0;           ///< that guessed or might have
+  Within within = Within::neither;              ///< as last looked at, where no surfaces met
+  bool within_is_of_front = false;              ///< that was where the front is, and no run has been elsewhere since
+  bool polygon_free;                            ///< every query has to be
+  Recalibration recalibration;                  ///< of stated probabilities
+  Vec3 previous_normal = Vec3::Zero();          ///< of the last run's first contact, in A's frame; zero: none
+  Vec3 previous_position = Vec3::Zero();        ///< of that contact
+  FlushContacts flush;                          ///< of flat faces that lie on each other
+  std::optional<math::Pose> nothing_beside_at;  ///< PosedMeshes::pose() when a search found nothing else to meet
+  HastyMemory haste;                            ///< of contacts that are guessed
+  std::uint32_t hasty_runs = 0;                 ///< that guessed or might have
   Vec3 came = Vec3::Zero();  ///< how B came to where it met A since they were apart, unit, A's frame; zero: unknown
   std::optional<math::Pose> apart_at;  ///< PosedMeshes::pose() when they were apart last; none: they touched since
   std::optional<math::Pose> known_at;  ///< the same of the last run, or of a later word that they were apart

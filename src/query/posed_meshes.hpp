@@ -30,6 +30,7 @@ class PosedMeshes {
   /// Of B's tree frame in A's.
   [[nodiscard]] const math::Pose& pose() const noexcept { return pose_; }
   [[nodiscard]] const Vec3& origin_a() const noexcept { return origin_a_; }
+  [[nodiscard]] const Vec3& origin_b() const noexcept { return origin_b_; }
 
   [[nodiscard]] tree::TriangleCorners corners_a(std::uint32_t triangle) const noexcept {
     const mesh::Triangle& t = triangles_a_[triangle];

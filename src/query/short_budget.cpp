@@ -7,6 +7,8 @@
 
 #include "odds/math/tolerances.hpp"
 #include "query/flush_answer.hpp"
+#include "query/guess_contacts.hpp"
+#include "query/look_beside.hpp"
 #include "query/pair_contacts.hpp"
 #include "query/rough_contacts.hpp"
 #include "query/slid_contacts.hpp"
@@ -19,8 +21,6 @@ constexpr double short_us = 50.0;
 /// Of a longer one a guess is made from these hits: the first that are found lie on one side.
 constexpr double hits_per_microsecond = 1.0;
 constexpr double most_hits = 65536.0;
-/// Of what a run has left, for a guess; the rest is for the work on contacts.
-constexpr double share_of_a_guess = 0.5;
 /// Hits of the work under way that are tried in a run.
 constexpr std::size_t most_tried = 4;
 
@@ -38,134 +38,6 @@ void add_hits_of_work(const PosedMeshes& meshes, Pair::Implementation& pair, Spe
   }
 }
 
-/// Some of the pair's hits, others in each run, spread over their list, as they cross.
-struct Sample {
-  std::array<Crossing, most_contacts> crossings;
-  std::array<TrianglePair, most_contacts> hits;
-  std::size_t count = 0;
-
-  [[nodiscard]] std::span<const Crossing> made() const noexcept { return std::span(crossings).first(count); }
-};
-
-template <class MayGoOn>
-Sample sample_of(const PosedMeshes& meshes, std::span<const TrianglePair> hits, std::size_t first,
-                 MayGoOn may_go_on) noexcept {
-  Sample sample;
-  const std::size_t most = std::min(hits.size(), sample.hits.size());
-  // First those that are far apart in the list: if time is short, they are all there is.
-  constexpr std::array<std::size_t, most_contacts> eighths{0, 4, 2, 6, 1, 5, 3, 7};
-  for (const std::size_t eighth : eighths) {
-    if (eighth >= most) continue;
-    if (sample.count > 0 && !may_go_on()) break;
-    sample.hits[sample.count] = hits[(eighth * hits.size() / most + first) % hits.size()];
-    sample.crossings[sample.count] = Crossing::of(meshes, sample.hits[sample.count]);
-    ++sample.count;
-  }
-  return sample;
-}
-
-/// What a crossing says of the direction in which the bodies part.
-class Judge {
- public:
-  /// `anew`: whatever is known of other places.
-  Judge(const PosedMeshes& meshes, const Pair::Implementation& pair, bool anew) noexcept
-      : both_solid_(pair.a->is_solid() && pair.b->is_solid()),
-        expected_(anew ? Vec3(Vec3::Zero()) : pair.previous_normal),
-        little_(tolerances::hasty_alike * smaller_size(pair)) {
-    const Vec3 by_place = (-meshes.pose().translation).stableNormalized();
-    towards_a_ = expected_.isZero() ? Vec3(by_place + tolerances::came_side * pair.came) : expected_;
-  }
-
-  [[nodiscard]] Vote vote_of(const Crossing& crossing) const noexcept {
-    const Vec3 by_b = turned(crossing.normal_b);
-    const Vec3 by_a = turned(-crossing.normal_a);
-    return Vote::of(-by_a, by_b, crossing.overlap_along(by_a), crossing.overlap_along(by_b),
-                    (crossing.segment.end - crossing.segment.begin).norm(), little_, expected_);
-  }
-  [[nodiscard]] Vec3 direction_of(std::span<const Crossing> made, const HastyMemory& memory) const noexcept {
-    const Vec3 guess = memory.has_seen() && memory.is_of_one_mind() ? memory.direction()
-                                                                    : rough_direction(made, both_solid_, towards_a_);
-    return snapped_to_face(made, both_solid_, guess);
-  }
-
- private:
-  /// Surfaces of a body that is not solid have two sides.
-  [[nodiscard]] Vec3 turned(const Vec3& normal) const noexcept {
-    return !both_solid_ && normal.dot(towards_a_) < 0.0 ? Vec3(-normal) : normal;
-  }
-
-  bool both_solid_;
-  Vec3 expected_;
-  double little_;
-  Vec3 towards_a_;
-};
-
-/// What flat faces that lie on each other do not explain. A body that slides along a wall may come down on the floor:
-/// they are learnt from every place that is seen.
-void leave_out_flush(const PosedMeshes& meshes, Sample& sample, Pair::Implementation& pair,
-                     Spending& spending) noexcept {
-  if (!pair.flush.may_be()) return;
-  std::size_t left = 0;
-  for (std::size_t i = 0; i < sample.count; ++i) {
-    const Crossing& crossing = sample.crossings[i];
-    if (spending.may_make_contacts() && is_of_flat_faces(meshes, crossing, pair) && pair.flush.overlap()) continue;
-    sample.hits[left] = sample.hits[i];
-    sample.crossings[left++] = crossing;
-  }
-  sample.count = left;
-}
-
-/// Contacts from single pairs of triangles. They hold, but hardly push: a wrong one moves a body by no more than what
-/// nobody need have measured.
-void guess_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Vec3* known_normal,
-                    const Request& request, Pair::Implementation& pair, Spending& spending) noexcept {
-  const double kept_us = (1.0 - share_of_a_guess) * spending.left_us();
-  Sample sample = sample_of(meshes, pair.hits.pairs(), pair.hasty_runs,
-                            [&] { return spending.may_make_contacts() && spending.left_us() >= kept_us; });
-  leave_out_flush(meshes, sample, pair, spending);
-  pair.answer.contacts = {};
-  if (sample.count == 0) return;
-  // Beside such faces the rest has a direction of its own, of which nothing is known.
-  const bool beside = pair.flush.overlap();
-  if (beside) known_normal = nullptr;
-  const Judge judge(meshes, pair, beside);
-  for (const Crossing& crossing : sample.made()) {
-    if (beside) break;
-    const Vote vote = judge.vote_of(crossing);
-    pair.haste.see(vote.weight * vote.direction, vote.weight);
-  }
-  const bool each_its_own = !beside && known_normal == nullptr && pair.haste.has_seen() && !pair.haste.is_of_one_mind();
-  const Vec3 direction =
-      known_normal != nullptr ? *known_normal : judge.direction_of(sample.made(), beside ? HastyMemory() : pair.haste);
-  const double size = smaller_size(pair);
-  // A corner that has just come through is not deeper than its rim is wide, though the triangles reach on.
-  const double most_depth = std::min(tolerances::unmeasured_depth * size, extent_of(sample.made()));
-  const std::span<Contact> room = room_for_contacts(request, pair);
-  const std::size_t count = std::min(sample.count, room.size());
-  for (std::size_t i = 0; i < count; ++i) {
-    const Crossing& crossing = sample.crossings[i];
-    Vec3 normal = direction;
-    if (each_its_own) {
-      const Vote vote = judge.vote_of(crossing);
-      if (vote.weight > 0.0) normal = vote.direction;
-    }
-    room[i] = {crossing.middle() + meshes.origin_a(), normal, std::min(most_depth, crossing.overlap_along(normal)),
-               sample.hits[i].a, sample.hits[i].b};
-  }
-  const double near = tolerances::hasty_spacing * size;
-  const std::size_t all =
-      pair.haste.add_to(room, count, each_its_own || beside ? nullptr : &direction, pose_b_in_a, near);
-  double deepest = 0.0;
-  for (Contact& contact : room.first(all)) {
-    contact.depth = std::min(contact.depth, tolerances::unmeasured_depth * size);
-    deepest = std::max(deepest, contact.depth);
-  }
-  pair.haste.remember(room.first(count), pose_b_in_a, near);
-  if (!pair.known_depth.known()) pair.known_depth.note(meshes.pose(), deepest);
-  pair.answer.contacts = room.first(all);
-  pair.answer.contact_pairs = static_cast<std::uint32_t>(sample.count);
-}
-
 /// The guess of the run before, if it has left no time for the work and will do.
 bool share_guess(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair) noexcept {
   const std::span<Contact> room = room_for_contacts(request, pair);
@@ -174,11 +46,6 @@ bool share_guess(const math::Pose& pose_b_in_a, const Request& request, Pair::Im
   pair.answer.contacts = room.first(written);
   pair.answer.contact_pairs = static_cast<std::uint32_t>(written);
   return true;
-}
-
-void begin_haste(const math::Pose& pose_b_in_a, Pair::Implementation& pair) noexcept {
-  const double size = smaller_size(pair);
-  pair.haste.begin(pose_b_in_a, tolerances::hasty_slack * size, tolerances::coherent_motion * size);
 }
 
 /// Whether the contacts of earlier poses are of use now, far as the bodies may have moved. Of a wall that a body has
@@ -246,6 +113,46 @@ void work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implement
   add_flush(request, pair, spending);
 }
 
+/// What touches beside flat faces that overlap has contacts of its own at once: those of what a look has found there,
+/// or, where that had no time, those found before. False: nothing is known to touch there.
+bool answer_beside(Beside seen, const math::Pose& pose_b_in_a, const PosedMeshes& meshes, const Request& request,
+                   Pair::Implementation& pair, Spending& spending) noexcept {
+  if (seen == Beside::nothing) {
+    pair.flush.note_beside(false);
+    return false;
+  }
+  if (seen == Beside::unknown && !pair.flush.something_else_came()) return false;
+  begin_haste(pose_b_in_a, pair);
+  if (seen == Beside::something) {
+    ++pair.hasty_runs;
+    spending.reserve_for_contacts(pair.endings.rough);
+    if (!guess_contacts(meshes, pose_b_in_a, nullptr, request, pair, spending)) return false;
+    pair.flush.note_beside(true);
+    pair.late->keep_guess(pair.answer.contacts, pose_b_in_a);
+  } else if (!recall_guess(pose_b_in_a, request, pair)) {
+    return false;
+  }
+  add_flush(request, pair, spending);
+  return true;
+}
+
+/// Those of flat faces, or those made of earlier poses. False: neither serve.
+bool answer_carried(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request,
+                    Pair::Implementation& pair, Spending& spending) noexcept {
+  const bool is_flush = pair.flush.serves();
+  if (!is_flush && !serves_unmeasured(pose_b_in_a, request, pair)) return false;
+  begin_haste(pose_b_in_a, pair);
+  if (is_flush) {
+    write_flush(meshes, false, request, pair, spending);
+    learn_from_work(meshes, pair, spending);
+  } else {
+    measure_slid(pose_b_in_a, request, pair, spending);
+    write_late(pose_b_in_a, request, pair);
+    add_flush(request, pair, spending);
+  }
+  return true;
+}
+
 /// Whether contacts of this pair are allowed to be late.
 bool may_be_late(const Request& request, const Pair::Implementation& pair) noexcept {
   return pair.late != nullptr && request.late_contacts && request.max_contacts > 1 && !request.polygon_free &&
@@ -273,21 +180,23 @@ bool carry_late_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_
                          Pair::Implementation& pair, Spending& spending) noexcept {
   if (!is_short(request, pair)) return false;
   move_flush(pose_b_in_a, false, pair, spending);
-  const bool is_flush = pair.flush.serves();
   // Where there is never time for work on contacts, only a search sees what else has come to touch.
-  if (is_flush && request.budget.microseconds < very_short_us && ++pair.hasty_runs % 2 == 0) return false;
-  if (!is_flush && !serves_unmeasured(pose_b_in_a, request, pair)) return false;
-  if (!prove_carried(meshes, pair, spending)) return false;
-  begin_haste(pose_b_in_a, pair);
-  pair.answer.contacts_complete = false;
-  if (is_flush) {
-    write_flush(meshes, false, request, pair, spending);
-    learn_from_work(meshes, pair, spending);
-  } else {
-    measure_slid(pose_b_in_a, request, pair, spending);
-    write_late(pose_b_in_a, request, pair);
-    add_flush(request, pair, spending);
+  if (pair.flush.serves() && request.budget.microseconds < very_short_us && ++pair.hasty_runs % 2 == 0) return false;
+  const bool overlap = pair.flush.overlap();
+  if (!overlap && !serves_unmeasured(pose_b_in_a, request, pair)) return false;
+  const bool proved = prove_carried(meshes, pair, spending);
+  Beside seen = Beside::unknown;
+  if (overlap && request.budget.microseconds >= very_short_us) seen = look_beside(meshes, request, pair, spending);
+  if (!proved && (!overlap || pair.hits.empty())) return false;
+  if (!(overlap && answer_beside(seen, pose_b_in_a, meshes, request, pair, spending)) &&
+      !answer_carried(meshes, pose_b_in_a, request, pair, spending)) {
+    pair.hits.clear();
+    pair.answer = {};
+    return false;
   }
+  pair.answer.verdict = Verdict::hit;
+  pair.answer.probability = 1.0;
+  pair.answer.contacts_complete = false;
   work(pose_b_in_a, request, pair, spending);
   return true;
 }
@@ -317,7 +226,7 @@ void make_contacts_over_runs(const PosedMeshes& meshes, const math::Pose& pose_b
   } else if (!share_guess(pose_b_in_a, request, pair)) {
     spending.reserve_for_contacts(pair.endings.rough);
     add_hits_of_work(meshes, pair, spending);
-    guess_contacts(meshes, pose_b_in_a, known_normal, request, pair, spending);
+    static_cast<void>(guess_contacts(meshes, pose_b_in_a, known_normal, request, pair, spending));
     pair.late->keep_guess(pair.answer.contacts, pose_b_in_a);
   }
   if (!pair.answer.contacts_flush) add_flush(request, pair, spending);

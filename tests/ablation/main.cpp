@@ -157,7 +157,7 @@ void search_exactly(const query::wide::Searches& searches, const query::Shape& s
     const query::PosedMeshes meshes(shape.mesh(), shape.mesh(), tree.origin(), tree.origin(), posed.pose);
     const query::wide::Encounter met(tree, tree, meshes, request.estimator);
     query::SearchResult result;
-    query::wide::Task task{met, request, 1, queue, hits, spending, result};
+    query::wide::Task task{met, request, 1, &queue, hits, spending, result};
     if (!met.far_apart()) searches.exact(task);
     cost = spending.close();
     least = std::min(least, 1e-3 * static_cast<double>(clock() - begin));

@@ -43,7 +43,7 @@ std::optional<query::Remains> search(const Tree& a, const Tree& b, const query::
     const query::wide::Encounter met(a, b, meshes, request.estimator);
     if (met.far_apart()) return std::nullopt;
     const query::wide::Searches& searches = *query::wide::searches_for(query::InstructionSet::best);
-    query::wide::Task task{met, request, 1, memory.queue, memory.hits, spending, result};
+    query::wide::Task task{met, request, 1, &memory.queue, memory.hits, spending, result};
     if (request.method == query::Method::time_critical) searches.time_critical(task);
     if (request.method == query::Method::exact) searches.exact(task);
     if (request.method == query::Method::incremental) {

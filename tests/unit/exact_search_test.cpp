@@ -35,7 +35,7 @@ TEST_F(ExactSearch, RanksThePairOfRootsIfItEndsThere) {
   BucketQueue queue(16);
   Spending spending(request.budget);
   SearchResult result;
-  Task task{met, request, 1, queue, hits, spending, result};
+  Task task{met, request, 1, &queue, hits, spending, result};
   Exact<L>::run_from_roots(task);
   EXPECT_EQ(result.ended, Progressed::spent);
   EXPECT_EQ(result.open, 1U);
@@ -51,7 +51,7 @@ TEST_F(ExactSearch, CountsWhatItLeavesOpenHoweverFarItCame) {
       Spending spending(request.budget);
       SearchResult result;
       hits.clear();
-      Task task{met, request, static_cast<std::uint32_t>(wanted), queue, hits, spending, result};
+      Task task{met, request, static_cast<std::uint32_t>(wanted), &queue, hits, spending, result};
       Exact<L>::run_from_roots(task);
       EXPECT_LE(spending.so_far().node_pairs + spending.so_far().triangle_pairs, units);
       if (result.ended != Progressed::spent || !hits.empty()) continue;
@@ -66,7 +66,7 @@ TEST_F(ExactSearch, OfPairsThatFoundNoRoomInAQueueDoesNotChangeItsOrder) {
   BucketQueue queue(1);
   Spending spending(request.budget);
   SearchResult result;
-  Task task{met, request, 100, queue, hits, spending, result};
+  Task task{met, request, 100, &queue, hits, spending, result};
   TimeCritical<L>::run(task);
   EXPECT_GT(spending.so_far().queue_full, 0U);
   EXPECT_EQ(result.method, Method::time_critical);

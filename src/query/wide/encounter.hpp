@@ -28,6 +28,7 @@ class Encounter {
 
   [[nodiscard]] const tree::WideTree& a() const noexcept { return a_; }
   [[nodiscard]] const tree::WideTree& b() const noexcept { return b_; }
+  [[nodiscard]] const PosedMeshes& meshes() const noexcept { return meshes_; }
   /// Sides are 0 (A) and 1 (B).
   [[nodiscard]] const WideNode* nodes(std::uint32_t side) const noexcept { return nodes_[side]; }
   [[nodiscard]] ODDS_LANES_INLINE LaneNumbers numbers(std::uint32_t side, Slot slot) const noexcept {

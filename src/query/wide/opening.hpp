@@ -31,8 +31,11 @@ template <class L>
   return pairs;
 }
 
-/// Tests them exactly, but for those that are certain. False ends the search (the result says why).
-ODDS_LANES_INLINE bool visit_triangles(Task& task, Slot slot_a, Slot slot_b, const LeafPairs& pairs) noexcept {
+/// Tests them exactly, but for those that are certain. False ends the search (the result says why). Of no interest is
+/// what `passes_over(triangle of A, of B)`.
+template <class PassesOver>
+ODDS_LANES_INLINE bool visit_triangles(Task& task, Slot slot_a, Slot slot_b, const LeafPairs& pairs,
+                                       PassesOver passes_over) noexcept {
   const Encounter& met = task.encounter;
   for (unsigned rows = pairs.rows; rows != 0; rows &= rows - 1U) {
     const auto row = static_cast<unsigned>(std::countr_zero(rows));
@@ -45,6 +48,7 @@ ODDS_LANES_INLINE bool visit_triangles(Task& task, Slot slot_a, Slot slot_b, con
         return false;
       }
       task.spending.spend_triangle_pairs(1);
+      if (passes_over(a, b)) continue;
       if (!pairs.certainly_meet(row, lane) && !met.triangles_meet(a, b)) {
         ++task.apart;
         continue;
@@ -58,6 +62,10 @@ ODDS_LANES_INLINE bool visit_triangles(Task& task, Slot slot_a, Slot slot_b, con
     }
   }
   return true;
+}
+
+ODDS_LANES_INLINE bool visit_triangles(Task& task, Slot slot_a, Slot slot_b, const LeafPairs& pairs) noexcept {
+  return visit_triangles(task, slot_a, slot_b, pairs, [](std::uint32_t, std::uint32_t) noexcept { return false; });
 }
 
 /// Tests all triangles of two leaves. False ends the search (the result says why).

@@ -14,6 +14,7 @@
 #include "query/search.hpp"
 #include "query/wide/encounter.hpp"
 #include "query/wide/kinetic_front.hpp"
+#include "query/wide/known_faces.hpp"
 
 namespace odds::query::wide {
 
@@ -28,8 +29,8 @@ struct Task {
   const Encounter& encounter;
   const Request& request;
   std::uint32_t wanted;  ///< hits after which the search may stop
-  BucketQueue& queue;
-  HitList& hits;  ///< triangles by their indices in the meshes
+  BucketQueue* queue;    ///< of the time-critical search; others need none
+  HitList& hits;         ///< triangles by their indices in the meshes
   Spending& spending;
   SearchResult& result;
   /// Of the incremental search: as many hits of what met before stand for all of it, and half as much work again goes
@@ -71,6 +72,8 @@ struct Searches {
   void (*time_critical)(Task& task) noexcept;
   /// From what the front knows; the front has been moved to the encounter's pose.
   void (*incremental)(Task& task, KineticFront& front) noexcept;
+  /// What meets beside faces that are known; within the spending's start.
+  void (*beside_faces)(Task& task, const KnownFaces& faces) noexcept;
   /// The nearest points; the bodies may be apart.
   void (*nearest)(NearestTask& task) noexcept;
   std::optional<RayHit> (*ray)(const RayTask& task) noexcept;

@@ -1,6 +1,7 @@
 // All searches for one instruction set, for the files that compile them; nobody else includes this.
 #pragma once
 
+#include "query/wide/beside_faces.hpp"
 #include "query/wide/exact.hpp"
 #include "query/wide/incremental.hpp"
 #include "query/wide/nearest.hpp"
@@ -13,8 +14,15 @@ namespace odds::query::wide {
 
 template <class L>
 constexpr Searches searches_of() noexcept {
-  return {L::name,          &Exact<L>::run_from_roots, &TimeCritical<L>::run, &Incremental<L>::run,
-          &Nearest<L>::run, &RayCast<L>::run,          &WayDown<L>::run,      PatchKernel<L>::table()};
+  return {L::name,
+          &Exact<L>::run_from_roots,
+          &TimeCritical<L>::run,
+          &Incremental<L>::run,
+          &BesideFaces<L>::run,
+          &Nearest<L>::run,
+          &RayCast<L>::run,
+          &WayDown<L>::run,
+          PatchKernel<L>::table()};
 }
 
 }  // namespace odds::query::wide

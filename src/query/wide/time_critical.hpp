@@ -23,26 +23,26 @@ class TimeCritical {
   explicit TimeCritical(Task& task) noexcept : task_(task), met_(task.encounter) {}
 
   void run() noexcept {
-    task_.queue.clear();
-    task_.queue.push(0, {tree::WideTree::root, tree::WideTree::root, 0.0F});
+    task_.queue->clear();
+    task_.queue->push(0, {tree::WideTree::root, tree::WideTree::root, 0.0F});
     if (!task_.spending.may_go_on()) finish(Progressed::spent);
-    while (!task_.queue.empty() && !finished_) {
+    while (!task_.queue->empty() && !finished_) {
       if (!task_.spending.may_go_on_after(units_between_polls)) {
         finish(Progressed::spent);
         break;
       }
       if (task_.spending.nears_end()) {
-        task_.queue.show_first(Shortlist::capacity, [this](const NodePair& pair) { met_.prefetch(pair); });
+        task_.queue->show_first(Shortlist::capacity, [this](const NodePair& pair) { met_.prefetch(pair); });
       }
-      visit(task_.queue.pop());
+      visit(task_.queue->pop());
     }
     if (task_.result.ended != Progressed::finished) consider_queue();
   }
 
   void consider_queue() noexcept {
     SearchResult& result = task_.result;
-    const std::uint32_t open = result.open + task_.queue.size();
-    task_.queue.show_first(Shortlist::capacity, [&](const NodePair& pair) { leave_open<L>(task_, pair); });
+    const std::uint32_t open = result.open + task_.queue->size();
+    task_.queue->show_first(Shortlist::capacity, [&](const NodePair& pair) { leave_open<L>(task_, pair); });
     result.open = open;
   }
 
@@ -139,7 +139,7 @@ class TimeCritical {
   }
 
   void add(const NodePair& pair, float cost) noexcept {
-    if (!task_.queue.full()) return task_.queue.push(bucket_of_value(std::min(pair.rank, highest_rank) - cost), pair);
+    if (!task_.queue->full()) return task_.queue->push(bucket_of_value(std::min(pair.rank, highest_rank) - cost), pair);
     // Nothing is dropped: what finds no room is searched to its end at once.
     task_.spending.note_full_queue();
     if (task_.request.polygon_free) {
