@@ -5,150 +5,62 @@
 #include <limits>
 
 #include "odds/math/tolerances.hpp"
+#include "query/flat_overlap.hpp"
 
 namespace odds::query {
 namespace {
 
 const patch::Fan fan;  // made before any query
 
-/// A corner of a polygon as seen along the normal, and how deep the overlap is there.
-struct Seen {
-  double u;
-  double v;
-  double depth;
-};
-
-template <std::size_t most>
-struct Polygon {
-  std::array<Seen, most> corners;
-  std::size_t count = 0;
-};
-
-/// What lies to the left of the line, where `side` is not negative (Sutherland and Hodgman 1974).
-template <std::size_t most, class Side>
-void clip(Polygon<most>& polygon, Side&& side) noexcept {
-  std::array<double, most> distance;
-  bool all = true;
-  for (std::size_t i = 0; i < polygon.count; ++i) {
-    distance[i] = side(polygon.corners[i]);
-    all = all && distance[i] >= 0.0;
-  }
-  if (all) return;
-  Polygon<most> kept;
-  for (std::size_t i = 0; i < polygon.count; ++i) {
-    const std::size_t next = i + 1 < polygon.count ? i + 1 : 0;
-    const Seen& from = polygon.corners[i];
-    const Seen& to = polygon.corners[next];
-    if (distance[i] >= 0.0 && kept.count < most) kept.corners[kept.count++] = from;
-    if ((distance[i] >= 0.0) == (distance[next] >= 0.0) || kept.count == most) continue;
-    const double t = distance[i] / (distance[i] - distance[next]);
-    kept.corners[kept.count++] = {from.u + t * (to.u - from.u), from.v + t * (to.v - from.v),
-                                  from.depth + t * (to.depth - from.depth)};
-  }
-  std::copy_n(kept.corners.begin(), kept.count, polygon.corners.begin());
-  polygon.count = kept.count;
-}
-
-/// Two planes that nearly face each other, seen along the mean of their normals.
-class Facing {
- public:
-  /// By `normal . x = offset`; through which points near `origin` go.
-  struct Plane {
-    Vec3 normal;
-    double offset;
-  };
-  // Neither is preferred: exchanging the bodies turns the normal round, and nothing else.
-  Facing(const Plane& a, const Plane& b, const Vec3& origin) noexcept
-      : frame_((b.normal - a.normal).normalized()), origin_(origin), a_(height_of(a)), b_(height_of(b)) {}
-
-  [[nodiscard]] const Vec3& normal() const noexcept { return frame_.normal; }
-  /// B's plane above A's is an overlap.
-  [[nodiscard]] Seen seen(const Vec3& point) const noexcept {
-    const Vec3 from = point - origin_;
-    const double u = frame_.u.dot(from);
-    const double v = frame_.v.dot(from);
-    return {u, v, b_.at(u, v) - a_.at(u, v)};
-  }
-  [[nodiscard]] Vec3 on_a(const Seen& p) const noexcept {
-    return origin_ + p.u * frame_.u + p.v * frame_.v + a_.at(p.u, p.v) * frame_.normal;
-  }
-
- private:
-  /// Of a plane over the frame's, which goes through the origin.
-  struct Height {
-    double level, by_u, by_v;
-    [[nodiscard]] double at(double u, double v) const noexcept { return level + by_u * u + by_v * v; }
-  };
-  [[nodiscard]] Height height_of(const Plane& plane) const noexcept {
-    const double steepness = plane.normal.dot(frame_.normal);
-    return {(plane.offset - plane.normal.dot(origin_)) / steepness, -plane.normal.dot(frame_.u) / steepness,
-            -plane.normal.dot(frame_.v) / steepness};
-  }
-
-  patch::Frame frame_;
-  Vec3 origin_;
-  Height a_, b_;
-};
-
-/// How large a convex polygon is.
-struct Extent {
-  double diagonal = 0.0;  ///< of the box about it
-  double area = 0.0;
-  double deepest = -std::numeric_limits<double>::infinity();
-
-  template <std::size_t most>
-  explicit Extent(const Polygon<most>& polygon) noexcept {
-    double low[2] = {polygon.corners[0].u, polygon.corners[0].v};
-    double high[2] = {low[0], low[1]};
-    for (std::size_t i = 0; i < polygon.count; ++i) {
-      const Seen& p = polygon.corners[i];
-      const Seen& next = polygon.corners[i + 1 < polygon.count ? i + 1 : 0];
-      area += 0.5 * (p.u * next.v - next.u * p.v);
-      deepest = std::max(deepest, p.depth);
-      low[0] = std::min(low[0], p.u);
-      low[1] = std::min(low[1], p.v);
-      high[0] = std::max(high[0], p.u);
-      high[1] = std::max(high[1], p.v);
-    }
-    area = std::abs(area);
-    diagonal = std::sqrt((high[0] - low[0]) * (high[0] - low[0]) + (high[1] - low[1]) * (high[1] - low[1]));
-  }
-};
-
 }  // namespace
 
-bool FlushContacts::place(Entry& entry) const noexcept {
+bool FlushContacts::lean() const noexcept {
+  return std::any_of(entries().begin(), entries().end(),
+                     [](const Entry& entry) { return entry.depth > 0.0 && entry.leans; });
+}
+
+bool FlushContacts::place(Entry& entry, const Nearness& least) const noexcept {
   const mesh::FlatFace& a = faces_a_[entry.face_a];
   const mesh::FlatFace& b = faces_b_[entry.face_b];
   const Vec3 normal_b = pose_.rotation * b.normal;
-  if (!(-a.normal.dot(normal_b) > tolerances::flush_faces)) return false;
+  const double cosine = -a.normal.dot(normal_b);
+  if (!(cosine > least.cosine)) return false;
+  entry.leans = cosine <= tolerances::flush_faces;
   const double tilt = (a.normal + normal_b).norm();
   entry.is_deeper_beyond = tilt * (a.beyond + b.beyond) > tolerances::unmeasured_depth * size_;
-  const Facing facing({a.normal, a.offset}, {normal_b, b.offset + normal_b.dot(pose_.translation)}, a.centre);
+  const flat::Facing facing({a.normal, a.offset}, {normal_b, b.offset + normal_b.dot(pose_.translation)}, a.centre);
   entry.normal = facing.normal();
 
-  std::array<Seen, mesh::FlatFace::most_corners> window;  // counter-clockwise along the normal, as A's are against it
-  for (std::size_t i = 0; i < b.corner_count; ++i) window[i] = facing.seen(pose_ * b.corner[i]);
-  Polygon<most_points> overlap;
-  for (std::size_t i = a.corner_count; i-- != 0;) overlap.corners[overlap.count++] = facing.seen(a.corner[i]);
+  std::array<flat::Seen, mesh::FlatFace::most_corners> of_a;
+  std::array<flat::Seen, mesh::FlatFace::most_corners>
+      of_b;  // counter-clockwise along the normal, as A's are against it
+  for (std::size_t i = 0; i < a.corner_count; ++i) of_a[i] = facing.seen(a.corner[i]);
+  for (std::size_t i = 0; i < b.corner_count; ++i) of_b[i] = facing.seen(pose_ * b.corner[i]);
+  flat::Polygon<most_points> overlap;
+  for (std::size_t i = a.corner_count; i-- != 0;) overlap.corners[overlap.count++] = of_a[i];
   for (std::size_t i = 0; i < b.corner_count && overlap.count > 0; ++i) {
-    const Seen& from = window[i];
-    const Seen& to = window[i + 1 < b.corner_count ? i + 1 : 0];
+    const flat::Seen& from = of_b[i];
+    const flat::Seen& to = of_b[i + 1 < b.corner_count ? i + 1 : 0];
     const double along[2] = {to.u - from.u, to.v - from.v};
-    clip(overlap, [&](const Seen& p) noexcept { return along[0] * (p.v - from.v) - along[1] * (p.u - from.u); });
+    flat::clip(overlap,
+               [&](const flat::Seen& p) noexcept { return along[0] * (p.v - from.v) - along[1] * (p.u - from.u); });
   }
   if (overlap.count < 3) return false;
 
-  const Extent extent(overlap);
+  const flat::Extent extent(overlap);
   // Through a body its far side faces the other one, too.
   const double most = std::min({tolerances::flush_depth * size_, 0.5 * a.thickness, 0.5 * b.thickness});
-  if (!(extent.deepest >= -tolerances::late_gap * size_ && extent.deepest <= most)) return false;
+  if (!(extent.deepest.depth >= -least.gap * size_ && extent.deepest.depth <= most)) return false;
   // What is deeper than it is wide, as of a crate that runs into a kerb, is left by its side.
-  if (!(extent.deepest * extent.diagonal <= extent.area)) return false;
-  entry.depth = extent.deepest;
+  if (!(extent.deepest.depth * extent.diagonal <= extent.area)) return false;
+  entry.depth = extent.deepest.depth;
   entry.radius = 0.5 * extent.diagonal;
+  if (entry.leans) {
+    entry.normal = flat::normal_at(extent, {std::span(of_a).first(a.corner_count), -a.normal},
+                                   {std::span(of_b).first(b.corner_count), normal_b}, facing.frame());
+  }
 
-  clip(overlap, [](const Seen& p) noexcept { return p.depth; });
+  flat::clip(overlap, [](const flat::Seen& p) noexcept { return p.depth; });
   entry.point_count = overlap.count;
   for (std::size_t i = 0; i < overlap.count; ++i) {
     const Vec3 on_a = facing.on_a(overlap.corners[i]);
@@ -159,7 +71,7 @@ bool FlushContacts::place(Entry& entry) const noexcept {
 }
 
 bool FlushContacts::follow(Entry& entry) const noexcept {
-  if (!place(entry)) return false;
+  if (!place(entry, known)) return false;
   if (measured_) {
     entry.given.begin(entry.depth, std::max(entry.depth, 0.0));
     return true;
@@ -230,7 +142,7 @@ const FlushContacts::Entry* FlushContacts::add(std::uint32_t face_a, std::uint32
   Entry entry;
   entry.face_a = face_a;
   entry.face_b = face_b;
-  if (crowded_ > 0 || !place(entry)) return nullptr;
+  if (crowded_ > 0 || !place(entry, found)) return nullptr;
   if (count_ == entries_.size()) {
     count_ = 0;
     crowded_ = longest_crowd;

@@ -8,6 +8,7 @@
 
 #include "mesh/flat_faces.hpp"
 #include "odds/math/pose.hpp"
+#include "odds/math/tolerances.hpp"
 #include "odds/query/answer.hpp"
 #include "odds/query/contact_patch.hpp"
 #include "query/given_depth.hpp"
@@ -99,8 +100,11 @@ class FlushContacts {
 
   /// Whether some faces overlap now, whatever else touches.
   [[nodiscard]] bool overlap() const noexcept { return is_placed_ && deepest() > 0.0; }
-  /// Whether all that was seen of the bodies' contact was explained, and some of it overlaps now.
-  [[nodiscard]] bool serves() const noexcept { return overlap() && !is_denied_ && doubt_ == 0 && tell_all(); }
+  /// Whether all that was seen of the bodies' contact was explained, and some of it overlaps now. Of faces that lean,
+  /// one on an edge of the other, that says little of what has come to touch beside: `nothing_beside` does.
+  [[nodiscard]] bool serves(bool nothing_beside = false) const noexcept {
+    return overlap() && !is_denied_ && doubt_ == 0 && tell_all() && (nothing_beside || !lean());
+  }
   /// Whether something was seen to touch beside them that no patch has seen yet.
   [[nodiscard]] bool something_else_came() const noexcept { return overlap() && !is_denied_ && doubt_ > 0; }
   /// Whether a contact, as it is now, is one of those.
@@ -143,6 +147,8 @@ class FlushContacts {
     std::uint32_t face_a = 0;
     std::uint32_t face_b = 0;
     double depth = 0.0;  ///< greatest, in the last run; negative: a gap
+    /// They lay on each other, and now one stands on an edge or a corner of its own.
+    bool leans = false;
     /// A round face reaches beyond its polygon, and tilts by so much that it is deeper there.
     bool is_deeper_beyond = false;
     GivenDepth given;
@@ -171,10 +177,19 @@ class FlushContacts {
   }
   [[nodiscard]] std::span<const Entry> entries() const noexcept { return std::span(entries_).first(count_); }
   [[nodiscard]] double deepest() const noexcept;
+  /// Whether some that overlap do so on an edge or a corner of one of them.
+  [[nodiscard]] bool lean() const noexcept;
   /// Whether the faces' polygons say how deep they are.
   [[nodiscard]] bool tell_all() const noexcept;
+  /// By how little faces may be turned towards each other, and how far apart they may be.
+  struct Nearness {
+    double cosine;
+    double gap;  ///< part of the smaller body's size
+  };
+  static constexpr Nearness found{tolerances::flush_faces, tolerances::late_gap};
+  static constexpr Nearness known{tolerances::leaning_faces, tolerances::leaning_gap};
   /// How the faces of an entry lie now. False: not on each other.
-  [[nodiscard]] bool place(Entry& entry) const noexcept;
+  [[nodiscard]] bool place(Entry& entry, const Nearness& least) const noexcept;
   /// The same, and how much of the depth is given.
   [[nodiscard]] bool follow(Entry& entry) const noexcept;
   /// Where something was seen: how far beside a face, and above it, it may be, and how deep the bodies are there, if

@@ -137,9 +137,9 @@ bool answer_beside(Beside seen, const math::Pose& pose_b_in_a, const PosedMeshes
 }
 
 /// Those of flat faces, or those made of earlier poses. False: neither serve.
-bool answer_carried(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request,
+bool answer_carried(Beside seen, const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request,
                     Pair::Implementation& pair, Spending& spending) noexcept {
-  const bool is_flush = pair.flush.serves();
+  const bool is_flush = pair.flush.serves(seen == Beside::nothing);
   if (!is_flush && !serves_unmeasured(pose_b_in_a, request, pair)) return false;
   begin_haste(pose_b_in_a, pair);
   if (is_flush) {
@@ -189,7 +189,7 @@ bool carry_late_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_
   if (overlap && request.budget.microseconds >= very_short_us) seen = look_beside(meshes, request, pair, spending);
   if (!proved && (!overlap || pair.hits.empty())) return false;
   if (!(overlap && answer_beside(seen, pose_b_in_a, meshes, request, pair, spending)) &&
-      !answer_carried(meshes, pose_b_in_a, request, pair, spending)) {
+      !answer_carried(seen, meshes, pose_b_in_a, request, pair, spending)) {
     pair.hits.clear();
     pair.answer = {};
     return false;

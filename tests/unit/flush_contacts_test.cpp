@@ -14,56 +14,20 @@
 
 #include "odds/math/random.hpp"
 #include "odds/math/tolerances.hpp"
-#include "support/slabs.hpp"
+#include "support/flush_slabs.hpp"
 
 namespace odds::query {
 namespace {
 
 using testing::below;
+using testing::contacts_of;
+using testing::Flush;
 using testing::made_mesh;
 using testing::slab;
+using testing::written;
 
-constexpr double size = 1.4;
-const Vec3 under(0.4, 0.3, -0.1);  ///< where A's bottom is
-
-/// With the faces that it looks at.
-struct Flush : FlushContacts {
-  explicit Flush(std::shared_ptr<const std::vector<mesh::FlatFace>> a,
-                 std::shared_ptr<const std::vector<mesh::FlatFace>> b)
-      : FlushContacts(*a, *b), of_a(std::move(a)), of_b(std::move(b)) {}
-  std::shared_ptr<const std::vector<mesh::FlatFace>> of_a, of_b;
-
-  void move_to(const math::Pose& pose, double of_size = size, bool measured = false) {
-    FlushContacts::move_to(pose, of_size, measured, [] { return true; });
-  }
-  /// Faces that look up and down, as of a body that stands on another one.
-  [[nodiscard]] bool explains_at(const Vec3& place, const Vec3& up = Vec3::UnitZ()) {
-    return explains_crossing(place, -up, up);
-  }
-  [[nodiscard]] std::vector<Contact> contacts(std::size_t room = 8) {
-    std::vector<Contact> all(room);
-    all.resize(write(all, [] { return true; }));
-    return all;
-  }
-};
-
-Flush contacts_of(const mesh::TriangleMesh& a, const mesh::TriangleMesh& b) {
-  return Flush(std::make_shared<const std::vector<mesh::FlatFace>>(mesh::find_flat_faces(a)),
-               std::make_shared<const std::vector<mesh::FlatFace>>(mesh::find_flat_faces(b)));
-}
-
-/// As of runs at one pose, until all of the depth is given.
-std::vector<Contact> written(Flush& flush, const math::Pose& pose, const Vec3& seen) {
-  flush.move_to(pose);
-  flush.note(flush.explains_at(seen, pose.rotation.col(2).z() > 0.0 ? Vec3::UnitZ() : Vec3(-Vec3::UnitZ())), false);
-  std::vector<Contact> contacts;
-  for (int run = 0; run < 2000; ++run) {
-    flush.begin();
-    flush.move_to(pose);
-    contacts = flush.serves() ? flush.contacts() : std::vector<Contact>();
-  }
-  return contacts;
-}
+constexpr double size = testing::flush_size;
+const Vec3 under = testing::under_slab;
 
 TEST(FlushContacts, OfASlabOnASlabAreAtItsCorners) {
   auto flush = contacts_of(slab(), slab(5));
@@ -433,7 +397,12 @@ TEST(FlushContacts, AHopIsNotForgotten) {
   flush.move_to(below(1e-4));
   EXPECT_TRUE(flush.serves());
   flush.begin();
-  flush.move_to(below(-2.0 * tolerances::late_gap * size));
+  flush.move_to(below(-0.09 * size));
+  flush.begin();
+  flush.move_to(below(1e-4));
+  EXPECT_TRUE(flush.serves());
+  flush.begin();
+  flush.move_to(below(-0.11 * size));
   flush.begin();
   flush.move_to(below(1e-4));
   EXPECT_FALSE(flush.serves()) << "far apart they are forgotten";

@@ -179,6 +179,11 @@ inline constexpr double flat_face = 1e-6;
 /// FlushContacts.OfFacesOnFarSidesAreNone.
 inline constexpr double flush_faces = 0.999;
 inline constexpr double flush_depth = 0.02;  ///< see flush_faces
+/// Cosine (26 degrees) and gap, as a part of the smaller body's size, to which faces that lay on each other are kept in
+/// mind: a crate that hops or is tripped comes down on an edge of the face that it stood on. Tests:
+/// LeaningFaces.AreKeptInMindUntilTheyTilt, FlushContacts.AHopIsNotForgotten.
+inline constexpr double leaning_faces = 0.9;
+inline constexpr double leaning_gap = 0.1;  ///< see leaning_faces
 /// Of a hit where such faces overlap, in a run without a proof. Test:
 /// FlushPair.OfARunWithoutAProofAreGivenAllTheSame.
 inline constexpr double flush_probability = 0.99;
