@@ -31,9 +31,9 @@ bool FlushContacts::place(Entry& entry, const Nearness& least) const noexcept {
   const flat::Facing facing({a.normal, a.offset}, {normal_b, b.offset + normal_b.dot(pose_.translation)}, a.centre);
   entry.normal = facing.normal();
 
-  std::array<flat::Seen, mesh::FlatFace::most_corners> of_a;
-  std::array<flat::Seen, mesh::FlatFace::most_corners>
-      of_b;  // counter-clockwise along the normal, as A's are against it
+  using Corners = std::array<flat::Seen, mesh::FlatFace::most_corners>;
+  Corners of_a;  // clockwise along the normal
+  Corners of_b;  // counter-clockwise
   for (std::size_t i = 0; i < a.corner_count; ++i) of_a[i] = facing.seen(a.corner[i]);
   for (std::size_t i = 0; i < b.corner_count; ++i) of_b[i] = facing.seen(pose_ * b.corner[i]);
   flat::Polygon<most_points> overlap;
@@ -71,7 +71,7 @@ bool FlushContacts::place(Entry& entry, const Nearness& least) const noexcept {
 }
 
 bool FlushContacts::follow(Entry& entry) const noexcept {
-  if (!place(entry, known)) return false;
+  if (!place(entry, to_follow)) return false;
   if (measured_) {
     entry.given.begin(entry.depth, std::max(entry.depth, 0.0));
     return true;
@@ -142,7 +142,7 @@ const FlushContacts::Entry* FlushContacts::add(std::uint32_t face_a, std::uint32
   Entry entry;
   entry.face_a = face_a;
   entry.face_b = face_b;
-  if (crowded_ > 0 || !place(entry, found)) return nullptr;
+  if (crowded_ > 0 || !place(entry, to_find)) return nullptr;
   if (count_ == entries_.size()) {
     count_ = 0;
     crowded_ = longest_crowd;

@@ -186,8 +186,8 @@ class FlushContacts {
     double cosine;
     double gap;  ///< part of the smaller body's size
   };
-  static constexpr Nearness found{tolerances::flush_faces, tolerances::late_gap};
-  static constexpr Nearness known{tolerances::leaning_faces, tolerances::leaning_gap};
+  static constexpr Nearness to_find{tolerances::flush_faces, tolerances::late_gap};
+  static constexpr Nearness to_follow{tolerances::leaning_faces, tolerances::leaning_gap};
   /// How the faces of an entry lie now. False: not on each other.
   [[nodiscard]] bool place(Entry& entry, const Nearness& least) const noexcept;
   /// The same, and how much of the depth is given.
@@ -237,12 +237,12 @@ class FlushContacts {
   std::span<const mesh::FlatFace> faces_b_;
   std::array<Entry, most_entries> entries_;
   std::size_t count_ = 0;
-  std::uint32_t crowded_ = 0;  ///< runs in which there are more pairs than entries
-  bool is_placed_ = false;     ///< in this run
-  bool measured_ = false;      ///< in this run
-  bool is_denied_ = false;     ///< by a run that saw all
-  std::uint32_t doubt_ = 0;    ///< runs
-  bool doubts_only_beside_ = false;
+  std::uint32_t crowded_ = 0;        ///< runs in which there are more pairs than entries
+  bool is_placed_ = false;           ///< in this run
+  bool measured_ = false;            ///< in this run
+  bool is_denied_ = false;           ///< by a run that saw all
+  std::uint32_t doubt_ = 0;          ///< runs
+  bool doubts_only_beside_ = false;  ///< the doubt is of looks beside the faces alone, and such a look ends it
   math::Pose pose_;
   double size_ = 0.0;
 };

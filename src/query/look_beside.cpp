@@ -48,7 +48,11 @@ Beside look(const PosedMeshes& meshes, const Request& request, const wide::Known
                   spending,  result};
   spending.begin_start(share_of_a_look, share_of_a_look);
   pair.wide->beside_faces(task, faces);
-  if (pair.hits.size() > before) return Beside::something;
+  if (pair.hits.size() > before) {
+    pair.answer.verdict = Verdict::hit;
+    pair.answer.probability = 1.0;
+    return Beside::something;
+  }
   return result.ended == Progressed::spent ? Beside::unknown : Beside::nothing;
 }
 

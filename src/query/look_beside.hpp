@@ -11,7 +11,7 @@ namespace odds::query {
 
 enum class Beside : std::uint8_t {
   nothing,    ///< no other surfaces meet
-  something,  ///< pairs of triangles that meet there have been added to the pair's hits
+  something,  ///< pairs of triangles that meet there have been added to the pair's hits: a proof
   unknown,    ///< the budget ended the search
 };
 

@@ -194,8 +194,6 @@ bool carry_late_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_
     pair.answer = {};
     return false;
   }
-  pair.answer.verdict = Verdict::hit;
-  pair.answer.probability = 1.0;
   pair.answer.contacts_complete = false;
   work(pose_b_in_a, request, pair, spending);
   return true;
@@ -226,7 +224,7 @@ void make_contacts_over_runs(const PosedMeshes& meshes, const math::Pose& pose_b
   } else if (!share_guess(pose_b_in_a, request, pair)) {
     spending.reserve_for_contacts(pair.endings.rough);
     add_hits_of_work(meshes, pair, spending);
-    static_cast<void>(guess_contacts(meshes, pose_b_in_a, known_normal, request, pair, spending));
+    guess_contacts(meshes, pose_b_in_a, known_normal, request, pair, spending);
     pair.late->keep_guess(pair.answer.contacts, pose_b_in_a);
   }
   if (!pair.answer.contacts_flush) add_flush(request, pair, spending);
