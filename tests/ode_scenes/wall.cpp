@@ -18,26 +18,29 @@ constexpr double wall_at = 0.55;
 struct Crate {
   double side;
   double speed;
+  int cells;  ///< along an edge
+  int cells_of_room;
 };
 constexpr Physics smooth{"ODE's defaults", 50, 0.0, 0.5, 0.1, 8};
 
 /// A floor of 2 m by 1 m whose top is at 0.1 m, and a wall on it.
-Mesh room() {
-  return std::make_shared<const mesh::TriangleMesh>(
-      testing::joined(testing::made_mesh("made:box:x=2,y=1,z=0.2,cells=4"),
-                      testing::made_mesh("made:box:x=0.1,y=1,z=0.6,cells=4"), Vec3(wall_at + 0.05, 0.0, 0.25)));
+Mesh room(int cells) {
+  return std::make_shared<const mesh::TriangleMesh>(testing::joined(
+      testing::made_mesh(fmt::format("made:box:x=2,y=1,z=0.2,cells={}", cells)),
+      testing::made_mesh(fmt::format("made:box:x=0.1,y=1,z=0.6,cells={}", cells)), Vec3(wall_at + 0.05, 0.0, 0.25)));
 }
 
 Run run_wall(const Crate& thrown, const Collider& collider) {
   const double side = thrown.side;
-  const Mesh ground = room();
-  const Mesh crate = made(fmt::format("box:x={0},y={0},z={0},cells=4", side));
+  const Mesh ground = room(thrown.cells_of_room);
+  const Mesh crate = made(fmt::format("box:x={0},y={0},z={0},cells={1}", side, thrown.cells));
   int fell = 0;
   int went_in = 0;
   double fastest = 0.0;
   double deepest = 0.0;
   int most = 0;
-  Run run{fmt::format("crates of {:g} m and 192 triangles at {:g} m/s", side, thrown.speed),
+  Run run{fmt::format("crates of {:g} m and {} triangles at {:g} m/s", side, 12 * thrown.cells * thrown.cells,
+                      thrown.speed),
           collider.name(),
           {},
           {},
@@ -88,10 +91,11 @@ Section wall(const Plan& plan) {
                   "",
                   false,
                   {}};
-  for (const Crate& thrown : {Crate{0.2, 1.0}, Crate{0.15, 2.0}}) {
+  for (const Crate& thrown :
+       {Crate{0.2, 1.0, 4, 4}, Crate{0.15, 2.0, 4, 4}, Crate{0.15, 2.0, 11, 16}, Crate{0.15, 3.0, 4, 4}}) {
     for (const Collider& collider : colliders(plan, false)) {
       section.runs.push_back(run_wall(thrown, collider));
-      fmt::print("wall, {:g} m/s, {:<18} {}\n", thrown.speed, collider.name(), section.runs.back().note);
+      fmt::print("wall, {:<48} {:<18} {}\n", section.runs.back().variant, collider.name(), section.runs.back().note);
       std::fflush(stdout);
     }
   }
