@@ -9,6 +9,6 @@ realtime::Clock chosen;
 
 void use_budget_clock(realtime::Clock clock) noexcept { chosen = clock; }
 
-realtime::Clock budget_clock() noexcept { return chosen; }
+realtime::Clock budget_clock() noexcept { return chosen.now_ns != nullptr ? chosen : realtime::fastest_clock(); }
 
 }  // namespace odds::ode

@@ -5,11 +5,11 @@
 
 namespace odds::ode {
 
-/// Of collisions of two meshes; null (default): the processor's. With one that moves by as much at every look, starved
+/// Of collisions and of frames; null (default): the processor's. With one that moves by as much at every look, starved
 /// scenes have the same contacts on every run and machine. Set it before the first collision; it must outlive the last.
 void use_budget_clock(realtime::Clock clock) noexcept;
 
-/// For query::Budget::clock.
+/// Never null.
 [[nodiscard]] realtime::Clock budget_clock() noexcept;
 
 }  // namespace odds::ode

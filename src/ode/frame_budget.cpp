@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ode/budget_clock.hpp"
 #include "ode/frame_share.hpp"
 #include "ode/pair_table.hpp"
 #include "ode/space_pairs.hpp"
@@ -37,7 +38,7 @@ oddsFrameBudget::oddsFrameBudget(std::size_t most_pairs)
       call_us_(least_call_us),
       hold_us_(least_call_us),
       margin_us_(least_margin_us),
-      clock_(odds::realtime::fastest_clock()) {
+      clock_(odds::ode::budget_clock()) {
   candidates_.reserve(most_pairs);
 }
 

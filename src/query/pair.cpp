@@ -351,9 +351,11 @@ Result<Pair> Pair::make(std::shared_ptr<const Shape> a, std::shared_ptr<const Sh
         FlushContacts(pair.implementation_->a->data().flat_faces(), pair.implementation_->b->data().flat_faces());
   }
   pair.implementation_->late = std::move(late);
-  // Once through what a query ends with, so that the first real one does not wait for pages of code.
+  // Once through what a query ends with, so that the first real one does not wait for pages of code. What a pair learns
+  // of its endings must not depend on when it was made, so this has a clock of its own.
+  realtime::ManualClock clock(300);
   Request first;
-  first.budget = {.microseconds = 1.0, .work_units = 64};
+  first.budget = {.microseconds = 1.0, .work_units = 64, .clock = clock.clock()};
   first.max_contacts = 0;
   static_cast<void>(pair.run({}, first));
   pair.reset();
