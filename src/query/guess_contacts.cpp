@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <span>
+#include <utility>
 
 #include "odds/math/tolerances.hpp"
 #include "query/flush_answer.hpp"
@@ -22,6 +23,17 @@ struct Sample {
   std::size_t count = 0;
 
   [[nodiscard]] std::span<const Crossing> made() const noexcept { return std::span(crossings).first(count); }
+  /// Those of which something holds come first; how many.
+  template <class Holds>
+  std::size_t sort_by(Holds holds) noexcept {
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!holds(crossings[i])) continue;
+      std::swap(crossings[first], crossings[i]);
+      std::swap(hits[first++], hits[i]);
+    }
+    return first;
+  }
 };
 
 template <class MayGoOn>
@@ -59,6 +71,15 @@ class Judge {
     return Vote::of(-by_a, by_b, crossing.overlap_along(by_a), crossing.overlap_along(by_b),
                     (crossing.segment.end - crossing.segment.begin).norm(), little_, expected_);
   }
+  /// Whether bodies that part in a direction (unit, into A) still cross there, and would part sooner in another: it is
+  /// another place than the one that the direction is known from.
+  [[nodiscard]] bool is_elsewhere(const Crossing& crossing, const Vec3& direction) const noexcept {
+    const Vec3 by_b = turned(crossing.normal_b);
+    const Vec3 by_a = turned(-crossing.normal_a);
+    if (std::max(direction.dot(by_a), direction.dot(by_b)) > tolerances::hasty_across) return false;
+    const double least = std::min(crossing.overlap_along(by_a), crossing.overlap_along(by_b));
+    return crossing.overlap_along(direction) + little_ > tolerances::hasty_elsewhere * (least + little_);
+  }
   [[nodiscard]] Vec3 direction_of(std::span<const Crossing> made, const HastyMemory& memory) const noexcept {
     const Vec3 guess = memory.has_seen() && memory.is_of_one_mind() ? memory.direction()
                                                                     : rough_direction(made, both_solid_, towards_a_);
@@ -76,6 +97,12 @@ class Judge {
   double little_;
   Vec3 towards_a_;
 };
+
+/// The direction into A, unit, in which contacts were found to push so far; zero if there were none.
+Vec3 expected_direction(const Pair::Implementation& pair, const Vec3* known_normal) noexcept {
+  if (known_normal != nullptr) return *known_normal;
+  return pair.haste.has_seen() && pair.haste.is_of_one_mind() ? pair.haste.direction() : pair.previous_normal;
+}
 
 /// What flat faces that lie on each other do not explain. A body that slides along a wall may come down on the floor:
 /// they are learnt from every place that is seen.
@@ -111,18 +138,29 @@ bool guess_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, co
   leave_out_flush(meshes, sample, pair, spending);
   pair.answer.contacts = {};
   if (sample.count == 0) return false;
-  // Beside such faces the rest has a direction of its own, of which nothing is known.
+  // Beside such faces the rest has a direction of its own, of which nothing is known; and so has what crosses elsewhere
+  // than before, which must not push as that did: a body that comes off a wall onto the floor is held from below.
   const bool beside = pair.flush.overlap();
-  if (beside) known_normal = nullptr;
-  const Judge judge(meshes, pair, beside);
+  const Judge anew(meshes, pair, true);
+  const Judge as_before(meshes, pair, false);
+  const Vec3 expected = expected_direction(pair, known_normal);
+  const std::size_t known = beside              ? 0
+                            : expected.isZero() ? sample.count
+                                                : sample.sort_by([&](const Crossing& crossing) noexcept {
+                                                    return !as_before.is_elsewhere(crossing, expected);
+                                                  });
+  if (known == 0) known_normal = nullptr;
+  // Those elsewhere have a say, too: where they are many, or all around as in a thread, there is no one direction.
   for (const Crossing& crossing : sample.made()) {
     if (beside) break;
-    const Vote vote = judge.vote_of(crossing);
+    const Vote vote = as_before.vote_of(crossing);
     pair.haste.see(vote.weight * vote.direction, vote.weight);
   }
-  const bool each_its_own = !beside && known_normal == nullptr && pair.haste.has_seen() && !pair.haste.is_of_one_mind();
-  const Vec3 direction =
-      known_normal != nullptr ? *known_normal : judge.direction_of(sample.made(), beside ? HastyMemory() : pair.haste);
+  const bool each_its_own =
+      known > 0 && known_normal == nullptr && pair.haste.has_seen() && !pair.haste.is_of_one_mind();
+  const Vec3 direction = known_normal != nullptr ? *known_normal
+                         : known > 0             ? as_before.direction_of(sample.made().first(known), pair.haste)
+                                                 : anew.direction_of(sample.made(), HastyMemory());
   const double size = smaller_size(pair);
   // A corner that has just come through is not deeper than its rim is wide, though the triangles reach on.
   const double most_depth = std::min(tolerances::unmeasured_depth * size, extent_of(sample.made()));
@@ -131,8 +169,9 @@ bool guess_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, co
   for (std::size_t i = 0; i < count; ++i) {
     const Crossing& crossing = sample.crossings[i];
     Vec3 normal = direction;
-    if (each_its_own) {
-      const Vote vote = judge.vote_of(crossing);
+    const bool elsewhere = !beside && i >= known;
+    if (each_its_own || elsewhere) {
+      const Vote vote = (elsewhere ? anew : as_before).vote_of(crossing);
       if (vote.weight > 0.0) normal = vote.direction;
     }
     room[i] = {crossing.middle() + meshes.origin_a(), normal, std::min(most_depth, crossing.overlap_along(normal)),
@@ -140,7 +179,7 @@ bool guess_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, co
   }
   const double near = tolerances::hasty_spacing * size;
   const std::size_t all =
-      pair.haste.add_to(room, count, each_its_own || beside ? nullptr : &direction, pose_b_in_a, near);
+      pair.haste.add_to(room, count, each_its_own || known == 0 ? nullptr : &direction, pose_b_in_a, near);
   limit_depths(room.first(all), tolerances::unmeasured_depth * size);
   double deepest = 0.0;
   for (const Contact& contact : room.first(all)) deepest = std::max(deepest, contact.depth);

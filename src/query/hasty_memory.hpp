@@ -102,7 +102,7 @@ class HastyMemory {
   }
 
   /// Appends to the `made` first of `contacts` those remembered places that are not near one of them, with `normal`, or
-  /// their own where it is null. Returns how many there are then.
+  /// their own where it is null or across theirs. Returns how many there are then.
   [[nodiscard]] std::size_t add_to(std::span<Contact> contacts, std::size_t made, const Vec3* normal,
                                    const math::Pose& pose, double near) const noexcept {
     for (std::size_t i = 0; i < count_ && made < contacts.size(); ++i) {
@@ -110,7 +110,8 @@ class HastyMemory {
       const Vec3 now = pose * place.on_b;
       const auto is_near = [&](const Contact& contact) noexcept { return (contact.position - now).norm() <= near; };
       if (std::any_of(contacts.begin(), contacts.begin() + static_cast<std::ptrdiff_t>(made), is_near)) continue;
-      const Vec3 direction = normal != nullptr ? *normal : place.normal;
+      const Vec3 direction =
+          normal != nullptr && place.normal.dot(*normal) > tolerances::hasty_across ? *normal : place.normal;
       const double depth = place.depth + direction.dot(now - place.on_a);
       if (!(depth >= 0.0)) continue;  // it has parted there
       contacts[made++] = {now, direction, depth, place.triangle_a, place.triangle_b};

@@ -120,6 +120,13 @@ inline constexpr double hasty_alike = 0.003;
 /// Cosine between the normals of two contacts that may be the same one: 30 degrees.
 /// Test: LateManifold.ASuccessorGivesWhatItsPredecessorGave.
 inline constexpr double hasty_agreement = 0.87;
+/// Cosine (75 degrees) below which the normals where two triangles cross are across a direction in which the bodies
+/// part; and how many times as far as in a direction of their own they then have to go in it, for the crossing to be
+/// another place of contact: starved gears jam without (`odds_ode_scenes --only gears --ours --counted 280 --budgets
+/// 10,20`), with 10 of them more than with 1.5 or 3.
+/// Test: GuessedContacts.OfAnotherPlaceHaveADirectionOfTheirOwn.
+inline constexpr double hasty_across = 0.25;
+inline constexpr double hasty_elsewhere = 1.5;  ///< see hasty_across
 /// How many times what is believed of a depth from motion, or need not be measured, a run may say that has looked at as
 /// many pairs as are kept: they may be taken for one lump, but runs at one pose must come to what they find there.
 /// Tests: BoltInItsNut.IsHeldByAsMuchAsItIsDeep, BoltInItsNut.ExactRunsForgetThePoseBefore.

@@ -1,0 +1,62 @@
+// Contacts guessed in runs without time for a patch: bodies that touch elsewhere than before.
+#include "query/guess_contacts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <utility>
+
+#include "odds/math/random.hpp"
+#include "support/shapes.hpp"
+#include "support/short_request.hpp"
+#include "support/slabs.hpp"
+
+namespace odds::query {
+namespace {
+
+std::shared_ptr<const Shape> shape_of(mesh::TriangleMesh mesh) {
+  return Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(mesh))).value();
+}
+
+/// A bump in a wall and one in the floor, both of radius 1, whose tops face the origin.
+std::shared_ptr<const Shape> corner_of_bumps() {
+  const auto bump = testing::wavy_sphere(40, 0.0);
+  const Vec3 apart(1.3, 0.0, -1.3);
+  return shape_of(testing::joined(*bump, *bump, apart));
+}
+
+// All contacts of a run used to get the direction of those before: a body that came off a wall onto the floor was
+// pushed sideways while it sank in.
+TEST(GuessedContacts, OfAnotherPlaceHaveADirectionOfTheirOwn) {
+  const auto corner = corner_of_bumps();
+  const auto ball = shape_of(testing::made_mesh("made:icosphere:frequency=24,radius=0.3"));
+  const Vec3 middle(1.3, 0.0, 0.0);
+  for (const std::int64_t look_ns : {100, 150, 200}) {
+    int guessed = 0;
+    int sideways = 0;
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+      constexpr double deep = 0.01;
+      realtime::ManualClock clock(look_ns);
+      Pair pair = std::move(Pair::make(corner, ball, {.late_contacts = true})).value();
+      const Request request = testing::short_request(clock, 5.0);
+      math::Random random(seed);
+      const Mat3 turned = random.rotation().toRotationMatrix();
+      const auto run_at = [&](double x, double z) {
+        return pair.run({turned, middle + Vec3(x, random.uniform(-1e-5, 1e-5), z)}, request);
+      };
+      for (int run = 0; run < 60; ++run) static_cast<void>(run_at(-deep, deep));
+      for (int run = 0; run < 10; ++run) {
+        const Answer answer = run_at(deep, -deep);
+        for (const Contact& contact : answer.contacts) {
+          ++guessed;
+          sideways += std::abs(contact.normal.x()) > 0.7 ? 1 : 0;
+        }
+      }
+    }
+    EXPECT_GT(guessed, 200) << look_ns;
+    EXPECT_LT(sideways, guessed / 4) << look_ns << " ns a look, of " << guessed;
+  }
+}
+
+}  // namespace
+}  // namespace odds::query
