@@ -85,6 +85,19 @@ TEST(HastyMemory, AddsThePlacesOfRunsBefore) {
   EXPECT_EQ(memory.add_to(contacts, 1, &up, slid, near), 1u) << "it has slid away";
 }
 
+// A place at a wall goes on holding off the wall when the floor is touched.
+TEST(HastyMemory, APlaceAcrossADirectionKeepsItsOwn) {
+  HastyMemory memory;
+  memory.begin({}, 1e-3, 0.1);
+  memory.remember(std::vector{contact_at(0.1)}, {}, 0.01);
+  std::vector<Contact> contacts(2);
+  ASSERT_EQ(memory.add_to(contacts, 0, &side, {}, 0.01), 1u);
+  EXPECT_EQ(contacts[0].normal, up);
+  const Vec3 tilted = (up + side).normalized();
+  ASSERT_EQ(memory.add_to(contacts, 0, &tilted, {}, 0.01), 1u);
+  EXPECT_EQ(contacts[0].normal, tilted);
+}
+
 // Hits that are found one beside the other must not drive out the one place at the other end.
 TEST(HastyMemory, KeepsThePlacesFarAway) {
   HastyMemory memory;
