@@ -23,9 +23,9 @@ struct Sample {
   std::size_t count = 0;
 
   [[nodiscard]] std::span<const Crossing> made() const noexcept { return std::span(crossings).first(count); }
-  /// Those of which something holds come first; how many.
+  /// Brings those to the front of which something holds; how many.
   template <class Holds>
-  std::size_t sort_by(Holds holds) noexcept {
+  std::size_t partition(Holds holds) noexcept {
     std::size_t first = 0;
     for (std::size_t i = 0; i < count; ++i) {
       if (!holds(crossings[i])) continue;
@@ -72,7 +72,7 @@ class Judge {
                     (crossing.segment.end - crossing.segment.begin).norm(), little_, expected_);
   }
   /// Whether bodies that part in a direction (unit, into A) still cross there, and would part sooner in another: it is
-  /// another place than the one that the direction is known from.
+  /// another place than the one that the direction is known from. Never where none is known (zero).
   [[nodiscard]] bool is_elsewhere(const Crossing& crossing, const Vec3& direction) const noexcept {
     const Vec3 by_b = turned(crossing.normal_b);
     const Vec3 by_a = turned(-crossing.normal_a);
@@ -144,11 +144,9 @@ bool guess_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, co
   const Judge anew(meshes, pair, true);
   const Judge as_before(meshes, pair, false);
   const Vec3 expected = expected_direction(pair, known_normal);
-  const std::size_t known = beside              ? 0
-                            : expected.isZero() ? sample.count
-                                                : sample.sort_by([&](const Crossing& crossing) noexcept {
-                                                    return !as_before.is_elsewhere(crossing, expected);
-                                                  });
+  const std::size_t known = beside ? 0 : sample.partition([&](const Crossing& crossing) noexcept {
+    return !as_before.is_elsewhere(crossing, expected);
+  });
   if (known == 0) known_normal = nullptr;
   // Those elsewhere have a say, too: where they are many, or all around as in a thread, there is no one direction.
   for (const Crossing& crossing : sample.made()) {

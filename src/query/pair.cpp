@@ -351,14 +351,14 @@ Result<Pair> Pair::make(std::shared_ptr<const Shape> a, std::shared_ptr<const Sh
         FlushContacts(pair.implementation_->a->data().flat_faces(), pair.implementation_->b->data().flat_faces());
   }
   pair.implementation_->late = std::move(late);
-  // Once through what a query ends with, so that the first real one does not wait for pages of code. What a pair learns
-  // of its endings must not depend on when it was made, so this has a clock of its own.
-  realtime::ManualClock clock(300);
+  // Once through what a query ends with, so that the first real one does not wait for pages of code. How long that took
+  // says nothing of other endings, and would differ from run to run.
   Request first;
-  first.budget = {.microseconds = 1.0, .work_units = 64, .clock = clock.clock()};
+  first.budget = {.microseconds = 1.0, .work_units = 64};
   first.max_contacts = 0;
   static_cast<void>(pair.run({}, first));
   pair.reset();
+  pair.implementation_->endings = {};
   if (options.calibration_poses > 0) {
     pair.implementation_->recalibration = learn_recalibration(pair, options.calibration_poses);
     pair.reset();
