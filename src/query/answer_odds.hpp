@@ -14,7 +14,10 @@ namespace odds::query {
 
 /// Numbers in, a probability out: a logistic regression, and monotone lines that bend what it says to what was seen.
 struct AnswerOdds {
-  static constexpr std::size_t count = 19;
+  static constexpr std::size_t straight = 19;
+  static constexpr std::size_t bent = 5;   ///< of what is known; see numbers_of
+  static constexpr std::size_t bends = 4;  ///< places at which the weight of each of them may change
+  static constexpr std::size_t count = straight + bends * bent;
   static constexpr std::size_t pieces = 20;  ///< of the line, all of one length
   std::array<float, count> weights{};
   using Line = std::array<float, pieces + 1>;  ///< shares of hits where the regression says 0, 1/20, ... 1; ascending
@@ -23,32 +26,43 @@ struct AnswerOdds {
 };
 
 /// Surfaces that face the same way, as of nested shells, follow a law of their own: what is known counts once times how
-/// much they do, and once times how little. That several numbers are high at once says more than each alone, but of
-/// shells nothing that would hold for others.
+/// much they do, and once times how little. That several numbers are high at once says more than each alone, and what
+/// a number says changes along its range: it counts again from each of four places on. Of shells, neither says anything
+/// that would hold for others.
 [[nodiscard]] constexpr std::array<float, AnswerOdds::count> numbers_of(const Remains& r) noexcept {
   const float f = r.facing;
   const float g = 1.0F - f;
   constexpr float to_order_of_ten = 0.1F;
   const float h = to_order_of_ten * g;
-  return {1.0F,
-          f,
-          g * r.spent,
-          f * r.spent,
-          g * r.tested,
-          f * r.tested,
-          g * r.open,
-          f * r.open,
-          g * r.logit,
-          f * r.logit,
-          g * r.rank,
-          f * r.rank,
-          g * r.thin,
-          f * r.thin,
-          g * r.small,
-          f * r.small,
-          h * r.rank * r.open,
-          h * r.spent * r.spent,
-          h * r.spent * r.small};
+  std::array<float, AnswerOdds::count> numbers = {1.0F,
+                                                  f,
+                                                  g * r.spent,
+                                                  f * r.spent,
+                                                  g * r.tested,
+                                                  f * r.tested,
+                                                  g * r.open,
+                                                  f * r.open,
+                                                  g * r.logit,
+                                                  f * r.logit,
+                                                  g * r.rank,
+                                                  f * r.rank,
+                                                  g * r.thin,
+                                                  f * r.thin,
+                                                  g * r.small,
+                                                  f * r.small,
+                                                  h * r.rank * r.open,
+                                                  h * r.spent * r.spent,
+                                                  h * r.spent * r.small};
+  // In parts of its usual spread, from its usual value: rounded from the searches of the fit. Not what was looked at in
+  // vain: of more, hits are less likely, and where there was no more in the fit, lines that bend say otherwise.
+  const std::array<float, AnswerOdds::bent> spread = {(r.spent - 7.0F) / 2.0F, (r.open - 3.0F) / 1.5F,
+                                                      (r.logit + 1.0F) / 2.0F, r.rank / 2.0F, (r.small + 3.0F) / 1.5F};
+  constexpr std::array<float, AnswerOdds::bends> places = {-1.2F, -0.4F, 0.4F, 1.2F};
+  std::size_t next = AnswerOdds::straight;
+  for (const float place : places) {
+    for (const float number : spread) numbers[next++] = g * std::max(number - place, 0.0F);
+  }
+  return numbers;
 }
 
 /// Whether such a number speaks of surfaces that face the same way. Those of one pair of shells tell little of another,
@@ -57,11 +71,15 @@ struct AnswerOdds {
   return number % 2 == 1 && number > 1 && number < 16;
 }
 
+/// Whether such a number is one that counts again: of many that say nearly the same, none may outweigh the others.
+[[nodiscard]] constexpr bool is_of_a_bend(std::size_t number) noexcept { return number >= AnswerOdds::straight; }
+
 /// What the regression says, in [0, 1].
 [[nodiscard]] inline float regression(const AnswerOdds& odds, const Remains& remains) noexcept {
   const auto numbers = numbers_of(remains);
-  float z = 0.0F;
-  for (std::size_t i = 0; i < AnswerOdds::count; ++i) z += odds.weights[i] * numbers[i];
+  std::array<float, 8> sums{};  // side by side, in one order on all machines
+  for (std::size_t i = 0; i < AnswerOdds::count; ++i) sums[i % 8] += odds.weights[i] * numbers[i];
+  const float z = ((sums[0] + sums[4]) + (sums[1] + sums[5])) + ((sums[2] + sums[6]) + (sums[3] + sums[7]));
   const float upper = 1.0F / (2.0F - math::probability_of_rate(z < 0.0F ? -z : z));  // 1 / (1 + exp(-|z|))
   return z < 0.0F ? 1.0F - upper : upper;
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <span>
 #include <string>
 #include <string_view>
@@ -90,7 +91,7 @@ query::AnswerOdds::Line line_seen(const std::vector<Kept>& all, const query::Ans
   }
   query::AnswerOdds::Line line{};
   if (cases.empty()) return line;
-  const std::vector<Level> levels = ascending_levels(std::move(cases), of_shells ? 5 : 40);  // shells are few
+  const std::vector<Level> levels = ascending_levels(std::move(cases), of_shells ? 20 : 40);  // shells are few
   constexpr std::size_t pieces = query::AnswerOdds::pieces;
   for (std::size_t k = 0; k <= pieces; ++k) {
     line[k] = static_cast<float>(level_at(levels, static_cast<double>(k) / static_cast<double>(pieces)));
@@ -108,11 +109,12 @@ query::AnswerOdds fit(const std::vector<Kept>& all) {
   }
   // Each meeting counts 1000: what is learnt of shells moves only where all of them agree.
   constexpr double usual = 1.0;
-  constexpr double of_shells = 1e5;
+  constexpr double of_a_bend = 10.0;
+  constexpr double of_shells = 1e4;
   constexpr double of_constants = 1e-9;
   std::array<double, query::AnswerOdds::count> ridge{};
   for (std::size_t i = 0; i < ridge.size(); ++i) {
-    ridge[i] = i < 2 ? of_constants : query::is_of_shells(i) ? of_shells : usual;
+    ridge[i] = i < 2 ? of_constants : query::is_of_shells(i) ? of_shells : query::is_of_a_bend(i) ? of_a_bend : usual;
   }
   const std::vector<double> weights = fit_logistic(cases, ridge);
   query::AnswerOdds odds;
@@ -136,6 +138,7 @@ void judge(const std::vector<Kept>& all, const query::AnswerOdds& odds, const ch
   std::vector<report::Forecast> apart;
   std::vector<report::Forecast> nested;
   std::map<std::string, std::vector<report::Forecast>> by_distance;
+  std::vector<double> alone;  // errors of each pair of meshes
   fmt::print(stderr, "{}\n{:>8}{:>9}{:>8}{:>8}\n", title, "answers", "P said", "hits", "error");
   const auto line = [](const std::vector<report::Forecast>& forecasts, const std::string& name) {
     if (forecasts.empty()) return;
@@ -151,9 +154,14 @@ void judge(const std::vector<Kept>& all, const query::AnswerOdds& odds, const ch
     }
     line(here, kept.meeting.a + " + " + kept.meeting.b);
     auto& pool = kept.meeting.procedure == Procedure::nested ? nested : apart;
+    if (&pool == &apart) alone.push_back(report::judge_forecasts(here).calibration_error);
     pool.insert(pool.end(), here.begin(), here.end());
   }
   line(apart, "all that are not nested");
+  fmt::print(
+      stderr, "{:>33.3f}  of these, mean error of one pair of meshes; Brier score {:.4f}\n",
+      std::accumulate(alone.begin(), alone.end(), 0.0) / static_cast<double>(std::max<std::size_t>(alone.size(), 1)),
+      apart.empty() ? 0.0 : report::judge_forecasts(apart).brier);
   for (const auto& [name, forecasts] : by_distance) line(forecasts, "of these at " + name);
   line(nested, "all nested");
 }

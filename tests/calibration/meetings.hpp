@@ -8,7 +8,8 @@
 
 namespace odds::calibration {
 
-/// Meshes of Debian's package openfoam-examples are among them, and left out if it is not installed.
+/// Meshes of Debian's packages openfoam-examples, cura, prusa-slicer and assimp-testmodels are among them, and left out
+/// where they are not; of the last three, `apt-get download` and `dpkg -x PACKAGE.deb /` bring the files alone.
 [[nodiscard]] std::vector<Meeting> training_meetings();
 /// None of the training meshes. `more`: names or files of further ones, each with its copy.
 [[nodiscard]] std::vector<Meeting> held_out_meetings(const std::vector<std::string>& more);

@@ -43,7 +43,11 @@ TEST(AnswerOdds, TheRegressionIsTheLogisticFunction) {
   const double apart =
       -0.25 * 6.0 + 2.0 * 3.0 + 1.5 * -2.0 + 0.5 * -4.0 + 0.1 * (0.2 * -2.0 * 3.0 + 0.3 * 6.0 * 6.0 - 0.4 * 6.0 * -5.0);
   const double of_shells = 0.75 + 0.125 * 6.0 + 1.0 * 4.0 - 1.0 * -2.0 + 0.25 * -4.0;
-  const double z = 0.5 + 0.75 * apart + 0.25 * of_shells;
+  odds.weights[AnswerOdds::straight] = 0.7F;                              // spent, from -1.2 of (spent - 7) / 2 on
+  odds.weights[AnswerOdds::straight + AnswerOdds::bent + 1] = -0.3F;      // open, from -0.4 of (open - 3) / 1.5 on
+  odds.weights[AnswerOdds::straight + 3 * AnswerOdds::bent + 3] = 10.0F;  // rank, from 1.2 of rank / 2 on: not yet
+  const double bends = 0.7 * (-0.5 + 1.2) - 0.3 * 0.4;
+  const double z = 0.5 + 0.75 * (apart + bends) + 0.25 * of_shells;
   EXPECT_NEAR(static_cast<double>(regression(odds, remains)), 1.0 / (1.0 + std::exp(-z)), 1e-6);
   odds.weights[0] = -400.0F;
   EXPECT_EQ(regression(odds, remains), 0.0F);
@@ -82,10 +86,39 @@ TEST(AnswerOdds, NumbersOfShellsAreThoseThatVanishWhereNothingFacesTheSameWay) {
   const auto apart = numbers_of(remains);
   remains.facing = 1.0F;
   const auto shells = numbers_of(remains);
-  for (std::size_t i = 2; i < AnswerOdds::count; ++i) {
+  for (std::size_t i = 2; i < AnswerOdds::straight; ++i) {
     EXPECT_EQ(apart[i] == 0.0F, is_of_shells(i)) << i;
     EXPECT_EQ(shells[i] != 0.0F, is_of_shells(i)) << i;
   }
+  for (std::size_t i = AnswerOdds::straight; i < AnswerOdds::count; ++i) {
+    EXPECT_TRUE(is_of_a_bend(i));
+    EXPECT_FALSE(is_of_shells(i));
+    EXPECT_EQ(shells[i], 0.0F) << i;
+  }
+}
+
+/// What a number says may change along its range, nowhere by a jump.
+TEST(AnswerOdds, ANumberCountsAgainFromFourPlacesOn) {
+  constexpr std::size_t spent = AnswerOdds::straight;  // the first of each five
+  Remains remains;
+  std::size_t counted = 0;
+  float last[AnswerOdds::bends] = {};
+  for (float x = 0.0F; x < 14.0F; x += 0.125F) {
+    remains.spent = x;
+    const auto numbers = numbers_of(remains);
+    std::size_t now = 0;
+    for (std::size_t place = 0; place < AnswerOdds::bends; ++place) {
+      const float number = numbers[spent + place * AnswerOdds::bent];
+      now += number > 0.0F ? 1U : 0U;
+      EXPECT_GE(number, last[place]);
+      EXPECT_LE(number, last[place] + 0.0625F + 1e-6F);
+      last[place] = number;
+    }
+    EXPECT_GE(now, counted);
+    EXPECT_LE(now, counted + 1);
+    counted = now;
+  }
+  EXPECT_EQ(counted, AnswerOdds::bends);
 }
 
 /// Of all else equal: a search in an order that does not look for hits has met none among so many.

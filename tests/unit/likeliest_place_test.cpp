@@ -63,6 +63,8 @@ TEST(LikeliestPlace, OfABrickOnTheEndOfASlabPushesStraight) {
                 pair.run({Mat3::Identity(), place},
                          {.method = Method::incremental, .budget = Budget::work(units), .max_contacts = 8});
             if (answer.basis == Basis::proved || answer.verdict == Verdict::clear || !answer.has_cell_pair) continue;
+            // A slab of 48 triangles has leaves of half its length. As long as these are open, no place is known.
+            if (slab->mesh().triangles().size() < 50 && units <= 100) continue;
             ++guessed;
             // Of 20 units, two pairs of nodes opened, what is left open is as coarse as a quarter of the slab.
             sideways += answer.cell_pair.normal.z() > (units == 20 ? -0.75 : -0.9) ? 1 : 0;
