@@ -1,5 +1,5 @@
-// Printed by odds_calibration --nodes --poses 6 (tests/calibration) of the meshes that it names as `former`; the last
-// row of node_weights with --poses 80. Do not edit by hand.
+// Printed by odds_calibration --nodes --poses 6 (tests/calibration) when it named 17 pairs of meshes, none
+// of them designed parts; the last row of node_weights with --poses 80. Do not edit by hand.
 #pragma once
 
 #include <array>
