@@ -55,7 +55,7 @@ TEST(LikeliestPlace, OfABrickOnTheEndOfASlabPushesStraight) {
     for (const int cells : {8, 11}) {
       const auto brick = made("box:x=0.2,y=0.1,z=0.057,cells=" + std::to_string(cells));
       for (const double apart : {1e-16, 1e-12}) {
-        for (const std::uint64_t units : {20, 60, 100, 200, 400, 700, 1000, 1500, 2000}) {
+        for (const std::uint64_t units : {20U, 60U, 100U, 200U, 400U, 700U, 1000U, 1500U, 2000U}) {
           for (const double aside : {0.0, 1.0}) {
             auto pair = std::move(Pair::make(slab, brick)).value();
             const Vec3 place(corner.x() - 0.1, aside * (corner.y() - 0.05), corner.z() + 0.0285 + apart);

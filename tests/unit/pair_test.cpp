@@ -224,7 +224,7 @@ TEST(Pair, ASearchCutShortHardlyPushesWhereNoDepthIsKnown) {
   request.max_contacts = 8;
   const math::Pose beside{Mat3::Identity(), {1e-4, 0.0, -0.0025}};  // of the nut, whose clearance is 0.03 mm
   int cut_short = 0;
-  for (const std::uint64_t units : {100, 300, 1000, 3000, 10000}) {
+  for (const std::uint64_t units : {100U, 300U, 1000U, 3000U, 10000U}) {
     request.budget = Budget::work(units);
     auto pair = Pair::make(bolt.value(), nut.value());
     ASSERT_TRUE(pair.ok());
@@ -274,7 +274,7 @@ TEST(Pair, AnIncrementalRunWithoutTimeIsNotSureOfAnything) {
   const auto shape = Shape::build(testing::wavy_sphere(24)).value();
   auto pair = std::move(Pair::make(shape, shape)).value();
   const math::Pose overlapping{Mat3::Identity(), {1.2, 0.3, 0.1}};
-  for (const std::uint64_t units : {1, 4, 8, 16}) {
+  for (const std::uint64_t units : {1U, 4U, 8U, 16U}) {
     pair.reset();
     const Answer& answer = pair.run(overlapping, {.method = Method::incremental, .budget = Budget::work(units)});
     if (answer.basis == Basis::proved) continue;
@@ -290,7 +290,7 @@ TEST(Pair, OnlyRequestsThatCountLikelyPairsAreSearchedInAnotherOrderThanExact) {
   const math::Pose overlapping{Mat3::Identity(), {1.2, 0.3, 0.1}};
   int undecided = 0;
   int in_another_order = 0;
-  for (const std::uint64_t units : {8, 16, 24, 32, 48, 64}) {
+  for (const std::uint64_t units : {8U, 16U, 24U, 32U, 48U, 64U}) {
     const Answer exact = pair.run(overlapping, {.method = Method::exact, .budget = Budget::work(units)});
     const Answer usual = pair.run(overlapping, {.budget = Budget::work(units)});
     EXPECT_EQ(usual.basis, exact.basis) << units << " units";
