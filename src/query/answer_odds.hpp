@@ -15,9 +15,9 @@ namespace odds::query {
 /// Numbers in, a probability out: a logistic regression, and monotone lines that bend what it says to what was seen.
 struct AnswerOdds {
   static constexpr std::size_t straight = 19;
-  static constexpr std::size_t bent = 5;   ///< of what is known; see numbers_of
-  static constexpr std::size_t bends = 4;  ///< places at which the weight of each of them may change
-  static constexpr std::size_t count = straight + bends * bent;
+  static constexpr std::size_t again = 5;   ///< numbers that count again from some places on; see numbers_of
+  static constexpr std::size_t places = 4;  ///< so many
+  static constexpr std::size_t count = straight + places * again;
   static constexpr std::size_t pieces = 20;  ///< of the line, all of one length
   std::array<float, count> weights{};
   using Line = std::array<float, pieces + 1>;  ///< shares of hits where the regression says 0, 1/20, ... 1; ascending
@@ -27,8 +27,8 @@ struct AnswerOdds {
 
 /// Surfaces that face the same way, as of nested shells, follow a law of their own: what is known counts once times how
 /// much they do, and once times how little. That several numbers are high at once says more than each alone, and what
-/// a number says changes along its range: it counts again from each of four places on. Of shells, neither says anything
-/// that would hold for others.
+/// a number says changes along its range: five of them count again from each of four places on. Of shells, neither says
+/// anything that would hold for others.
 [[nodiscard]] constexpr std::array<float, AnswerOdds::count> numbers_of(const Remains& r) noexcept {
   const float f = r.facing;
   const float g = 1.0F - f;
@@ -53,11 +53,12 @@ struct AnswerOdds {
                                                   h * r.rank * r.open,
                                                   h * r.spent * r.spent,
                                                   h * r.spent * r.small};
-  // In parts of its usual spread, from its usual value: rounded from the searches of the fit. Not what was looked at in
-  // vain: of more, hits are less likely, and where there was no more in the fit, lines that bend say otherwise.
-  const std::array<float, AnswerOdds::bent> spread = {(r.spent - 7.0F) / 2.0F, (r.open - 3.0F) / 1.5F,
-                                                      (r.logit + 1.0F) / 2.0F, r.rank / 2.0F, (r.small + 3.0F) / 1.5F};
-  constexpr std::array<float, AnswerOdds::bends> places = {-1.2F, -0.4F, 0.4F, 1.2F};
+  // In parts of its usual spread, from its usual value: rounded from the searches of the fit. Neither what was looked
+  // at in vain nor how thin surfaces are: beyond what the fit saw, hits would become likelier with the former; the
+  // latter gained nothing.
+  const std::array<float, AnswerOdds::again> spread = {(r.spent - 7.0F) / 2.0F, (r.open - 3.0F) / 1.5F,
+                                                       (r.logit + 1.0F) / 2.0F, r.rank / 2.0F, (r.small + 3.0F) / 1.5F};
+  constexpr std::array<float, AnswerOdds::places> places = {-1.2F, -0.4F, 0.4F, 1.2F};
   std::size_t next = AnswerOdds::straight;
   for (const float place : places) {
     for (const float number : spread) numbers[next++] = g * std::max(number - place, 0.0F);
@@ -71,8 +72,9 @@ struct AnswerOdds {
   return number % 2 == 1 && number > 1 && number < 16;
 }
 
-/// Whether such a number is one that counts again: of many that say nearly the same, none may outweigh the others.
-[[nodiscard]] constexpr bool is_of_a_bend(std::size_t number) noexcept { return number >= AnswerOdds::straight; }
+/// Whether such a number is one that counts again. Many of them say nearly the same, so their weights are held smaller
+/// than others when they are fitted.
+[[nodiscard]] constexpr bool counts_again(std::size_t number) noexcept { return number >= AnswerOdds::straight; }
 
 /// What the regression says, in [0, 1].
 [[nodiscard]] inline float regression(const AnswerOdds& odds, const Remains& remains) noexcept {

@@ -107,14 +107,17 @@ query::AnswerOdds fit(const std::vector<Kept>& all) {
       cases.push_back({{numbers.begin(), numbers.end()}, one.hit, weight_in(kept)});
     }
   }
-  // Each meeting counts 1000: what is learnt of shells moves only where all of them agree.
+  // Each meeting counts 1000: what is learnt of shells moves only where most of them agree.
   constexpr double usual = 1.0;
-  constexpr double of_a_bend = 10.0;
+  constexpr double counted_again = 10.0;
   constexpr double of_shells = 1e4;
   constexpr double of_constants = 1e-9;
   std::array<double, query::AnswerOdds::count> ridge{};
   for (std::size_t i = 0; i < ridge.size(); ++i) {
-    ridge[i] = i < 2 ? of_constants : query::is_of_shells(i) ? of_shells : query::is_of_a_bend(i) ? of_a_bend : usual;
+    ridge[i] = i < 2                    ? of_constants
+               : query::is_of_shells(i) ? of_shells
+               : query::counts_again(i) ? counted_again
+                                        : usual;
   }
   const std::vector<double> weights = fit_logistic(cases, ridge);
   query::AnswerOdds odds;

@@ -8,7 +8,7 @@ namespace {
 
 using report::Procedure;
 
-// Of Debian's openfoam-examples.
+/// Of Debian's openfoam-examples.
 std::string example(const std::string& file) {
   return "/usr/share/doc/openfoam-examples/examples/resources/geometry/" + file;
 }

@@ -43,9 +43,9 @@ TEST(AnswerOdds, TheRegressionIsTheLogisticFunction) {
   const double apart =
       -0.25 * 6.0 + 2.0 * 3.0 + 1.5 * -2.0 + 0.5 * -4.0 + 0.1 * (0.2 * -2.0 * 3.0 + 0.3 * 6.0 * 6.0 - 0.4 * 6.0 * -5.0);
   const double of_shells = 0.75 + 0.125 * 6.0 + 1.0 * 4.0 - 1.0 * -2.0 + 0.25 * -4.0;
-  odds.weights[AnswerOdds::straight] = 0.7F;                              // spent, from -1.2 of (spent - 7) / 2 on
-  odds.weights[AnswerOdds::straight + AnswerOdds::bent + 1] = -0.3F;      // open, from -0.4 of (open - 3) / 1.5 on
-  odds.weights[AnswerOdds::straight + 3 * AnswerOdds::bent + 3] = 10.0F;  // rank, from 1.2 of rank / 2 on: not yet
+  odds.weights[AnswerOdds::straight] = 0.7F;                               // spent, from -1.2 of (spent - 7) / 2 on
+  odds.weights[AnswerOdds::straight + AnswerOdds::again + 1] = -0.3F;      // open, from -0.4 of (open - 3) / 1.5 on
+  odds.weights[AnswerOdds::straight + 3 * AnswerOdds::again + 3] = 10.0F;  // rank, from 1.2 of rank / 2 on: not yet
   const double bends = 0.7 * (-0.5 + 1.2) - 0.3 * 0.4;
   const double z = 0.5 + 0.75 * (apart + bends) + 0.25 * of_shells;
   EXPECT_NEAR(static_cast<double>(regression(odds, remains)), 1.0 / (1.0 + std::exp(-z)), 1e-6);
@@ -91,40 +91,42 @@ TEST(AnswerOdds, NumbersOfShellsAreThoseThatVanishWhereNothingFacesTheSameWay) {
     EXPECT_EQ(shells[i] != 0.0F, is_of_shells(i)) << i;
   }
   for (std::size_t i = AnswerOdds::straight; i < AnswerOdds::count; ++i) {
-    EXPECT_TRUE(is_of_a_bend(i));
+    EXPECT_TRUE(counts_again(i));
     EXPECT_FALSE(is_of_shells(i));
     EXPECT_EQ(shells[i], 0.0F) << i;
   }
 }
 
 /// What a number says may change along its range, nowhere by a jump.
-TEST(AnswerOdds, ANumberCountsAgainFromFourPlacesOn) {
-  constexpr std::size_t spent = AnswerOdds::straight;  // the first of each five
-  Remains remains;
-  std::size_t counted = 0;
-  float last[AnswerOdds::bends] = {};
-  for (float x = 0.0F; x < 14.0F; x += 0.125F) {
-    remains.spent = x;
-    const auto numbers = numbers_of(remains);
-    std::size_t now = 0;
-    for (std::size_t place = 0; place < AnswerOdds::bends; ++place) {
-      const float number = numbers[spent + place * AnswerOdds::bent];
-      now += number > 0.0F ? 1U : 0U;
-      EXPECT_GE(number, last[place]);
-      EXPECT_LE(number, last[place] + 0.0625F + 1e-6F);
-      last[place] = number;
+TEST(AnswerOdds, FiveNumbersCountAgainFromFourPlacesOn) {
+  float Remains::*const numbers_again[AnswerOdds::again] = {&Remains::spent, &Remains::open, &Remains::logit,
+                                                            &Remains::rank, &Remains::small};
+  for (std::size_t n = 0; n < AnswerOdds::again; ++n) {
+    Remains remains;
+    std::size_t counted = 0;
+    float last[AnswerOdds::places] = {};
+    for (float x = -16.0F; x < 16.0F; x += 0.125F) {
+      remains.*numbers_again[n] = x;
+      const auto numbers = numbers_of(remains);
+      std::size_t now = 0;
+      for (std::size_t place = 0; place < AnswerOdds::places; ++place) {
+        const float number = numbers[AnswerOdds::straight + place * AnswerOdds::again + n];
+        now += number > 0.0F ? 1U : 0U;
+        EXPECT_GE(number, last[place]);
+        EXPECT_LE(number, last[place] + 0.125F / 1.5F + 1e-6F);  // the narrowest spread
+        last[place] = number;
+      }
+      EXPECT_GE(now, counted);
+      EXPECT_LE(now, counted + 1);
+      counted = now;
     }
-    EXPECT_GE(now, counted);
-    EXPECT_LE(now, counted + 1);
-    counted = now;
+    EXPECT_EQ(counted, AnswerOdds::places) << n;
   }
-  EXPECT_EQ(counted, AnswerOdds::bends);
 }
 
 /// Of all else equal: a search in an order that does not look for hits has met none among so many.
 TEST(AnswerOdds, SinkWithThePairsOfTrianglesThatWereLookedAtInVain) {
   for (const volume::Kind kind : testing::all_kinds()) {
-    if (kind == volume::Kind::wide) continue;  // its searches look at few
     for (const EstimatorKind estimator : {EstimatorKind::cells, EstimatorKind::kinematic}) {
       const AnswerOdds& odds = answer_odds[odds_index(kind, estimator, Method::exact)];
       Remains few;

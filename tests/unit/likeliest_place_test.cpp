@@ -48,6 +48,8 @@ TEST(LikeliestPlace, OfABrickOnABrickPushesStraight) {
 TEST(LikeliestPlace, OfABrickOnTheEndOfASlabPushesStraight) {
   int guessed = 0;
   int sideways = 0;
+  int guessed_coarsely = 0;
+  int sideways_coarsely = 0;
   for (const char* const name :
        {"box:x=4,y=1,z=0.1,cells=2", "box:x=1,y=0.4,z=0.05,cells=8", "box:x=1,y=0.4,z=0.05,cells=32"}) {
     const auto slab = made(name);
@@ -63,8 +65,13 @@ TEST(LikeliestPlace, OfABrickOnTheEndOfASlabPushesStraight) {
                 pair.run({Mat3::Identity(), place},
                          {.method = Method::incremental, .budget = Budget::work(units), .max_contacts = 8});
             if (answer.basis == Basis::proved || answer.verdict == Verdict::clear || !answer.has_cell_pair) continue;
-            // A slab of 48 triangles has leaves of half its length. As long as these are open, no place is known.
-            if (slab->mesh().triangles().size() < 50 && units <= 100) continue;
+            // A slab of 48 triangles has leaves of half its length. While these are open, half of the guesses may push
+            // sideways: a limit, not a wish.
+            if (slab->mesh().triangles().size() < 50) {
+              ++guessed_coarsely;
+              sideways_coarsely += answer.cell_pair.normal.z() > -0.9 ? 1 : 0;
+              continue;
+            }
             ++guessed;
             // Of 20 units, two pairs of nodes opened, what is left open is as coarse as a quarter of the slab.
             sideways += answer.cell_pair.normal.z() > (units == 20 ? -0.75 : -0.9) ? 1 : 0;
@@ -75,6 +82,7 @@ TEST(LikeliestPlace, OfABrickOnTheEndOfASlabPushesStraight) {
   }
   EXPECT_GE(guessed, 10);
   EXPECT_EQ(sideways, 0) << "of " << guessed;
+  EXPECT_LE(2 * sideways_coarsely, guessed_coarsely);
 }
 
 /// What a node says of a cap of a ball: all points within an angle about an axis.
