@@ -170,13 +170,37 @@ TEST_F(UndecidedPair, GivesTheMostProbableCellPairAsOneContact) {
 }
 
 TEST_F(UndecidedPair, GivesNothingIfTheProbabilityIsTooLow) {
-  collide(a, b);
+  dGeomOddsMeshSetUndecidedPolicy(b, ODDS_UNDECIDED_HIT, 0.999);  // one that touches would go on doing so
+  EXPECT_TRUE(collide(a, b).empty());
   const double probability = answer_of(a, b).probability;
   ASSERT_LT(probability, 1.0);
   dGeomOddsMeshSetUndecidedPolicy(b, ODDS_UNDECIDED_HIT, probability);  // "exceeds p", so not at p itself
   EXPECT_TRUE(collide(a, b).empty());
   EXPECT_EQ(answer_of(a, b).from_cell_pair, 0);
   EXPECT_EQ(answer_of(a, b).basis, ODDS_BUDGET);
+}
+
+/// The probability of a short search swings about the threshold; a contact must not come and go with it.
+TEST_F(UndecidedPair, GoesOnTouchingUntilTheOddsAreWellBelow) {
+  collide(a, b);
+  const double probability = answer_of(a, b).probability;
+  const double odds = probability / (1.0 - probability);
+  const auto touches_at = [&](double asked) {
+    for (const dGeomID geom : {a, b}) {
+      EXPECT_EQ(dGeomOddsMeshSetUndecidedPolicy(geom, ODDS_UNDECIDED_HIT, asked / (1.0 + asked)), 1);
+    }
+    const bool touches = !collide(a, b).empty();
+    EXPECT_EQ(answer_of(a, b).basis, ODDS_BUDGET);
+    EXPECT_EQ(answer_of(a, b).probability, probability);
+    return touches;
+  };
+  EXPECT_FALSE(touches_at(odds / 0.55));
+  EXPECT_FALSE(touches_at(odds / 0.65)) << "has not touched before";
+  EXPECT_TRUE(touches_at(0.9 * odds));
+  EXPECT_TRUE(touches_at(odds / 0.65)) << "0.6 of it are enough now";
+  EXPECT_TRUE(touches_at(odds / 0.65)) << "and go on being enough";
+  EXPECT_FALSE(touches_at(odds / 0.55));
+  EXPECT_FALSE(touches_at(odds / 0.65));
 }
 
 TEST_F(UndecidedPair, HoldsOnToWhatMetAMomentAgo) {
