@@ -185,15 +185,16 @@ std::vector<Meeting> held_out_meetings(const std::vector<std::string>& more) {
       {"made:nested_shells:frequency=30,seed=5", "made:torus:around=120,across=60,ring=0.03,tube=0.01"},
       {"made:car_body:triangles=20000,seed=3", "made:terrain:cells=150,side=6,height=0.5,seed=8"},
       {"made:bumpy_sphere:frequency=80,bumps=200,width=0.1,seed=2", "made:gear:teeth=25,flank=6,module=0.004"},
-      {example("motorBike.obj.gz"), example("motorBike.obj.gz")},
-      {example("building_wtc2.obj.gz"), example("building_wtc2.obj.gz")},
+      with_its_copy(example("motorBike.obj.gz")),
+      with_its_copy(example("building_wtc2.obj.gz")),
       {example("bullet.stl.gz"), example("wigley.stl.gz")},
       {waved, waved + ",scale=0.99", Procedure::nested},
       {"made:uv_sphere:around=200,down=100", "made:uv_sphere:around=180,down=90,radius=0.0494", Procedure::nested},
       {"made:torus:ring=0.1,tube=0.05,around=200,across=100", "made:torus:ring=0.1,tube=0.0485,around=190,across=90",
        Procedure::nested}};
-  for (const std::string& mesh : more) meetings.push_back({mesh, mesh});
-  return present(std::move(meetings));
+  meetings = present(std::move(meetings));
+  for (const std::string& mesh : more) meetings.push_back(with_its_copy(mesh));  // if absent, that is said
+  return meetings;
 }
 
 }  // namespace odds::calibration
