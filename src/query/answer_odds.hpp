@@ -14,10 +14,10 @@ namespace odds::query {
 
 /// Numbers in, a probability out: a logistic regression, and monotone lines that bend what it says to what was seen.
 struct AnswerOdds {
-  static constexpr std::size_t straight = 19;
-  static constexpr std::size_t again = 5;   ///< numbers that count again from some places on; see numbers_of
-  static constexpr std::size_t places = 4;  ///< so many
-  static constexpr std::size_t count = straight + places * again;
+  static constexpr std::size_t straight = 19;  ///< numbers that count once
+  static constexpr std::size_t again = 5;      ///< numbers that count again from each of some places on: numbers_of
+  static constexpr std::array<float, 4> places = {-1.2F, -0.4F, 0.4F, 1.2F};  ///< in their usual spreads
+  static constexpr std::size_t count = straight + places.size() * again;
   static constexpr std::size_t pieces = 20;  ///< of the line, all of one length
   std::array<float, count> weights{};
   using Line = std::array<float, pieces + 1>;  ///< shares of hits where the regression says 0, 1/20, ... 1; ascending
@@ -58,9 +58,8 @@ struct AnswerOdds {
   // latter gained nothing.
   const std::array<float, AnswerOdds::again> spread = {(r.spent - 7.0F) / 2.0F, (r.open - 3.0F) / 1.5F,
                                                        (r.logit + 1.0F) / 2.0F, r.rank / 2.0F, (r.small + 3.0F) / 1.5F};
-  constexpr std::array<float, AnswerOdds::places> places = {-1.2F, -0.4F, 0.4F, 1.2F};
   std::size_t next = AnswerOdds::straight;
-  for (const float place : places) {
+  for (const float place : AnswerOdds::places) {
     for (const float number : spread) numbers[next++] = g * std::max(number - place, 0.0F);
   }
   return numbers;

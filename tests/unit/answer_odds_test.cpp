@@ -46,8 +46,8 @@ TEST(AnswerOdds, TheRegressionIsTheLogisticFunction) {
   odds.weights[AnswerOdds::straight] = 0.7F;                               // spent, from -1.2 of (spent - 7) / 2 on
   odds.weights[AnswerOdds::straight + AnswerOdds::again + 1] = -0.3F;      // open, from -0.4 of (open - 3) / 1.5 on
   odds.weights[AnswerOdds::straight + 3 * AnswerOdds::again + 3] = 10.0F;  // rank, from 1.2 of rank / 2 on: not yet
-  const double bends = 0.7 * (-0.5 + 1.2) - 0.3 * 0.4;
-  const double z = 0.5 + 0.75 * (apart + bends) + 0.25 * of_shells;
+  const double again = 0.7 * (-0.5 + 1.2) - 0.3 * 0.4;
+  const double z = 0.5 + 0.75 * (apart + again) + 0.25 * of_shells;
   EXPECT_NEAR(static_cast<double>(regression(odds, remains)), 1.0 / (1.0 + std::exp(-z)), 1e-6);
   odds.weights[0] = -400.0F;
   EXPECT_EQ(regression(odds, remains), 0.0F);
@@ -104,12 +104,12 @@ TEST(AnswerOdds, FiveNumbersCountAgainFromFourPlacesOn) {
   for (std::size_t n = 0; n < AnswerOdds::again; ++n) {
     Remains remains;
     std::size_t counted = 0;
-    float last[AnswerOdds::places] = {};
+    float last[AnswerOdds::places.size()] = {};
     for (float x = -16.0F; x < 16.0F; x += 0.125F) {
       remains.*numbers_again[n] = x;
       const auto numbers = numbers_of(remains);
       std::size_t now = 0;
-      for (std::size_t place = 0; place < AnswerOdds::places; ++place) {
+      for (std::size_t place = 0; place < AnswerOdds::places.size(); ++place) {
         const float number = numbers[AnswerOdds::straight + place * AnswerOdds::again + n];
         now += number > 0.0F ? 1U : 0U;
         EXPECT_GE(number, last[place]);
@@ -120,7 +120,7 @@ TEST(AnswerOdds, FiveNumbersCountAgainFromFourPlacesOn) {
       EXPECT_LE(now, counted + 1);
       counted = now;
     }
-    EXPECT_EQ(counted, AnswerOdds::places) << n;
+    EXPECT_EQ(counted, AnswerOdds::places.size()) << n;
   }
 }
 
