@@ -41,9 +41,7 @@ Sample sample_of(const PosedMeshes& meshes, std::span<const TrianglePair> hits, 
                  MayGoOn may_go_on) noexcept {
   Sample sample;
   const std::size_t most = std::min(hits.size(), sample.hits.size());
-  // First those that are far apart in the list: if time is short, they are all there is.
-  constexpr std::array<std::size_t, most_contacts> eighths{0, 4, 2, 6, 1, 5, 3, 7};
-  for (const std::size_t eighth : eighths) {
+  for (const std::size_t eighth : spread_eighths) {
     if (eighth >= most) continue;
     if (sample.count > 0 && !may_go_on()) break;
     sample.hits[sample.count] = hits[(eighth * hits.size() / most + first) % hits.size()];

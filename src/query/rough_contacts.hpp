@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <span>
 #include <utility>
 
@@ -130,6 +131,10 @@ struct Crossing {
   return (upper - lower).norm();
 }
 
+/// In which order to take an eighth of a list each (bits reversed: a van der Corput sequence). First those that are far
+/// apart: if time is short, they are all there is.
+inline constexpr std::array<std::size_t, most_contacts> spread_eighths{0, 4, 2, 6, 1, 5, 3, 7};
+
 /// As many contacts as there is room for, spread over the hits, all with one direction and one depth: the least overlap
 /// of some pairs of triangles along it, at most the extent of what was cut. In A's mesh frame. About 0.4 us for each
 /// pair; `may_go_on()` is asked before every one after the first. `known`: the direction, or null. Returns how many.
@@ -140,10 +145,8 @@ std::size_t rough_contacts(const PosedMeshes& meshes, std::span<const TrianglePa
   std::array<Crossing, most_contacts> crossings;  // also for one contact: a direction is made of several
   std::array<TrianglePair, most_contacts> chosen;
   const std::size_t most = std::min(hits.size(), crossings.size());
-  // First those that are far apart in the list: if time is short, they are all there is.
-  constexpr std::array<std::size_t, most_contacts> eighths{0, 4, 2, 6, 1, 5, 3, 7};
   std::size_t count = 0;
-  for (const std::size_t eighth : eighths) {
+  for (const std::size_t eighth : spread_eighths) {
     if (eighth >= most) continue;
     if (count > 0 && !may_go_on()) break;
     chosen[count] = hits[eighth * hits.size() / most];
