@@ -74,10 +74,12 @@ class Spending {
   [[nodiscard]] bool may_go_on_after(std::uint32_t units) noexcept { return unpolled_units_ < units || may_go_on(); }
   /// Whether the last look at the clock found the search's end near: time to ask the caches for what the answer needs.
   [[nodiscard]] bool nears_end() const noexcept { return nears_end_; }
-  /// A search that changes its manner after a start has up to these shares (< 1) of time and work for it.
+  /// A search that changes its manner after a start has up to these shares, in [0, 1], of time and work for it.
   void begin_start(double time_share, double work_share) noexcept {
-    const auto of_budget = static_cast<std::uint64_t>(work_share * static_cast<double>(units_left_));
-    start_units_end_ = units_left_ - std::min(of_budget, units_left_);
+    // No limit becomes 2^64 as a double, which does not fit back into 64 bits.
+    const auto all = static_cast<double>(units_left_);
+    const double of_budget = work_share * all;
+    start_units_end_ = of_budget < all ? units_left_ - static_cast<std::uint64_t>(of_budget) : 0;
     if (timed_) {
       start_deadline_ns_ = start_ns_ + static_cast<std::int64_t>(time_share * static_cast<double>(allowance_ns()));
     }

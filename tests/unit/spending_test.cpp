@@ -55,6 +55,26 @@ TEST(Spending, AStartEndsNoLaterThanItsSearch) {
   EXPECT_TRUE(longer.spending.may_go_on());
 }
 
+TEST(Spending, AStartHasItsShareOfAnyWork) {
+  const auto units_of_start = [](std::uint64_t work_units, double share) {
+    Spending spending(Budget::work(work_units));
+    spending.begin_start(share, share);
+    const std::uint64_t before = spending.units_left();
+    constexpr std::uint32_t step = 1U << 31U;
+    for (int steps = 0; steps < 64 && spending.start_may_go_on_after(0); ++steps) spending.spend_node_pairs(step);
+    return before - spending.units_left();
+  };
+  // As a double that is 2^64, which does not fit back into 64 bits: all of it must not become nothing.
+  const std::uint64_t no_limit = Budget::unlimited().work_units;
+  constexpr std::uint64_t all_steps = 64ULL << 31U;
+  for (const double share : {1.0, 0.999999, 0.5}) EXPECT_EQ(units_of_start(no_limit, share), all_steps) << share;
+  EXPECT_EQ(units_of_start(no_limit, 0.0), 0U);
+  constexpr std::uint64_t four_steps = 4ULL << 31U;
+  EXPECT_EQ(units_of_start(four_steps, 1.0), four_steps);
+  EXPECT_EQ(units_of_start(four_steps, 0.5), four_steps / 2);
+  EXPECT_EQ(units_of_start(four_steps, 0.0), 0U);
+}
+
 TEST(Spending, AReserveLearnsHowLongContactsTakeToEnd) {
   EndingReserve reserve({2000, 600, 6000, 100, 400, 1});
   for (int i = 0; i < 200; ++i) {
