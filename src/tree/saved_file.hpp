@@ -73,7 +73,7 @@ class SavedFile {
   [[nodiscard]] bool has(Section id) const noexcept { return find(id) != nullptr; }
 
   /// The records of a section: in the file itself, or a copy where the byte order is not ours. Floating-point numbers
-  /// are finite. A section that is not there has no records.
+  /// are finite and no more than `most_in` their record. A section that is not there has no records.
   template <class T>
   [[nodiscard]] Result<mesh::SharedArray<T>> array(Section id) const;
 
@@ -122,9 +122,11 @@ Result<mesh::SharedArray<T>> SavedFile::array(Section id) const {
     // The writer put such records here, at an address that suits them.
     records = {{reinterpret_cast<const T*>(bytes.data()), entry->count}, file_.keeper};
   }
-  const auto is_bad = [values = records.span()](std::size_t i) { return !is_finite(values[i]); };
+  const auto is_bad = [values = records.span()](std::size_t i) { return !is_within(most_in<T>, values[i]); };
   const std::size_t bad = first_bad(records.size(), 8192, is_bad);
-  if (bad != records.size()) return damaged(id, bad, "a number is not finite");
+  if (bad != records.size()) {
+    return damaged(id, bad, is_finite(records[bad]) ? "a number is out of range" : "a number is not finite");
+  }
   return records;
 }
 

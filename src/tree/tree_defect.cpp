@@ -13,9 +13,6 @@ using Found = std::optional<Defect>;
 constexpr std::uint32_t most_leaf_triangles = 16;
 constexpr std::size_t scan_part = 16384;  // records that a processor looks at before it asks for more
 
-/// The greatest magnitude of a coordinate or extent; four times that of a mesh leaves room for all that is derived.
-constexpr auto farthest = static_cast<float>(4.0 * mesh::TriangleMesh::largest_coordinate);
-
 /// What estimates rely on, so that none of them is a NaN.
 bool is_sound(const NodeStatistics& statistics) noexcept {
   constexpr float unit = 1.001F;  // components of averages of unit normals, rounded

@@ -22,7 +22,8 @@ struct Defect {
   std::string what;
 };
 
-/// Precondition: all floating-point numbers are finite.
+/// Precondition: all floating-point numbers are as `SavedFile::array` gives them: finite, and corners of leaves in
+/// range.
 [[nodiscard]] std::optional<Defect> find_defect(const WideTree::Parts& parts);
 
 /// The tree's shape below the bounding volumes.

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include "support/all_kinds.hpp"
 #include "support/saved_bytes.hpp"
@@ -181,6 +182,34 @@ TEST(DamagedShapes, NameTheByteOfTheVertexOrTriangleThatIsWrong) {
   const std::string far =
       with(free, Section::facts, sizeof(tree::SavedFacts), 0, offsetof(tree::SavedFacts, upper), 1e17);
   EXPECT_EQ(place(far), at(testing::offset_of(free, Section::facts)));
+}
+
+TEST(DamagedShapes, NameTheByteOfTheLeafWithACornerThatIsNone) {
+  const std::string whole = small_file(volume::Kind::wide);
+  const auto with_corner = [&](std::size_t leaf, std::size_t corner, std::size_t axis, std::size_t lane, float value) {
+    const std::size_t number = (corner * 3 + axis) * tree::wide_lanes + lane;
+    return with(whole, Section::wide_leaves, sizeof(tree::WideLeaf), leaf,
+                offsetof(tree::WideLeaf, corner) + number * sizeof value, value);
+  };
+  const auto expect_error = [&](float value, const std::string& what) {
+    for (std::size_t leaf = 0; leaf < 2; ++leaf) {
+      for (std::size_t number = 0; number < 9; ++number) {
+        for (const std::size_t lane : {0U, 7U}) {
+          const Error error = error_of(with_corner(leaf, number / 3, number % 3, lane, value));
+          EXPECT_EQ(error.file, "saved");
+          const std::size_t byte = testing::offset_of(whole, Section::wide_leaves) + leaf * sizeof(tree::WideLeaf);
+          EXPECT_EQ(error.place, "byte " + std::to_string(byte)) << leaf << ' ' << number << ' ' << lane;
+          EXPECT_EQ(error.what, what) << leaf << ' ' << number << ' ' << lane;
+          EXPECT_FALSE(error.remedy.empty());
+        }
+      }
+    }
+  };
+  expect_error(std::nanf(""), "a number is not finite");
+  expect_error(-std::numeric_limits<float>::infinity(), "a number is not finite");
+  expect_error(1e16F, "a number is out of range");
+  expect_error(-std::numeric_limits<float>::max(), "a number is out of range");
+  EXPECT_TRUE(load(with_corner(0, 0, 0, 0, 3.9e15F)).ok()) << "wrong, but no harm";
 }
 
 TEST(DamagedShapes, OfAnotherLayoutKeepTheirRemedy) {
