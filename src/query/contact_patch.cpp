@@ -11,6 +11,7 @@
 #include "query/patch_eight.hpp"
 #include "query/patch_scratch.hpp"
 #include "query/spread_step.hpp"
+#include "query/wide/searches.hpp"
 
 namespace odds::query {
 namespace {
@@ -49,7 +50,6 @@ void PatchBuilder::Scratch::place_pairs(const PatchInput& input, Watch& watch) n
   const std::size_t count = std::min(input.hits.size(), pairs.size());
   const std::size_t taken = std::min<std::size_t>(count, input.most_pairs);
   const std::size_t step = count > 0 ? spread_step(count) % count : 0;
-  const patch::Kernels& kernels = patch::kernels();
   std::array<TrianglePair, patch::eight> some;
   std::size_t next = 0;
   pair_count = 0;
@@ -60,7 +60,7 @@ void PatchBuilder::Scratch::place_pairs(const PatchInput& input, Watch& watch) n
       some[k] = input.hits[next];
       next += next + step < count ? step : step - count;
     }
-    pair_count += kernels.place(input, {some.data(), asked}, pairs.data() + pair_count);
+    pair_count += kernels->place(input, {some.data(), asked}, pairs.data() + pair_count);
   }
 }
 
@@ -85,12 +85,11 @@ void PatchBuilder::Scratch::cut_pairs(const PatchInput& input, std::size_t count
                                       Watch& watch) noexcept {
   piece_count = 0;
   const bool skip_silent = input.solid_a && input.solid_b && !silent_too;
-  const patch::Kernels& kernels = patch::kernels();
   std::array<patch::RimPiece, patch::most_pieces_of_a_pair> found;
   patch::CutEight cut;
   for (std::size_t i = 0; i < count && !watch.late_before_next(i); i += patch::eight) {
     const std::size_t lanes = std::min(patch::eight, count - i);
-    kernels.cut(&pairs[i], lanes, cut);
+    kernels->cut(&pairs[i], lanes, cut);
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       if (piece_count + found.size() > pieces.size()) return;
       const auto pair = static_cast<std::uint32_t>(i + lane);
@@ -171,7 +170,7 @@ void PatchBuilder::Scratch::straighten(const PatchInput& input, std::span<const 
     const bool is_whole = sums[i].closed() && sums[i].length > 0.0;
     const double most =
         is_whole ? std::min(tolerances::flush_lump * limit, tolerances::by_far_shorter * own.depth) : limit;
-    const patch::PatchView view{input, rim, sums[i], indices, thorough.sample};
+    const patch::PatchView view{input, *kernels, rim, sums[i], indices, thorough.sample};
     if (!patch::is_of_direction(view, direction, most, watch)) continue;
     const Patch straight = patch_along(direction, input, sums[i], indices, thorough, watch);
     if (watch.late()) return;  // it was not measured to its end
@@ -183,7 +182,7 @@ void PatchBuilder::Scratch::straighten(const PatchInput& input, std::span<const 
 void PatchBuilder::Scratch::add_witnesses(std::span<const patch::PlacedPair* const> asked,
                                           const patch::Frame& frame) noexcept {
   patch::CornersOfEight corners;
-  patch::kernels().corners(asked, frame, Vec3::Zero(), 0.0, corners);
+  kernels->corners(asked, frame, Vec3::Zero(), 0.0, corners);
   const std::array<std::uint16_t, patch::eight> kinds = corners.kinds_of_lanes();
   for (std::size_t lane = 0; lane < asked.size(); ++lane) {
     for (unsigned left = kinds[lane]; left != 0; left &= left - 1U) {
@@ -264,7 +263,7 @@ std::size_t PatchBuilder::Scratch::probe(const PatchInput& input, const Vec3& ce
 
 Patch PatchBuilder::Scratch::make_patch(const PatchInput& input, const patch::RimSums& sums, Indices indices,
                                         const Effort& effort, Watch& watch) noexcept {
-  const patch::PatchView view{input, rim, sums, indices, effort.sample};
+  const patch::PatchView view{input, *kernels, rim, sums, indices, effort.sample};
   return shorter_way_out(patch_along(patch::patch_normal(view, watch), input, sums, indices, effort, watch), view,
                          effort, watch);
 }
@@ -291,13 +290,13 @@ Patch PatchBuilder::Scratch::patch_along(const Vec3& normal, const PatchInput& i
   if (watch.late()) return made;  // here and below: what is not finished then is not used
   const patch::Frame frame(made.normal);
   const Vec3 centre = span_centre(rim, indices, sums.centre(rim.origin), made.normal, watch);
-  find_witnesses(effort.ends_only ? telling.ends_of(rim.pieces, indices, frame, fan, centre, watch)
-                                  : telling.of(rim.pieces, rim.pairs, indices, frame, fan, centre, watch),
+  find_witnesses(effort.ends_only ? telling.ends_of(*kernels, rim, indices, frame, fan, centre, watch)
+                                  : telling.of(*kernels, rim, indices, frame, fan, centre, watch),
                  frame, watch);
   if (watch.late()) return made;
   const double radius = 0.5 * sums.diagonal();
   const Witness deepest = patch::deepest_of({witnesses.data(), witness_count}, frame, centre, radius);
-  patch::Extremes extremes(frame, fan, centre, deepest);
+  patch::Extremes extremes(*kernels, frame, fan, centre, deepest);
   const std::span<const Witness> found{witnesses.data(), witness_count};
   for (std::size_t i = 0; i < found.size() && !watch.late_before_next(i); i += patch::Extremes::at_once) {
     extremes.add(found.subspan(i, std::min(patch::Extremes::at_once, found.size() - i)));
@@ -411,6 +410,7 @@ PatchBuilder& PatchBuilder::operator=(PatchBuilder&&) noexcept = default;
 std::span<const Contact> PatchBuilder::build(const PatchInput& input, const Deadline& deadline,
                                              const Deadline& last) noexcept {
   Scratch& s = *scratch_;
+  s.kernels = input.kernels != nullptr ? input.kernels : &wide::searches_for(InstructionSet::best)->patch;
   Watch watch(deadline);
   s.place_pairs(input, watch);
   s.piece_count = 0;

@@ -258,7 +258,7 @@ patch::Chosen FlushContacts::choose(const Group& group, std::size_t most) noexce
   }
   const double spacing = patch::spacing(first.depth, 0.5 * (upper - lower).norm());
   if (group.count == 1) return patch::choose(std::span(first.points).first(first.point_count), frame, most, spacing);
-  patch::Extremes extremes(frame, fan, 0.5 * (lower + upper), deepest);
+  patch::Extremes extremes(*kernels_, frame, fan, 0.5 * (lower + upper), deepest);
   for (const std::size_t i : group.entries())
     extremes.add(std::span(entries_[i].points).first(entries_[i].point_count));
   return patch::choose(extremes.all(), frame, most, spacing);

@@ -30,8 +30,9 @@ class FlushContacts {
 
   FlushContacts() = default;
   /// The faces must outlive it.
-  FlushContacts(std::span<const mesh::FlatFace> faces_a, std::span<const mesh::FlatFace> faces_b) noexcept
-      : faces_a_(faces_a), faces_b_(faces_b) {}
+  FlushContacts(std::span<const mesh::FlatFace> faces_a, std::span<const mesh::FlatFace> faces_b,
+                const patch::Kernels& kernels) noexcept
+      : faces_a_(faces_a), faces_b_(faces_b), kernels_(&kernels) {}
 
   void forget() noexcept {
     count_ = 0;
@@ -235,6 +236,7 @@ class FlushContacts {
 
   std::span<const mesh::FlatFace> faces_a_;
   std::span<const mesh::FlatFace> faces_b_;
+  const patch::Kernels* kernels_ = nullptr;  ///< null: there are no faces
   std::array<Entry, most_entries> entries_;
   std::size_t count_ = 0;
   std::uint32_t crowded_ = 0;        ///< runs in which there are more pairs than entries

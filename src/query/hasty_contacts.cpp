@@ -24,7 +24,7 @@ void PatchBuilder::Scratch::make_hasty_contacts(const PatchInput& input, const D
   if (count == 0) return;
   sums.loose_ends = 1;
   const Indices indices{by_patch.data(), count};
-  const patch::PatchView view{blind, rim, sums, indices, patch::hasty.sample};
+  const patch::PatchView view{blind, *kernels, rim, sums, indices, patch::hasty.sample};
   const Vec3 normal = input.known_normal != nullptr ? *input.known_normal : patch::patch_normal(view, watch);
   patch::Patch made = patch_along(normal, blind, sums, indices, patch::hasty, watch);
   if (input.known_normal == nullptr) made = shorter_way_out(made, view, patch::hasty, watch);

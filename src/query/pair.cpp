@@ -347,8 +347,8 @@ Result<Pair> Pair::make(std::shared_ptr<const Shape> a, std::shared_ptr<const Sh
   auto late = may_be_late ? std::make_unique<LateContacts>(a, b, options) : nullptr;
   Pair pair(std::make_unique<Implementation>(std::move(a), std::move(b), options));
   if (late) {
-    pair.implementation_->flush =
-        FlushContacts(pair.implementation_->a->data().flat_faces(), pair.implementation_->b->data().flat_faces());
+    Implementation& made = *pair.implementation_;
+    made.flush = FlushContacts(made.a->data().flat_faces(), made.b->data().flat_faces(), made.wide->patch);
   }
   pair.implementation_->late = std::move(late);
   // Once through what a query ends with, so that the first real one does not wait for pages of code. How long that took

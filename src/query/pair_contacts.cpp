@@ -203,6 +203,7 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   const bool found_all = searched.method == Method::incremental && pair.a->volume() == volume::Kind::wide;
   if (found_all) input.most_pairs = hits_in(spending.left_us(), found_hits_per_microsecond);
   input.max_contacts = request.max_contacts;
+  input.kernels = &pair.wide->patch;
   if (request.max_contacts > 1) {  // a single contact is asked for its speed
     input.probe_a = {&probe_depth, pair.a.get()};
     input.probe_b = {&probe_depth, pair.b.get()};

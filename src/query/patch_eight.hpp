@@ -125,7 +125,4 @@ struct Kernels {
                    FanEnds& ends) noexcept;
 };
 
-/// Those for this processor.
-[[nodiscard]] const Kernels& kernels() noexcept;
-
 }  // namespace odds::query::patch

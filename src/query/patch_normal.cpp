@@ -97,7 +97,7 @@ class FlatFaces {
   void weigh(const Vec3& flat, double& share, Vec3& sum, Watch& watch) noexcept {
     FaceSums sums;
     for_eights(watch, [&](const EightPieces& eight) noexcept {
-      for (unsigned left = kernels().flat_faces(eight, facing_, flat, sums); left != 0; left &= left - 1U) {
+      for (unsigned left = view_.kernels.flat_faces(eight, facing_, flat, sums); left != 0; left &= left - 1U) {
         const auto lane = static_cast<std::size_t>(std::countr_zero(left));
         const Vec3 face_b = facing_.of_b(*eight.pairs[lane]);
         const Vec3 face_a = facing_.of_a(*eight.pairs[lane]);
@@ -131,7 +131,7 @@ class FlatFaces {
       for (std::size_t lane = 0; lane < eight.count; ++lane) add(eight, lane, true, true);
       return;
     }
-    const unsigned others = kernels().same_faces(eight, facing_, faces_.ones[0].first, sums_);
+    const unsigned others = view_.kernels.same_faces(eight, facing_, faces_.ones[0].first, sums_);
     for (unsigned left = (others | others >> 8U) & 0xFFU; left != 0; left &= left - 1U) {
       const auto lane = static_cast<unsigned>(std::countr_zero(left));
       add(eight, lane, (others >> lane & 1U) != 0, (others >> (lane + 8U) & 1U) != 0);
@@ -242,7 +242,7 @@ class LeastOverlap {
     std::size_t count = 0;
     for (; i < view_.pieces.size() && count < asked.size(); i += stride()) asked[count++] = &pair_at(i);
     CornersOfEight corners;
-    kernels().corners({asked.data(), count}, frame, shift, 0.0, corners);
+    view_.kernels.corners({asked.data(), count}, frame, shift, 0.0, corners);
     return corners.deepest_of_lanes();
   }
 

@@ -11,6 +11,7 @@ namespace odds::query::patch {
 /// One patch with what its direction is chosen from.
 struct PatchView {
   const PatchInput& input;
+  const Kernels& kernels;
   const Rim& rim;
   const RimSums& sums;
   std::span<const std::uint32_t> pieces;  ///< indices of its pieces in the rim

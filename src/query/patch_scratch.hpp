@@ -89,6 +89,7 @@ struct PatchBuilder::Scratch {
   void write(const PatchInput& input) noexcept;
   void write_pieces(const Vec3& normal, const patch::RimSums& sums, Indices indices) noexcept;
 
+  const patch::Kernels* kernels = nullptr;  ///< of the contacts that are being made
   std::vector<patch::PlacedPair> pairs;
   std::vector<patch::RimPiece> pieces;
   std::vector<std::uint32_t> by_patch;

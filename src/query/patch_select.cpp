@@ -105,8 +105,10 @@ Fan::Fan() noexcept {
   }
 }
 
-Extremes::Extremes(const Frame& frame, const Fan& fan, const Vec3& centre, const Witness& deepest) noexcept
-    : frame_(frame),
+Extremes::Extremes(const Kernels& kernels, const Frame& frame, const Fan& fan, const Vec3& centre,
+                   const Witness& deepest) noexcept
+    : kernels_(kernels),
+      frame_(frame),
       fan_(fan),
       centre_(centre),
       per_depth_(deepest.depth > 0.0 ? 0.5 / deepest.depth : 0.0),
@@ -124,7 +126,7 @@ void Extremes::add(std::span<const Witness> witnesses) noexcept {
       u[i] = frame_.u.dot(place);
       v[i] = frame_.v.dot(place);
     }
-    kernels().farthest(u.data(), v.data(), some.size(), seen_, fan_, ends_);
+    kernels_.farthest(u.data(), v.data(), some.size(), seen_, fan_, ends_);
     for (std::size_t d = 0; d < Fan::size; ++d) {
       if (ends_.end(d) >= seen_) best_[d] = some[ends_.end(d) - seen_];
     }

@@ -39,13 +39,15 @@ class Extremes {
  public:
   static constexpr std::size_t at_once = 16;
 
-  Extremes(const Frame& frame, const Fan& fan, const Vec3& centre, const Witness& deepest) noexcept;
+  Extremes(const Kernels& kernels, const Frame& frame, const Fan& fan, const Vec3& centre,
+           const Witness& deepest) noexcept;
   /// Best `at_once` at a time.
   void add(std::span<const Witness> witnesses) noexcept;
   /// Nothing if none were added.
   [[nodiscard]] std::span<const Witness> all() noexcept;
 
  private:
+  const Kernels& kernels_;
   const Frame& frame_;
   const Fan& fan_;
   Vec3 centre_;

@@ -13,7 +13,7 @@ namespace {
 /// however late it is.
 using Ends = std::array<std::size_t, Fan::size>;
 
-Ends find_ends(std::span<const RimPiece> pieces, std::span<const std::uint32_t> indices, const Frame& frame,
+Ends find_ends(const Kernels& kernels, const Rim& rim, std::span<const std::uint32_t> indices, const Frame& frame,
                const Fan& fan, const Vec3& centre, Watch& watch) noexcept {
   constexpr std::size_t at_once = 16;
   std::array<double, at_once> u;
@@ -23,11 +23,11 @@ Ends find_ends(std::span<const RimPiece> pieces, std::span<const std::uint32_t> 
     const std::size_t count = std::min(at_once, indices.size() - first);
     for (std::size_t i = 0; i < count; ++i) {
       // The middle: both ends of a piece belong to its neighbours too.
-      const Vec3 out = pieces[indices[first + i]].middle() - centre;
+      const Vec3 out = rim.pieces[indices[first + i]].middle() - centre;
       u[i] = frame.u.dot(out);
       v[i] = frame.v.dot(out);
     }
-    kernels().farthest(u.data(), v.data(), count, first, fan, farthest);
+    kernels.farthest(u.data(), v.data(), count, first, fan, farthest);
   }
   Ends ends;
   for (std::size_t d = 0; d < Fan::size; ++d) ends[d] = farthest.end(d);
@@ -37,11 +37,11 @@ Ends find_ends(std::span<const RimPiece> pieces, std::span<const std::uint32_t> 
 
 }  // namespace
 
-std::span<const std::uint32_t> Telling::of(std::span<const RimPiece> pieces, std::span<const PlacedPair> pairs,
+std::span<const std::uint32_t> Telling::of(const Kernels& kernels, const Rim& rim,
                                            std::span<const std::uint32_t> indices, const Frame& frame, const Fan& fan,
                                            const Vec3& centre, Watch& watch) noexcept {
   if (indices.size() <= few) return indices;
-  const Ends ends = find_ends(pieces, indices, frame, fan, centre, watch);
+  const Ends ends = find_ends(kernels, rim, indices, frame, fan, centre, watch);
   const std::uint64_t share = std::numeric_limits<std::uint64_t>::max() / indices.size() * sampled;
   std::size_t count = 0;
   std::size_t next_end = 0;
@@ -49,7 +49,7 @@ std::span<const std::uint32_t> Telling::of(std::span<const RimPiece> pieces, std
     bool tells = false;
     for (; next_end < ends.size() && ends[next_end] == i; ++next_end) tells = true;
     if (!tells) {
-      const TrianglePair& index = pairs[pieces[indices[i]].pair].index;
+      const TrianglePair& index = rim.pairs[rim.pieces[indices[i]].pair].index;
       tells = math::scramble((std::uint64_t{index.a} << 32U) | index.b) < share;
     }
     if (tells) chosen_[count++] = indices[i];
@@ -57,10 +57,10 @@ std::span<const std::uint32_t> Telling::of(std::span<const RimPiece> pieces, std
   return {chosen_.data(), count};
 }
 
-std::span<const std::uint32_t> Telling::ends_of(std::span<const RimPiece> pieces,
+std::span<const std::uint32_t> Telling::ends_of(const Kernels& kernels, const Rim& rim,
                                                 std::span<const std::uint32_t> indices, const Frame& frame,
                                                 const Fan& fan, const Vec3& centre, Watch& watch) noexcept {
-  const Ends ends = find_ends(pieces, indices, frame, fan, centre, watch);
+  const Ends ends = find_ends(kernels, rim, indices, frame, fan, centre, watch);
   std::size_t count = 0;
   for (std::size_t i = 0; i < ends.size(); ++i) {
     if (i == 0 || ends[i] != ends[i - 1]) chosen_[count++] = indices[ends[i]];

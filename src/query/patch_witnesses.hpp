@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "query/patch_components.hpp"
 #include "query/patch_rim.hpp"
 #include "query/patch_select.hpp"
 #include "query/patch_watch.hpp"
@@ -26,12 +27,12 @@ class Telling {
 
   /// Pieces of the patch whose pairs are to be asked, in the order of `indices`; valid until the next call; fewer if
   /// it is late. `centre`: of the patch.
-  [[nodiscard]] std::span<const std::uint32_t> of(std::span<const RimPiece> pieces, std::span<const PlacedPair> pairs,
+  [[nodiscard]] std::span<const std::uint32_t> of(const Kernels& kernels, const Rim& rim,
                                                   std::span<const std::uint32_t> indices, const Frame& frame,
                                                   const Fan& fan, const Vec3& centre, Watch& watch) noexcept;
 
   /// Only those at the extremes, at least one. Precondition: `indices` is not empty.
-  [[nodiscard]] std::span<const std::uint32_t> ends_of(std::span<const RimPiece> pieces,
+  [[nodiscard]] std::span<const std::uint32_t> ends_of(const Kernels& kernels, const Rim& rim,
                                                        std::span<const std::uint32_t> indices, const Frame& frame,
                                                        const Fan& fan, const Vec3& centre, Watch& watch) noexcept;
 

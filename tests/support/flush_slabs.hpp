@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "query/flush_contacts.hpp"
+#include "query/wide/searches.hpp"
 #include "support/slabs.hpp"
 
 namespace odds::testing {
@@ -16,8 +17,9 @@ inline const Vec3 under_slab(0.4, 0.3, -0.1);  ///< where A's bottom is
 /// With the faces that it looks at.
 struct Flush : query::FlushContacts {
   explicit Flush(std::shared_ptr<const std::vector<mesh::FlatFace>> a,
-                 std::shared_ptr<const std::vector<mesh::FlatFace>> b)
-      : query::FlushContacts(*a, *b), of_a(std::move(a)), of_b(std::move(b)) {}
+                 std::shared_ptr<const std::vector<mesh::FlatFace>> b,
+                 const query::patch::Kernels& kernels = query::wide::searches_for(query::InstructionSet::best)->patch)
+      : query::FlushContacts(*a, *b, kernels), of_a(std::move(a)), of_b(std::move(b)) {}
   std::shared_ptr<const std::vector<mesh::FlatFace>> of_a, of_b;
 
   void move_to(const math::Pose& pose, double of_size = flush_size, bool measured = false) {

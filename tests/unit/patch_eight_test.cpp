@@ -227,16 +227,17 @@ TEST(PatchEight, FindsTheCornersThatOneAtATimeFinds) {
 
 TEST(PatchEight, MeasuresTheDepthsThatOneAtATimeMeasures) {
   const Vec3 shift(0.01, 0.0, 0.02);
+  const Kernels& kernels = wide::searches_for(InstructionSet::best)->patch;
   std::size_t deep = 0;
   for (std::uint64_t stream = 1; stream < 3000; stream += 3) {
     const Scene scene(stream);
     const Frame frame(math::Random(34, stream).direction());
-    const std::vector<PlacedPair> pairs = scene.placed(kernels());
+    const std::vector<PlacedPair> pairs = scene.placed(kernels);
     ASSERT_GE(pairs.size(), eight);
     std::vector<const PlacedPair*> asked;
     for (std::size_t i = 0; i < stream % eight + 1; ++i) asked.push_back(&pairs[i]);
     CornersOfEight corners;
-    kernels().corners(asked, frame, shift, 0.0, corners);
+    kernels.corners(asked, frame, shift, 0.0, corners);
     const std::array<double, eight> depths = corners.deepest_of_lanes();
     for (std::size_t lane = 0; lane < eight; ++lane) {
       const double expected = lane < asked.size() ? pair_depth(*asked[lane], frame, shift) : 0.0;

@@ -13,6 +13,10 @@
 
 namespace odds::query {
 
+namespace patch {
+struct Kernels;  // private to src/query
+}
+
 constexpr int most_contacts =
     8;  ///< of one pair; more cost a solver more than they give (ODE's exact step grows cubically)
 
@@ -69,6 +73,8 @@ struct PatchInput {
   int max_contacts = 4;              ///< 1 .. most_contacts (clamped)
   DepthProbe probe_a;                ///< optional
   DepthProbe probe_b;                ///< optional
+  /// Of the instruction set that a pair runs on, or null: of the best. All give the same bits.
+  const patch::Kernels* kernels = nullptr;
 };
 
 /// Makes contacts: at most eight, one normal per patch, the deepest first, then those that span the largest area, so

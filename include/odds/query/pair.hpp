@@ -15,7 +15,7 @@
 
 namespace odds::query {
 
-/// What the wide engine's searches run on; contact patches and rays run on the best. All give the same bits.
+/// What the wide engine's searches and contact patches run on; rays run on the best. All give the same bits.
 enum class InstructionSet : std::uint8_t {
   best,    ///< the widest that the program was built with and the processor has
   avx512,  ///< x86 with AVX-512 VBMI2: Intel since 2019 (servers 2021), AMD since 2022; not the older ones, whose clock
