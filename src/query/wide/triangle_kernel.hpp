@@ -120,8 +120,27 @@ template <class L>
   }
 }
 
-/// Pairs of triangles of two leaves that no box and no plane separates and, `finely`, no side of theirs. `shift`: where
-/// B's leaf centre stands from A's, in A's frame; `margin`: that of the encounter.
+/// Of eight triangles those that reach another leaf's slab: all |normal . x - offset| <= thickness. Where two sheets
+/// lie over each other the slabs of both part most of what their boxes do not, and what bounds a slab in the search,
+/// the other's box and slab, is not as near as its triangles: of the leaves that come here on smooth bodies at touch
+/// two thirds are parted, and four fifths of the rows. Planes of triangles would part most of them, one row at a time.
+template <class L>
+[[nodiscard]] ODDS_LANES_INLINE unsigned reach_slab(const EightTriangles<L>& eight, const float (&normal)[3],
+                                                    float offset, float thickness) noexcept {
+  using F = typename L::Float;
+  const F n[3] = {L::all(normal[0]), L::all(normal[1]), L::all(normal[2])};
+  F along[3];
+  for (int k = 0; k < 3; ++k) {
+    const F(&x)[3] = eight.corner[k];
+    along[k] = (n[0] * x[0] + n[1] * x[1]) + n[2] * x[2];
+  }
+  const F lowest = L::min(L::min(along[0], along[1]), along[2]);
+  const F highest = L::max(L::max(along[0], along[1]), along[2]);
+  return L::less_equal(lowest, L::all(offset + thickness)) & L::less_equal(L::all(offset - thickness), highest);
+}
+
+/// Pairs of triangles of two leaves that no box, no slab and no plane separates and, `finely`, no side of theirs.
+/// `shift`: where B's leaf centre stands from A's, in A's frame; `margin`: that of the encounter.
 template <class L>
 ODDS_LANES_INLINE LeafPairs leaf_pairs(const PlacedLeaf& in_a, const PlacedLeaf& in_b, const Turn& turn,
                                        const float shift[3], float margin, bool finely) noexcept {
@@ -136,10 +155,26 @@ ODDS_LANES_INLINE LeafPairs leaf_pairs(const PlacedLeaf& in_a, const PlacedLeaf&
     rows &= L::less_equal(leaves.b.lower[i], L::all(half)) & L::less_equal(L::all(-half), leaves.b.upper[i]);
   }
   if (rows == 0) return found;
+  found.tested = static_cast<std::uint32_t>(std::popcount(rows));
+  // What of either reaches the other's slab. A corner along a normal errs by sqrt(3) delta and its sum's rounding by
+  // less than delta; a pose that is only just rigid enough tilts B's slab by up to 8 delta.
+  const float slack = 12.0F * delta;
+  const LaneNumbers box_a(in_a.node, in_a.lane);
+  const LaneNumbers box_b(in_b.node, in_b.lane);
+  const Vector m =
+      (turn.column[0] * box_b.normal(0) + turn.column[1] * box_b.normal(1)) + turn.column[2] * box_b.normal(2);
+  const float normal_a[3] = {box_a.normal(0), box_a.normal(1), box_a.normal(2)};
+  const float normal_b[3] = {m[0], m[1], m[2]};
+  const float center_b = (m[0] * shift[0] + m[1] * shift[1]) + m[2] * shift[2];
+  const float scale = leaves.scale;
+  rows &= reach_slab<L>(leaves.b, normal_a, box_a.offset() * scale, box_a.thickness() * scale + slack);
+  if (rows == 0) return found;
   leaves.place_a(in_a.leaf);
+  leaves.lanes_a &=
+      reach_slab<L>(leaves.a, normal_b, (center_b + box_b.offset()) * scale, box_b.thickness() * scale + slack);
+  if (leaves.lanes_a == 0) return found;
   Rows<L> b;
   b.keep_boxes(leaves.b, 2.0F * delta);
-  found.tested = static_cast<std::uint32_t>(std::popcount(rows));
   for (unsigned left = rows; left != 0; left &= left - 1U) {
     const auto row = static_cast<unsigned>(__builtin_ctz(left));
     const unsigned met = leaves.lanes_a & boxes_meet<L>(leaves.a, b, row);
