@@ -95,7 +95,13 @@ double positive(const char* text) {
   return end != text && *end == '\0' && std::isfinite(number) && number > 0.0 ? number : 0.0;
 }
 
-int run(const std::string& folder, const std::string& only, const std::string& knot, double share) {
+/// 0: not a number of work units.
+std::uint64_t units(const std::string& text) {
+  const double number = positive(text.c_str());
+  return number >= 1.0 && number <= 1000.0 && number == std::floor(number) ? static_cast<std::uint64_t>(number) : 0;
+}
+
+int run(const std::string& folder, const std::string& only, const std::string& knot, const RunOptions& options) {
   std::filesystem::create_directories(folder);
   register_troubled_device();
   const std::vector<HardCase> cases = all_cases(folder, knot);
@@ -111,7 +117,7 @@ int run(const std::string& folder, const std::string& only, const std::string& k
   bool all_hold = true;
   for (const HardCase& hard_case : cases) {
     if (!is_wanted(hard_case)) continue;
-    Result<Outcome> outcome = run_case(hard_case, folder, share);
+    Result<Outcome> outcome = run_case(hard_case, folder, options);
     if (!outcome) {
       fmt::print(stderr, "error: {}: {}\n", hard_case.name, outcome.error().message());
       return 1;
@@ -137,7 +143,7 @@ int main(int argc, char** argv) {
   std::string only;
   std::string knot = "made:torus_knot";
   std::string soaked;
-  double share = 1.0;
+  odds::hard_cases::RunOptions options;
   double seconds = 3600.0;
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
@@ -152,19 +158,27 @@ int main(int argc, char** argv) {
     } else if (argument == "--seconds" && i + 1 < argc) {
       seconds = odds::hard_cases::positive(argv[++i]);
     } else if (argument == "--share" && i + 1 < argc) {
-      share = odds::hard_cases::positive(argv[++i]);
+      options.share_of_seconds = odds::hard_cases::positive(argv[++i]);
+    } else if (argument == "--starved" && i + 1 < argc) {
+      options.starved_units = odds::hard_cases::units(argv[++i]);
     } else {
       fmt::print(stderr,
                  "usage: odds_hard_cases [--out FOLDER] [--only CASE] [--share OF_THE_SECONDS] [--knot MESH]\n"
+                 "                       [--starved UNITS]\n"
                  "       --knot: instead of made:torus_knot, in full_overlap and meshes_at_speed\n"
+                 "       --starved: work units of the run with the least of them, 1 to 1000, instead of 20 (1 us)\n"
                  "       odds_hard_cases --soak SCENE_OR_FOLDER [--seconds S]   (an hour of each, simulated)\n");
       return 2;
     }
   }
-  if (!(seconds > 0.0) || !(share > 0.0)) {
+  if (!(seconds > 0.0) || !(options.share_of_seconds > 0.0)) {
     fmt::print(stderr, "error: --seconds and --share take a finite number greater than 0\n");
     return 2;
   }
+  if (options.starved_units == 0) {
+    fmt::print(stderr, "error: --starved takes a whole number of work units from 1 to 1000\n");
+    return 2;
+  }
   if (!soaked.empty()) return odds::hard_cases::soak_all(soaked, seconds);
-  return odds::hard_cases::run(folder, only, knot, share);
+  return odds::hard_cases::run(folder, only, knot, options);
 }

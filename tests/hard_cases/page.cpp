@@ -182,13 +182,13 @@ std::string counts(const std::vector<Tally>& tallies, double seconds_taken) {
              "tick by "
              "tick against the run without a budget, also where the case is too lively for that, and all ticks of all "
              "cases together. A microsecond is 20 pairs of nodes. Brown is "
-             "told, not judged: how 5 and 1 µs feel.</p>\n<p>Force on the hand over time: <b>without a "
+             "told, not judged: how the two shorter budgets feel.</p>\n<p>Force on the hand over time: <b>without a "
              "budget</b>, <b style=\"color:{}\">50 µs</b> (1000 work units), <b style=\"color:{}\">5 µs</b> "
-             "(100), <b style=\"color:{}\">1 µs</b> (20). <i>Contacts</i>: the force of contacts on the tool, in each "
+             "(100), <b style=\"color:{}\">{}</b>. <i>Contacts</i>: the force of contacts on the tool, in each "
              "tick at the pose of the run "
              "without a budget; <i>hand</i>: the force on the hand, each run on its own. Simulated time, the "
              "same on every run; it took {:.0f} s.</p>\n",
-             colours[1], colours[2], colours[3], seconds_taken);
+             colours[1], colours[2], colours[3], tallies.empty() ? "" : tallies.back().budget, seconds_taken);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -25,10 +26,15 @@ using scene::Scene;
 using scene::Simulation;
 
 struct Budget {
-  const char* name;
+  std::string name;
   std::uint64_t work_units;  // 0: no limit
 };
-constexpr Budget budgets[] = {{"none", 0}, {"50 us", 1000}, {"5 us", 100}, {"1 us", 20}};
+using Budgets = std::array<Budget, 4>;
+
+Budgets budgets_for(std::uint64_t starved_units) {
+  std::string starved = starved_units == RunOptions{}.starved_units ? "1 us" : fmt::format("{} units", starved_units);
+  return {{{"none", 0}, {"50 us", 1000}, {"5 us", 100}, {std::move(starved), starved_units}}};
+}
 
 /// The same meshes without a budget: whether the tool overlaps something, and how deeply.
 class Oracle {
@@ -209,8 +215,8 @@ Result<Figures> run_once(const HardCase& hard_case, const Budget& budget, const 
 }
 
 /// For every budget but the first, which has none.
-Result<std::vector<report::ForceDifference>> at_same_poses(const HardCase& hard_case, const std::string& folder,
-                                                           double seconds) {
+Result<std::vector<report::ForceDifference>> at_same_poses(const HardCase& hard_case, const Budgets& budgets,
+                                                           const std::string& folder, double seconds) {
   Result<Scene> parsed = scene_of(hard_case, budgets[0], seconds, folder);
   if (!parsed) return parsed.error();
   std::vector<report::ForceDifference> differences;
@@ -242,16 +248,17 @@ Result<std::vector<report::ForceDifference>> at_same_poses(const HardCase& hard_
 
 }  // namespace
 
-Result<Outcome> run_case(const HardCase& hard_case, const std::string& folder, double share_of_seconds) {
+Result<Outcome> run_case(const HardCase& hard_case, const std::string& folder, const RunOptions& options) {
+  const Budgets budgets = budgets_for(options.starved_units);
   Outcome outcome;
   outcome.hard_case = &hard_case;
   for (const Budget& budget : budgets) {
-    Result<Figures> figures = run_once(hard_case, budget, folder, share_of_seconds);
+    Result<Figures> figures = run_once(hard_case, budget, folder, options.share_of_seconds);
     if (!figures) return figures.error();
     outcome.runs.push_back(std::move(figures).value());
   }
   Result<std::vector<report::ForceDifference>> differences =
-      at_same_poses(hard_case, folder, hard_case.seconds * share_of_seconds);
+      at_same_poses(hard_case, budgets, folder, hard_case.seconds * options.share_of_seconds);
   if (!differences) return differences.error();
   for (std::size_t i = 0; i < differences.value().size(); ++i) {
     outcome.runs[i + 1].at_same_poses = differences.value()[i];

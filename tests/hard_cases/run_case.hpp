@@ -24,7 +24,7 @@ struct Sample {
 
 /// The figures of one run of a case with one budget.
 struct Figures {
-  std::string budget;  ///< "none", "50 us", "5 us", "1 us"
+  std::string budget;  ///< "none", "50 us", "5 us", and of the starved run "1 us" or "N units"
   std::uint64_t ticks = 0;
   std::uint64_t not_finite = 0;
   double largest_force_n = 0.0;
@@ -64,7 +64,12 @@ struct Outcome {
   std::vector<Figures> runs;  ///< the exact one first
 };
 
-/// Runs without a limit, with 1000 work units (50 us), with 100 (5 us) and with 20 (1 us).
-Result<Outcome> run_case(const HardCase& hard_case, const std::string& folder, double share_of_seconds);
+struct RunOptions {
+  double share_of_seconds = 1.0;
+  std::uint64_t starved_units = 20;  ///< of the run with the least work; 20 are 1 us
+};
+
+/// Runs without a limit, with 1000 work units (50 us), with 100 (5 us) and with those of a starved one.
+Result<Outcome> run_case(const HardCase& hard_case, const std::string& folder, const RunOptions& options);
 
 }  // namespace odds::hard_cases
