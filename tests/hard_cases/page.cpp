@@ -21,7 +21,7 @@ double size_of(const Sample& s, bool has_hand) {
   return has_hand ? std::hypot(s.force_n[0], s.force_n[1], s.force_n[2]) : 1e3 * s.depth_m;
 }
 
-// Over time: the exact run dark, 50 us blue, 5 us green, 1 us orange.
+// Over time: the exact run dark, 50 us blue, 5 us green, the starved one orange.
 std::string chart(const Outcome& outcome) {
   const bool has_hand = outcome.runs.front().has_hand;
   double most = 1e-9;

@@ -28,8 +28,8 @@ struct LeafPairs {
   std::uint8_t lanes_a[wide_lanes];
   std::uint8_t certain_a[wide_lanes];  ///< those that it certainly meets; nothing unless `parted`
   std::uint32_t rows = 0;              ///< bits of B's triangles with any
-  std::uint32_t tested = 0;            ///< of B's triangles compared with all of A's at once
-  std::uint32_t parted = 0;            ///< of these finely, too
+  std::uint32_t tested = 0;  ///< of B's triangles those near A's box, parted by a slab or compared with all of A's
+  std::uint32_t parted = 0;  ///< of these finely, too
 
   /// Whether the exact test has nothing to say.
   [[nodiscard]] ODDS_LANES_INLINE bool certainly_meet(unsigned row, unsigned lane) const noexcept {
@@ -156,23 +156,26 @@ ODDS_LANES_INLINE LeafPairs leaf_pairs(const PlacedLeaf& in_a, const PlacedLeaf&
   }
   if (rows == 0) return found;
   found.tested = static_cast<std::uint32_t>(std::popcount(rows));
-  // What of either reaches the other's slab. A corner along a normal errs by sqrt(3) delta and its sum's rounding by
-  // less than delta; a pose that is only just rigid enough tilts B's slab by up to 8 delta.
-  const float slack = 12.0F * delta;
-  const LaneNumbers box_a(in_a.node, in_a.lane);
-  const LaneNumbers box_b(in_b.node, in_b.lane);
-  const Vector m =
-      (turn.column[0] * box_b.normal(0) + turn.column[1] * box_b.normal(1)) + turn.column[2] * box_b.normal(2);
-  const float normal_a[3] = {box_a.normal(0), box_a.normal(1), box_a.normal(2)};
-  const float normal_b[3] = {m[0], m[1], m[2]};
-  const float center_b = (m[0] * shift[0] + m[1] * shift[1]) + m[2] * shift[2];
-  const float scale = leaves.scale;
-  rows &= reach_slab<L>(leaves.b, normal_a, box_a.offset() * scale, box_a.thickness() * scale + slack);
-  if (rows == 0) return found;
+  // What of either reaches the other's slab. A corner along a normal errs by sqrt(3) delta, its sum's rounding, B's
+  // normal in A's frame and B's centre along it by less than 1.5 delta each, and a pose that is only just rigid enough
+  // tilts B's slab by up to 8 delta.
+  [[maybe_unused]] const float slack = 16.0F * delta;
+  [[maybe_unused]] const float scale = leaves.scale;
+  if constexpr (looks_at_slabs<L>) {
+    const LaneNumbers box(in_a.node, in_a.lane);
+    const float normal[3] = {box.normal(0), box.normal(1), box.normal(2)};
+    rows &= reach_slab<L>(leaves.b, normal, box.offset() * scale, box.thickness() * scale + slack);
+    if (rows == 0) return found;
+  }
   leaves.place_a(in_a.leaf);
-  leaves.lanes_a &=
-      reach_slab<L>(leaves.a, normal_b, (center_b + box_b.offset()) * scale, box_b.thickness() * scale + slack);
-  if (leaves.lanes_a == 0) return found;
+  if constexpr (looks_at_slabs<L>) {
+    const LaneNumbers box(in_b.node, in_b.lane);
+    const Vector m = (turn.column[0] * box.normal(0) + turn.column[1] * box.normal(1)) + turn.column[2] * box.normal(2);
+    const float normal[3] = {m[0], m[1], m[2]};
+    const float center = (m[0] * shift[0] + m[1] * shift[1]) + m[2] * shift[2];
+    leaves.lanes_a &= reach_slab<L>(leaves.a, normal, (center + box.offset()) * scale, box.thickness() * scale + slack);
+    if (leaves.lanes_a == 0) return found;
+  }
   Rows<L> b;
   b.keep_boxes(leaves.b, 2.0F * delta);
   for (unsigned left = rows; left != 0; left &= left - 1U) {
