@@ -50,9 +50,9 @@ bool still_touch(const PairEntry& entry, const Vec3& place, const math::Pose& b_
 
 // Whether the most probable pair of cells stands in for contacts. A hit that is proved or passed the caller's own
 // threshold needs a contact to be felt; an undecided query follows the policy, which also holds on to what was a hit a
-// moment ago. `touched`: the query before gave a contact.
+// moment ago.
 bool use_cell_pair(const PairEntry& entry, const query::Answer& answer, const Settings& settings,
-                   const math::Pose& b_in_a, bool touched) noexcept {
+                   const math::Pose& b_in_a) noexcept {
   if (!answer.contacts.empty() || !answer.has_cell_pair) return false;
   if (answer.basis != query::Basis::budget) return answer.verdict == query::Verdict::hit;
   if (settings.undecided_policy != ODDS_UNDECIDED_HIT) return false;
@@ -61,7 +61,8 @@ bool use_cell_pair(const PairEntry& entry, const query::Answer& answer, const Se
   constexpr double of_the_odds = 0.6;
   const double begins = settings.undecided_probability;
   const double goes_on = of_the_odds * begins / (1.0 - (1.0 - of_the_odds) * begins);
-  return answer.probability > (touched ? goes_on : begins) || still_touch(entry, answer.cell_pair.position, b_in_a);
+  return answer.probability > (entry.touched ? goes_on : begins) ||
+         still_touch(entry, answer.cell_pair.position, b_in_a);
 }
 
 void note_decision(const query::Answer& answer, const math::Pose& b_in_a, PairEntry& entry) noexcept {
@@ -179,7 +180,7 @@ void note_if_apart(std::uint64_t asked_in, PairEntry& entry) noexcept {
   const std::optional<math::Pose> before = before_this_broad_phase(*entry.a, *entry.b);
   if (!before) return;
   entry.runs_undecided = PairEntry::long_ago;
-  entry.last.contacts = 0;
+  entry.touched = false;
   entry.pair->note_apart(*before);
   entry.held.note_apart(*before);
 }
@@ -203,6 +204,7 @@ int answer_pair(PairEntry& entry, std::uint64_t asked_in, dGeomID o1, dGeomID o2
   if (!pose_a || !pose_b) {
     count(statistics().bad_poses);
     entry.last = record_of_bad_pose();
+    entry.touched = false;
     return 0;
   }
   const Settings own = combine(entry.a->settings, entry.b->settings);
@@ -215,11 +217,10 @@ int answer_pair(PairEntry& entry, std::uint64_t asked_in, dGeomID o1, dGeomID o2
   const query::Answer& answer = entry.pair->run(b_in_a, request_for(settings, limit));
   count_basis(answer.basis);
   note_decision(answer, b_in_a, entry);
-  const bool touched = entry.last.contacts > 0;
   entry.last = record_of(answer, *pose_a);
   const std::span<const query::Contact> given = contacts_to_give(entry, answer, settings, b_in_a);
   for (const query::Contact& contact : given) write_contact(writer, contact, *pose_a, o1_is_a);
-  if (given.empty() && use_cell_pair(entry, answer, settings, b_in_a, touched)) {
+  if (given.empty() && use_cell_pair(entry, answer, settings, b_in_a)) {
     // A place and a direction, but no push: a depth that nobody has measured could throw a body away.
     query::Contact contact = answer.cell_pair;
     if (answer.basis == query::Basis::budget) contact.depth = 0.0;
@@ -228,6 +229,8 @@ int answer_pair(PairEntry& entry, std::uint64_t asked_in, dGeomID o1, dGeomID o2
     count(statistics().cell_pair_contacts, static_cast<unsigned long long>(writer.count()));
   }
   entry.last.contacts = writer.count();
+  const bool apart = answer.basis == query::Basis::proved && answer.verdict == query::Verdict::clear;
+  entry.touched = writer.count() > 0 && !apart;
   count(statistics().contacts, static_cast<unsigned long long>(writer.count()));
   if (current_share != nullptr) {
     current_share->report(answer.cost.node_pairs + answer.cost.triangle_pairs, writer.count(),

@@ -21,6 +21,7 @@ struct PairEntry {
   oddsAnswer last = {};             ///< with g1 = a
   HeldContacts held;
   bool answered = false;
+  bool touched = false;  ///< the last query gave a contact, and did not prove them apart
   static constexpr std::uint32_t long_ago = 1U << 16U;
   std::uint32_t runs_undecided = long_ago;  ///< since the last decided hit; `long_ago` after a decision that it is none
   math::Pose met_at;                        ///< B in A in the last decided hit

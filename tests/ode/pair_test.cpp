@@ -3,6 +3,7 @@
 #include <cmath>
 #include <thread>
 
+#include "ode/frame_share.hpp"
 #include "ode/ode_fixture.hpp"
 
 namespace odds::test {
@@ -199,6 +200,12 @@ TEST_F(UndecidedPair, GoesOnTouchingUntilTheOddsAreWellBelow) {
   EXPECT_TRUE(touches_at(0.9 * odds));
   EXPECT_TRUE(touches_at(odds / 0.65)) << "0.6 of it are enough now";
   EXPECT_TRUE(touches_at(odds / 0.65)) << "and go on being enough";
+  ode::FrameShare no_turn;
+  no_turn.only_held = true;
+  ode::current_share = &no_turn;
+  collide(a, b);
+  ode::current_share = nullptr;
+  EXPECT_TRUE(touches_at(odds / 0.65)) << "also after a frame in which it was not this pair's turn";
   EXPECT_FALSE(touches_at(odds / 0.55));
   EXPECT_FALSE(touches_at(odds / 0.65));
 }
