@@ -234,7 +234,7 @@ typedef struct oddsAnswer {
   int contacts;                      /* given back to ODE */
   int from_cell_pair;                /* 1 if the contact given back is the cell pair below */
   unsigned long long node_pairs;     /* pairs of bounding volumes tested */
-  unsigned long long triangle_pairs; /* pairs of triangles tested exactly */
+  unsigned long long triangle_pairs; /* pairs of triangles tested, and triangles near another leaf */
   double gross_us;                   /* from start to return of the query */
   double stall_us;                   /* of these, not the query's own work (pre-emption) */
   double overshoot_us;               /* beyond the budget, >= 0 */

@@ -59,7 +59,7 @@ struct Contact {
 struct Cost {
   std::uint64_t node_pairs = 0;      ///< pairs of bounding volumes tested
   std::uint64_t triangle_pairs = 0;  ///< pairs of triangles tested exactly, or found certain to meet; of the wide
-                                     ///< engine also each comparison of one triangle with the eight of a leaf
+                                     ///< engine also each triangle near the box of another leaf
   std::uint64_t queue_full = 0;      ///< pairs that found the queue full and were searched at once instead
   double gross_us = 0.0;             ///< from call to return
   double stall_us = 0.0;             ///< gaps between two clock polls too long to be the query's own work (pre-emption)
