@@ -179,6 +179,10 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "error: --starved takes a whole number of work units from 1 to 1000\n");
     return 2;
   }
+  if (!soaked.empty() && options.starved_units != odds::hard_cases::RunOptions{}.starved_units) {
+    fmt::print(stderr, "error: --soak runs scenes with their own budgets; leave --starved out\n");
+    return 2;
+  }
   if (!soaked.empty()) return odds::hard_cases::soak_all(soaked, seconds);
   return odds::hard_cases::run(folder, only, knot, options);
 }

@@ -236,16 +236,22 @@ TYPED_TEST(LeafPairsOn, MissNothingThatMeetsWhereSlabsTouch) {
     const double size = std::exp2(static_cast<double>(random.below(120)) - 80.0);  // also where leaves are scaled
     const Mat3 turn = random.rotation().toRotationMatrix();
     const Mat3 turn_b = random.rotation().toRotationMatrix();
-    // Not quite rigid, as far as a query takes it.
-    Mat3 askew = Mat3::Identity();
-    for (int k = 0; k < 9; ++k) askew.data()[k] += random.uniform(-0.3, 0.3) * tolerances::pose_orthonormality;
-    const Mat3 across = Eigen::AngleAxisd(1.3, Vec3::UnitZ()).toRotationMatrix() * askew;
-    // B's valleys are on A's ridges, or by some roundings in them.
+    // B, the larger one, lies on A by one corner, or is by some roundings in it.
+    const auto end = [&random, size] { return random.below(2) == 0 ? 0.5 * size : -0.5 * size; };
+    const Vec3 at(end(), end(), 0.0);
     const double deep = random.below(2) == 0 ? 0.0 : size * std::exp2(-20.0 - static_cast<double>(random.below(20)));
-    const Vec3 shift(0.1 * size * random.uniform(-1.0, 1.0), 0.1 * size * random.uniform(-1.0, 1.0), 0.2 * size - deep);
-    const math::Pose pose{turn * across * turn_b.transpose(), turn * shift};
+    // Only just as rigid as a query takes it: B's slab, as A sees it, leans. With a slack of one delta some are missed.
+    Mat3 askew = Mat3::Identity();
+    for (int k = 0; k < 3; ++k) {
+      const double lean = (at[k] < 0.0 ? 0.49 : -0.49) * tolerances::pose_orthonormality * (i % 2 == 0 ? 1.0 : -1.0);
+      if (k < 2) askew(2, k) = askew(k, 2) = lean;
+    }
+    askew(2, 2) += 0.49 * tolerances::pose_orthonormality * (i % 3 - 1);
+    const Mat3 across = Eigen::AngleAxisd(1.3, Vec3::UnitZ()).toRotationMatrix() * askew;
+    const double small = 0.01 * size;  // A's ridge at 0.2 of that
+    const math::Pose pose{turn * across * turn_b.transpose(), turn * (Vec3(0, 0, 0.2 * small - deep) - across * at)};
     const Counts counts =
-        compare<TypeParam>(Leaf(turned_by(turn, folded(size))), Leaf(turned_by(turn_b, folded(0.4 * size))), pose);
+        compare<TypeParam>(Leaf(turned_by(turn, folded(small))), Leaf(turned_by(turn_b, folded(size))), pose);
     all.asked += counts.asked;
     all.met += counts.met;
     ASSERT_FALSE(this->HasFailure()) << i;
