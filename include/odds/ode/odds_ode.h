@@ -180,9 +180,9 @@ int dGeomOddsMeshGetEstimator(dGeomID geom) ODDS_NOTHROW;
 /* What a query gives back that the budget ended before anything was proved:
  *   ODDS_UNDECIDED_HIT         one contact at the most probable pair of cells if the probability of a hit exceeds p
  *                              (0 <= p < 1; default policy, p = 0.5), or 0.6 p / (1 - 0.4 p), 0.6 of its odds, where the
- *                              query before gave a contact, or if the last query that was decided, by proof or estimate,
- *                              was a hit at most 16 queries ago and no point of the smaller body has moved by more than
- *                              half of its size since, else none;
+ *                              query before gave a contact and did not prove them apart, or if the last query that was
+ *                              decided, by proof or estimate, was a hit at most 16 queries ago and no point of the
+ *                              smaller body has moved by more than half of its size since, else none;
  *   ODDS_UNDECIDED_NO_CONTACT  none (p is kept but not used).
  * The last answer says in each case what happened. */
 enum { ODDS_UNDECIDED_HIT = 0, ODDS_UNDECIDED_NO_CONTACT = 1 };

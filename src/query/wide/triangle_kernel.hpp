@@ -122,8 +122,9 @@ template <class L>
 
 /// Of eight triangles those that reach another leaf's slab: all |normal . x - offset| <= thickness. Where two sheets
 /// lie over each other the slabs of both part most of what their boxes do not, and what bounds a slab in the search,
-/// the other's box and slab, is not as near as its triangles: of the leaves that come here on smooth bodies at touch
-/// two thirds are parted, and four fifths of the rows. Planes of triangles would part most of them, one row at a time.
+/// the other's box and slab, is not as near as its triangles: of the leaves of two
+/// knots or bumpy spheres that touch two thirds are parted, and four fifths of the rows. Planes of triangles would part
+/// most of them, one row at a time.
 template <class L>
 [[nodiscard]] ODDS_LANES_INLINE unsigned reach_slab(const EightTriangles<L>& eight, const float (&normal)[3],
                                                     float offset, float thickness) noexcept {
