@@ -5,7 +5,7 @@
 #include <exception>
 #include <fstream>
 
-#include "ode/takeover.hpp"
+#include "ode/geom/takeover.hpp"
 #include "preload/environment.hpp"
 #include "preload/exit_page.hpp"
 #include "preload/real_functions.hpp"

@@ -5,7 +5,7 @@
 #include <variant>
 
 #include "query/posed_meshes.hpp"
-#include "query/search.hpp"
+#include "query/search/search.hpp"
 #include "query/shape_data.hpp"
 #include "support/node_sample.hpp"
 

@@ -10,9 +10,11 @@ Violations judge(std::string path, std::string text) { return judge_includes({st
 
 TEST(IncludeRules, AcceptDownwardAndOwnIncludes) {
   EXPECT_EQ(judge("include/odds/query/pair.hpp", "#include <vector>\n#include \"odds/tree/node.hpp\"\n"), Violations{});
-  EXPECT_EQ(judge("src/query/pair.cpp", "#include \"query/search.hpp\"\n#include \"odds/query/pair.hpp\"\n"),
+  EXPECT_EQ(
+      judge("src/query/pair/pair.cpp", "#include \"query/search/search.hpp\"\n#include \"odds/query/pair.hpp\"\n"),
+      Violations{});
+  EXPECT_EQ(judge("src/ode/geom/geom.cpp", "#include <ode/ode.h>\n#include \"ode/mesh/mesh_data.hpp\"\n"),
             Violations{});
-  EXPECT_EQ(judge("src/ode/geom.cpp", "#include <ode/ode.h>\n#include \"ode/mesh_data.hpp\"\n"), Violations{});
   EXPECT_EQ(judge("src/scene/reader.cpp", "#include <toml++/toml.h>\n"), Violations{});
 }
 
@@ -26,6 +28,17 @@ TEST(IncludeRules, RefuseAnIncludeSideways) {
   EXPECT_EQ(judge("src/mesh/read.cpp", "#include \"odds/primitive/closest.hpp\"\n").size(), 1u);
   EXPECT_EQ(judge("src/report/page.cpp", "#include \"scene/scene.hpp\"\n").size(), 1u);
   EXPECT_EQ(judge("src/report/page.cpp", "#include <odds/scene/scene.hpp>\n").size(), 1u);
+}
+
+TEST(IncludeRules, RoomsOfAFolderGoDownToo) {
+  EXPECT_EQ(judge("src/query/wide/exact.hpp", "#include \"query/patch/rim.hpp\"\n#include \"query/spending.hpp\"\n"),
+            Violations{});
+  EXPECT_EQ(judge("src/query/patch/rim.cpp", "#include \"query/wide/exact.hpp\"\n"),
+            Violations{"src/query/patch/rim.cpp: includes query/wide/exact.hpp: up or sideways within query/"});
+  EXPECT_EQ(judge("src/query/ray/ray.cpp", "#include \"query/shape/box_mesh.hpp\"\n").size(), 1u);
+  EXPECT_EQ(judge("src/query/spending.cpp", "#include \"query/search/search.hpp\"\n").size(), 1u);
+  EXPECT_EQ(judge("src/query/attic/old.cpp", "").size(), 1u);
+  EXPECT_EQ(judge("src/query/pair/pair.cpp", "#include \"query/attic/old.hpp\"\n").size(), 1u);
 }
 
 TEST(IncludeRules, RefuseOdeOutsideItsRoom) {
@@ -43,7 +56,7 @@ TEST(IncludeRules, RefusePrivateThingsInPublicHeaders) {
 TEST(IncludeRules, RefuseFoldersWithoutALayer) {
   EXPECT_EQ(judge("src/utils/misc.hpp", "").size(), 1u);
   EXPECT_EQ(judge("include/odds/everything.hpp", "").size(), 1u);
-  EXPECT_EQ(judge("src/query/pair.cpp", "#include \"odds/utils/misc.hpp\"\n").size(), 1u);
+  EXPECT_EQ(judge("src/query/pair/pair.cpp", "#include \"odds/utils/misc.hpp\"\n").size(), 1u);
 }
 
 TEST(TheHouse, IncludesGoDownOnly) {

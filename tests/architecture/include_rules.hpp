@@ -22,7 +22,50 @@ inline std::optional<int> layer_of(std::string_view folder) {
   return std::nullopt;
 }
 
-/// "include/odds/query/pair.hpp" and "src/query/pair.cpp" are in "query"; empty for a file outside the house's rooms.
+/// The rooms of a folder that has some, from its ground up. Files beside the rooms, and the folder's public headers,
+/// are its ground: rooms include them, they include no room. An include goes to a lower room or stays in its own.
+struct Room {
+  std::string_view folder;
+  std::string_view name;
+  int level;
+};
+inline constexpr Room rooms[] = {
+    {"query", "node_odds", 1}, {"query", "inner_spheres", 1},
+    {"query", "search", 2},    {"query", "patch", 3},
+    {"query", "wide", 4},      {"query", "shape", 5},
+    {"query", "ray", 5},       {"query", "known", 6},
+    {"query", "flush", 7},     {"query", "memory", 8},
+    {"query", "contacts", 9},  {"query", "answer_odds", 9},
+    {"query", "pair", 10},     {"ode", "mesh", 1},
+    {"ode", "geom", 2},        {"ode", "frame", 3},
+    {"ode", "collide", 4},     {"ode", "world", 5},
+};
+inline bool has_rooms(std::string_view folder) {
+  return std::any_of(std::begin(rooms), std::end(rooms), [&](const Room& room) { return room.folder == folder; });
+}
+/// Of the ground (empty) 0.
+inline std::optional<int> level_of(std::string_view folder, std::string_view room) {
+  if (room.empty()) return 0;
+  for (const Room& known : rooms) {
+    if (known.folder == folder && known.name == room) return known.level;
+  }
+  return std::nullopt;
+}
+
+/// What stands between the first two slashes of a path below `folder`; empty if that is a file.
+inline std::string_view room_below(std::string_view path, std::string_view folder) {
+  if (!path.starts_with(folder) || path.size() <= folder.size() || path[folder.size()] != '/') return {};
+  path.remove_prefix(folder.size() + 1);
+  const std::size_t slash = path.find('/');
+  return slash == std::string_view::npos ? std::string_view() : path.substr(0, slash);
+}
+/// The room of a file of src/; public headers are of the ground.
+inline std::string_view room_of(std::string_view path, std::string_view folder) {
+  constexpr std::string_view root = "src/";
+  return path.starts_with(root) ? room_below(path.substr(root.size()), folder) : std::string_view();
+}
+
+/// "include/odds/query/pair.hpp" and "src/query/pair/pair.cpp" are in "query"; empty for a file outside the house.
 inline std::string_view folder_of(std::string_view path) {
   for (const std::string_view root : {std::string_view("include/odds/"), std::string_view("src/")}) {
     if (!path.starts_with(root)) continue;
@@ -56,8 +99,8 @@ inline std::optional<Include> include_of(std::string_view line) {
   return Include{line.substr(1, end - 1), angled};
 }
 
-/// The room that an include leads to: of "odds/query/pair.hpp" and of the private "query/search.hpp" it is "query"; of
-/// a name without a folder the includer's own; empty for what is not ours.
+/// The folder that an include leads to: of "odds/query/pair.hpp" and of the private "query/search/search.hpp" it is
+/// "query"; of a name without a folder the includer's own; empty for what is not ours.
 inline std::string_view target_of(const Include& include, std::string_view own_folder) {
   std::string_view name = include.name;
   const bool is_public = name.starts_with("odds/");
@@ -80,6 +123,9 @@ inline Violations judge_includes(const SourceFile& file) {
   const std::string_view folder = folder_of(file.path);
   const std::optional<int> own = layer_of(folder);
   if (!own) return {file.path + ": the folder has no layer; give it one in tests/architecture/include_rules.hpp"};
+  const std::string_view room = has_rooms(folder) ? room_of(file.path, folder) : std::string_view();
+  const std::optional<int> level = level_of(folder, room);
+  if (!level) return {file.path + ": the room has no level; give it one in tests/architecture/include_rules.hpp"};
   const bool is_public = file.path.starts_with("include/");
   Violations found;
   for (const std::string_view line : lines(file.text)) {
@@ -100,6 +146,12 @@ inline Violations judge_includes(const SourceFile& file) {
       found.push_back(shown + ", in a folder without a layer");
     } else if (target != folder && *other >= *own) {
       found.push_back(shown + ": up or sideways from layer " + std::to_string(*own) + " to " + std::to_string(*other));
+    } else if (target == folder && has_rooms(folder) && !include->name.starts_with("odds/")) {
+      const std::string_view its_room = room_below(include->name, folder);
+      const std::optional<int> its_level = level_of(folder, its_room);
+      if (!its_level || (its_room != room && *its_level >= *level)) {
+        found.push_back(shown + ": up or sideways within " + std::string(folder) + "/");
+      }
     }
   }
   return found;

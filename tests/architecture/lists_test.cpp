@@ -4,6 +4,7 @@
 #include <regex>
 #include <set>
 
+#include "architecture/include_rules.hpp"
 #include "architecture/source_tree.hpp"
 #include "odds/mesh/made/by_name.hpp"
 #include "odds/volume/kind.hpp"
@@ -102,6 +103,16 @@ TEST(Lists, EveryEffectStandsOnThePageAboutScenes) {
     if (!file.path.ends_with(".cpp")) continue;
     const std::string name = std::filesystem::path(file.path).stem().string();
     EXPECT_NE(pages[0].text.find("`[effects." + name + "]`"), std::string::npos) << name;
+  }
+}
+
+TEST(Lists, EveryRoomIsSomewhereAndIsToldToContributors) {
+  const auto pages = read_files(ODDS_SOURCE_DIR, {"CONTRIBUTING.md"});
+  ASSERT_EQ(pages.size(), 1u);
+  for (const Room& room : rooms) {
+    const std::string path = std::string(room.folder) + "/" + std::string(room.name);
+    EXPECT_TRUE(std::filesystem::is_directory(std::string(ODDS_SOURCE_DIR) + "/src/" + path)) << path;
+    EXPECT_NE(pages[0].text.find("| `" + path + "` |"), std::string::npos) << path;
   }
 }
 

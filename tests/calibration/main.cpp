@@ -1,6 +1,6 @@
 // odds_calibration: fits what an answer without a proof states as its probability, or with --nodes a pair of nodes, and
 // says how true that is on meshes and poses that it was not fitted on. Prints the tables of
-// src/query/answer_odds_table.hpp and src/query/node_odds_table.hpp.
+// src/query/answer_odds/answer_odds_table.hpp and src/query/node_odds/node_odds_table.hpp.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,8 +21,8 @@
 #include "calibration/node_odds.hpp"
 #include "calibration/unproved.hpp"
 #include "odds/report/accuracy/forecast.hpp"
-#include "query/answer_odds.hpp"
-#include "query/answer_odds_table.hpp"
+#include "query/answer_odds/answer_odds.hpp"
+#include "query/answer_odds/answer_odds_table.hpp"
 
 namespace odds::calibration {
 namespace {

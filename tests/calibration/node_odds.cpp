@@ -10,7 +10,7 @@
 #include "calibration/meetings.hpp"
 #include "calibration/nodes.hpp"
 #include "odds/report/accuracy/forecast.hpp"
-#include "query/node_odds_table.hpp"
+#include "query/node_odds/node_odds_table.hpp"
 
 namespace odds::calibration {
 namespace {

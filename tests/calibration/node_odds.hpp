@@ -1,4 +1,4 @@
-// Fits the weights of src/query/node_odds_table.hpp.
+// Fits the weights of src/query/node_odds/node_odds_table.hpp.
 #pragma once
 
 #include <cstdint>

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "calibration/unproved.hpp"
-#include "query/node_odds.hpp"
+#include "query/node_odds/node_odds.hpp"
 
 namespace odds::calibration {
 

@@ -7,7 +7,7 @@
 #include <variant>
 
 #include "calibration/named_shape.hpp"
-#include "query/bottom_slice.hpp"
+#include "query/search/bottom_slice.hpp"
 #include "query/shape_data.hpp"
 #include "query/wide/searches.hpp"
 

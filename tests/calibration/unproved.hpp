@@ -9,7 +9,7 @@
 #include "odds/query/request.hpp"
 #include "odds/report/accuracy/poses.hpp"
 #include "odds/volume/kind.hpp"
-#include "query/remains.hpp"
+#include "query/answer_odds/remains.hpp"
 
 namespace odds::calibration {
 

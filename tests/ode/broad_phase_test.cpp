@@ -1,11 +1,11 @@
 // What a world's broad phase says of bodies for which it did not ask.
-#include "ode/broad_phase.hpp"
+#include "ode/geom/broad_phase.hpp"
 
 #include <limits>
 
 #include "odds/ode/world.hpp"
+#include "ode/geom/pair_table.hpp"
 #include "ode/ode_fixture.hpp"
-#include "ode/pair_table.hpp"
 
 namespace odds::test {
 namespace {

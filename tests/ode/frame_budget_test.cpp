@@ -6,10 +6,10 @@
 #include <cmath>
 #include <set>
 
+#include "ode/frame/frame_pairs.hpp"
+#include "ode/frame/importance.hpp"
 #include "ode/frame_crowd.hpp"
 #include "ode/frame_fixture.hpp"
-#include "ode/frame_pairs.hpp"
-#include "ode/importance.hpp"
 #include "support/allocation_counter.hpp"
 
 namespace odds::test {

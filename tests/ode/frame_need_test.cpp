@@ -9,11 +9,11 @@
 #include "odds/math/random.hpp"
 #include "odds/query/pair.hpp"
 #include "odds/realtime/clock.hpp"
-#include "ode/frame_budget.hpp"
+#include "ode/frame/frame_budget.hpp"
+#include "ode/frame/frame_need.hpp"
+#include "ode/frame/frame_share.hpp"
 #include "ode/frame_crowd.hpp"
 #include "ode/frame_fixture.hpp"
-#include "ode/frame_need.hpp"
-#include "ode/frame_share.hpp"
 
 namespace odds::test {
 namespace {

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "ode/frame/frame_share.hpp"
 #include "ode/frame_fixture.hpp"
-#include "ode/frame_share.hpp"
 
 namespace odds::test {
 namespace {

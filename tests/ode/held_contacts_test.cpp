@@ -1,5 +1,5 @@
 // Contacts held from tick to tick: they move with the bodies, and a body whose budget is short stays where it lies.
-#include "ode/held_contacts.hpp"
+#include "ode/geom/held_contacts.hpp"
 
 #include "odds/query/pair.hpp"
 #include "odds/realtime/clock.hpp"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <thread>
 
-#include "ode/frame_share.hpp"
+#include "ode/frame/frame_share.hpp"
 #include "ode/ode_fixture.hpp"
 
 namespace odds::test {

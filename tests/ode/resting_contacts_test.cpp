@@ -1,5 +1,5 @@
 // A mesh at rest against a box, cylinder or convex keeps its contacts, as two meshes do.
-#include "ode/resting_contacts.hpp"
+#include "ode/geom/resting_contacts.hpp"
 
 #include <cmath>
 #include <memory>

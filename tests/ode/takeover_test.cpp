@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <random>
 
-#include "ode/takeover.hpp"
+#include "ode/geom/takeover.hpp"
 #include "ode/trimesh_fixture.hpp"
 
 namespace odds::test {

@@ -10,7 +10,7 @@
 #include "odds/mesh/made/by_name.hpp"
 #include "odds/scene/simulation.hpp"
 #include "ode/budget_clock.hpp"
-#include "ode/mass_properties.hpp"
+#include "ode/mesh/mass_properties.hpp"
 #include "ode/vectors.hpp"
 #include "ode_scenes/bullet.hpp"
 

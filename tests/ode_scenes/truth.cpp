@@ -4,7 +4,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "ode/nearest_surface.hpp"
+#include "ode/mesh/nearest_surface.hpp"
 
 namespace odds::ode_scenes {
 namespace {

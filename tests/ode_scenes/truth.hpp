@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "odds/math/pose.hpp"
-#include "ode/prepared_mesh.hpp"
+#include "ode/mesh/prepared_mesh.hpp"
 
 namespace odds::ode_scenes {
 

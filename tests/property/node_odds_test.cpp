@@ -1,5 +1,5 @@
 // The odds of pairs of nodes: numbers whatever the nodes, and true on meshes that they were not fitted on.
-#include "query/node_odds.hpp"
+#include "query/node_odds/node_odds.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,9 +11,9 @@
 #include "odds/math/random.hpp"
 #include "odds/mesh/made/by_name.hpp"
 #include "odds/query/pair.hpp"
-#include "query/encounter.hpp"
-#include "query/node_odds_table.hpp"
+#include "query/node_odds/node_odds_table.hpp"
 #include "query/posed_meshes.hpp"
+#include "query/search/encounter.hpp"
 #include "support/node_sample.hpp"
 
 namespace odds::query {

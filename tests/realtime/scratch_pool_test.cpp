@@ -1,5 +1,5 @@
 // Memory that pairs share: each run has it for itself, and reads nothing that another one has left.
-#include "query/scratch_pool.hpp"
+#include "query/memory/scratch_pool.hpp"
 
 #include <gtest/gtest.h>
 

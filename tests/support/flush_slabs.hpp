@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "query/flush_contacts.hpp"
+#include "query/flush/flush_contacts.hpp"
 #include "query/wide/searches.hpp"
 #include "support/slabs.hpp"
 

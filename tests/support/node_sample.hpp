@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "odds/math/random.hpp"
-#include "query/search.hpp"
+#include "query/search/search.hpp"
 
 namespace odds::testing {
 

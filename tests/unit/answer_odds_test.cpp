@@ -1,5 +1,5 @@
 // Odds of answers without a proof.
-#include "query/answer_odds.hpp"
+#include "query/answer_odds/answer_odds.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "odds/query/pair.hpp"
-#include "query/answer_odds_table.hpp"
-#include "query/recalibration.hpp"
+#include "query/answer_odds/answer_odds_table.hpp"
+#include "query/memory/recalibration.hpp"
 #include "support/all_kinds.hpp"
 #include "support/shapes.hpp"
 

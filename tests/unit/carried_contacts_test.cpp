@@ -7,7 +7,7 @@
 
 #include "odds/mesh/made/by_name.hpp"
 #include "odds/query/pair.hpp"
-#include "query/carried_contacts.hpp"
+#include "query/known/carried_contacts.hpp"
 
 namespace odds::query {
 namespace {

@@ -9,7 +9,7 @@
 #include "odds/math/random.hpp"
 #include "odds/mesh/made/by_name.hpp"
 #include "odds/query/pair.hpp"
-#include "query/direction_about.hpp"
+#include "query/contacts/direction_about.hpp"
 
 namespace odds::query {
 namespace {

@@ -1,5 +1,5 @@
 // Contacts of flat faces that lie on each other: what two polygons say.
-#include "query/flush_contacts.hpp"
+#include "query/flush/flush_contacts.hpp"
 
 #include <gtest/gtest.h>
 

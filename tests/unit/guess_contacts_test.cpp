@@ -1,5 +1,5 @@
 // Contacts guessed in runs without time for a patch: bodies that touch elsewhere than before.
-#include "query/guess_contacts.hpp"
+#include "query/contacts/guess_contacts.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // What guesses, run after run, say together.
-#include "query/hasty_memory.hpp"
+#include "query/known/hasty_memory.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // What is remembered of the direction of a patch, and what a run without time makes of it.
-#include "query/known_direction.hpp"
+#include "query/known/known_direction.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Contacts that come late follow the bodies, stay where they have come apart by little, and push gently at first.
-#include "query/late_manifold.hpp"
+#include "query/memory/late_manifold.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,8 +8,8 @@
 
 #include "odds/mesh/made/by_name.hpp"
 #include "odds/query/pair.hpp"
-#include "query/met_place.hpp"
-#include "query/way_apart.hpp"
+#include "query/answer_odds/way_apart.hpp"
+#include "query/node_odds/met_place.hpp"
 
 namespace odds::query {
 namespace {

@@ -1,5 +1,5 @@
 // Eight pairs of a patch at a time: on every instruction set the same bits, and what one pair at a time gives.
-#include "query/patch_eight.hpp"
+#include "query/patch/eight.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "odds/query/pair.hpp"
-#include "query/pair_memory.hpp"
-#include "query/patch_eight.hpp"
+#include "query/memory/pair_memory.hpp"
+#include "query/patch/eight.hpp"
 #include "query/wide/searches.hpp"
 #include "support/contact_scene.hpp"
 #include "support/flush_slabs.hpp"

@@ -1,5 +1,5 @@
 // Late contacts of bodies that slide: rays see how deep they are where they have slid to.
-#include "query/slid_contacts.hpp"
+#include "query/contacts/slid_contacts.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "odds/mesh/made/by_name.hpp"
-#include "query/late_contacts.hpp"
-#include "query/pair_memory.hpp"
+#include "query/memory/late_contacts.hpp"
+#include "query/memory/pair_memory.hpp"
 
 namespace odds::query {
 namespace {

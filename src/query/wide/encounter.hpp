@@ -7,10 +7,10 @@
 #include "odds/query/request.hpp"
 #include "odds/tree/wide_tree.hpp"
 #include "odds/volume/aabb.hpp"
-#include "query/bucket_queue.hpp"
-#include "query/met_place.hpp"
-#include "query/node_odds.hpp"
+#include "query/node_odds/met_place.hpp"
+#include "query/node_odds/node_odds.hpp"
 #include "query/posed_meshes.hpp"
+#include "query/search/bucket_queue.hpp"
 #include "query/wide/triangle_kernel.hpp"
 
 namespace odds::query::wide {

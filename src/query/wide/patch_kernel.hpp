@@ -5,12 +5,12 @@
 #include <limits>
 
 #include "odds/math/tolerances.hpp"
-#include "query/patch_eight.hpp"
+#include "query/patch/eight.hpp"
 #include "query/wide/doubles.hpp"
 
 namespace odds::query::wide {
 
-/// The functions of patch_rim.hpp and patch_overlap.hpp in other words: without branches, and where one of eight needs
+/// The functions of patch/rim.hpp and patch/overlap.hpp in other words: without branches, and where one of eight needs
 /// care, that one is left to them.
 template <class L>
 class PatchKernel {

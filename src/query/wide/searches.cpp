@@ -60,3 +60,9 @@ const Searches* searches_for(InstructionSet set) noexcept {
 }
 
 }  // namespace odds::query::wide
+
+namespace odds::query::patch {
+
+const Kernels& best_kernels() noexcept { return wide::searches_for(InstructionSet::best)->patch; }
+
+}  // namespace odds::query::patch

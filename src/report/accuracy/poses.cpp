@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-#include "query/first_touch.hpp"
+#include "query/memory/first_touch.hpp"
 
 namespace odds::report {
 namespace {

@@ -1,0 +1,47 @@
+// Where the axis of a capsule comes near the surface of a mesh, or goes through it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "ode/collide/limit.hpp"
+#include "ode/mesh/prepared_mesh.hpp"
+
+namespace odds::ode {
+
+/// In the mesh's frame, metres: all points at most `radius` from the segment between the two ends.
+struct Capsule {
+  std::array<Vec3, 2> ends;
+  double radius;
+  Mat3 axes;  ///< columns; the third leads from the first end to the second
+
+  [[nodiscard]] Vec3 middle() const noexcept { return 0.5 * (ends[0] + ends[1]); }
+};
+
+/// The point of one triangle that is nearest to the axis.
+struct CapsulePlace {
+  Vec3 on_axis;
+  Vec3 on_surface;
+  double distance;  ///< 0: the axis meets the triangle there
+  std::uint32_t triangle;
+};
+
+struct CapsulePlaces {
+  static constexpr std::size_t most = 256;
+  std::array<CapsulePlace, most> all;
+  std::size_t count = 0;
+  bool complete = true;  ///< false: some triangle was left out; the nearest of all is there if the time allowed it
+
+  [[nodiscard]] std::span<const CapsulePlace> span() const noexcept { return {all.data(), count}; }
+};
+
+/// One place for each triangle that is nearer to the axis than the radius, nearest first. noexcept, no allocation.
+void find_places(const PreparedMesh& mesh, const Capsule& capsule, Limit& limit, CapsulePlaces& places) noexcept;
+
+/// Whether no nearer triangle of `places` touches the place: otherwise it is only the rim of a neighbour, and its
+/// normal would be that of an internal edge.
+[[nodiscard]] bool is_local_minimum(const PreparedMesh& mesh, const CapsulePlaces& places, std::size_t index,
+                                    double tolerance) noexcept;
+
+}  // namespace odds::ode

@@ -1,0 +1,184 @@
+// Our class against ODE's capsule: the places where its axis comes nearest to the surface, and its two ends.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "ode/collide/capsule_places.hpp"
+#include "ode/collide/contact_writer.hpp"
+#include "ode/collide/manifold.hpp"
+#include "ode/geom/colliders.hpp"
+#include "ode/geom/geom_data.hpp"
+#include "ode/mesh/nearest_surface.hpp"
+#include "ode/mesh/triangle_corners.hpp"
+#include "ode/statistics.hpp"
+
+namespace odds::ode {
+namespace {
+
+// Relative to the radius: nearer places are one place, and an axis this near to the surface is on it.
+constexpr double same_place = 1e-6;
+// An end adds a contact only if it is this part of the radius away from those that are there.
+constexpr double separate_end = 1e-2;
+// Cosine from which on a place beside an axis that goes through the surface belongs to the same patch.
+constexpr double same_patch = 0.85;
+
+struct CapsuleContact {
+  Vec3 position;  // mesh frame
+  Vec3 out;       // unit, the way of the capsule out of the mesh
+  double depth;
+  std::uint32_t triangle;
+};
+
+struct CapsuleContacts {
+  std::array<CapsuleContact, 2 * most_contacts> all;
+  std::size_t count = 0;
+
+  void add(const CapsuleContact& contact) noexcept {
+    if (count < all.size() && contact.depth >= 0.0) all[count++] = contact;
+  }
+  [[nodiscard]] bool near(const Vec3& position, double distance) const noexcept {
+    return std::any_of(all.begin(), all.begin() + count,
+                       [&](const CapsuleContact& c) { return (c.position - position).norm() <= distance; });
+  }
+};
+
+// Both ends against one plane through `on_surface`: the capsule lies across it, or is altogether behind it.
+void add_ends_behind(const Capsule& capsule, const Vec3& on_surface, const Vec3& out, std::uint32_t triangle,
+                     CapsuleContacts& contacts) noexcept {
+  for (const Vec3& end : capsule.ends) {
+    const double below = out.dot(on_surface - end);
+    if (below + capsule.radius > 0.0) contacts.add({end + below * out, out, below + capsule.radius, triangle});
+  }
+}
+
+// The axis goes through the surface: of all crossings the one whose plane is left soonest tells the way out. A sheet
+// is left to the side of the capsule's middle.
+std::optional<Vec3> add_crossing(const PreparedMesh& mesh, const Capsule& capsule, const CapsulePlaces& places,
+                                 CapsuleContacts& contacts) noexcept {
+  const CapsulePlace* best = nullptr;
+  Vec3 best_out = Vec3::Zero();
+  double least = std::numeric_limits<double>::infinity();
+  for (const CapsulePlace& place : places.span()) {
+    if (place.distance > same_place * capsule.radius) break;
+    Vec3 out = unit_normal(mesh.corners(place.triangle));
+    if (out == Vec3::Zero()) continue;
+    if (!mesh.closed && out.dot(capsule.middle() - place.on_surface) < 0.0) out = -out;
+    const double depth =
+        std::max(out.dot(place.on_surface - capsule.ends[0]), out.dot(place.on_surface - capsule.ends[1]));
+    if (depth >= least) continue;
+    least = depth;
+    best = &place;
+    best_out = out;
+  }
+  if (best == nullptr) return std::nullopt;
+  add_ends_behind(capsule, best->on_surface, best_out, best->triangle, contacts);
+  return best_out;
+}
+
+// The axis is outside: where its distance has a local minimum. `apart_from`: only what is not of that patch.
+void add_minima(const PreparedMesh& mesh, const Capsule& capsule, const CapsulePlaces& places,
+                const std::optional<Vec3>& apart_from, const Limit& limit, CapsuleContacts& contacts) noexcept {
+  for (std::size_t i = 0; i < places.count && contacts.count < most_contacts; ++i) {
+    const CapsulePlace& place = places.all[i];
+    if (place.distance <= same_place * capsule.radius) continue;
+    const Vec3 out = (place.on_axis - place.on_surface) / place.distance;
+    if (apart_from && out.dot(*apart_from) > same_patch) continue;
+    if (apart_from && mesh.closed && out.dot(unit_normal(mesh.corners(place.triangle))) < 0.0) continue;
+    // Where triangles were left out, a rim of one of them would pass for a minimum.
+    if (contacts.count > 0 && (!places.complete || limit.time_is_up())) return;
+    if (contacts.count > 0 && !is_local_minimum(mesh, places, i, same_place * capsule.radius)) continue;
+    contacts.add({place.on_surface, out, capsule.radius - place.distance, place.triangle});
+  }
+}
+
+// Each end as a ball: a capsule that lies needs both, whichever is a little deeper.
+void add_end_balls(const PreparedMesh& mesh, const Capsule& capsule, Limit& limit, CapsuleContacts& contacts) noexcept {
+  for (const Vec3& end : capsule.ends) {
+    if (limit.time_is_up()) return;
+    const auto nearest = nearest_surface(mesh, end, capsule.radius, limit.units);
+    if (!nearest || nearest->inside || nearest->distance <= same_place * capsule.radius) continue;
+    if (contacts.near(nearest->point, separate_end * capsule.radius)) continue;
+    contacts.add({nearest->point, (end - nearest->point) / nearest->distance, capsule.radius - nearest->distance,
+                  nearest->triangle});
+  }
+}
+
+// No triangle crosses the axis: outside the mesh, or all of it inside.
+void add_beside(const PreparedMesh& mesh, const Capsule& capsule, const CapsulePlaces& places, Limit& limit,
+                CapsuleContacts& contacts) noexcept {
+  const Vec3 probe = places.count > 0 ? places.all[0].on_axis : capsule.middle();
+  if (mesh.closed && in_bounds(mesh, probe)) {
+    const auto nearest = nearest_surface(mesh, probe, std::numeric_limits<double>::infinity(), limit.units);
+    if (nearest && nearest->inside) {
+      add_ends_behind(capsule, nearest->point, nearest->outward, nearest->triangle, contacts);
+      return;
+    }
+  }
+  add_minima(mesh, capsule, places, std::nullopt, limit, contacts);
+  add_end_balls(mesh, capsule, limit, contacts);
+}
+
+// The deepest first, then always the one farthest from those before it.
+void write(CapsuleContacts& contacts, const math::Pose& pose, ContactWriter& writer) noexcept {
+  const auto deeper = [](const CapsuleContact& a, const CapsuleContact& b) { return a.depth > b.depth; };
+  for (auto next = contacts.all.begin(); next != contacts.all.begin() + contacts.count; ++next) {
+    std::rotate(std::upper_bound(contacts.all.begin(), next, *next, deeper), next, next + 1);
+  }
+  for (std::size_t done = 0; done < contacts.count && !writer.full(); ++done) {
+    std::size_t next = done;
+    double farthest = -1.0;
+    for (std::size_t i = done; done > 0 && i < contacts.count; ++i) {
+      double gap = std::numeric_limits<double>::infinity();
+      for (std::size_t k = 0; k < done; ++k) {
+        gap = std::min(gap, (contacts.all[i].position - contacts.all[k].position).norm());
+      }
+      if (gap > farthest) {
+        farthest = gap;
+        next = i;
+      }
+    }
+    std::swap(contacts.all[done], contacts.all[next]);
+    const CapsuleContact& contact = contacts.all[done];
+    writer.add(pose * contact.position, -(pose.rotation * contact.out), contact.depth, contact.triangle,
+               query::no_feature);
+  }
+}
+
+}  // namespace
+
+int collide_capsule(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int skip) noexcept {
+  count(statistics().primitive_queries);
+  const GeomData& data = own_data(o1);
+  const PreparedMesh& mesh = *data.mesh;
+  const std::optional<math::Pose> mesh_in_world = world_pose(o1);
+  const std::optional<math::Pose> capsule_in_world = world_pose(o2);
+  dReal radius = 0;
+  dReal length = 0;
+  dGeomCapsuleGetParams(o2, &radius, &length);
+  if (!mesh_in_world || !capsule_in_world || !(radius < dInfinity) || !(length < dInfinity)) {
+    count(statistics().bad_poses);
+    return 0;
+  }
+  Limit limit(data.settings);
+  const math::Pose capsule_in_mesh = mesh_in_world->inverse() * *capsule_in_world;
+  const Vec3 half_axis = 0.5 * length * capsule_in_mesh.rotation.col(2);
+  const Capsule capsule = {{capsule_in_mesh.translation - half_axis, capsule_in_mesh.translation + half_axis},
+                           radius,
+                           capsule_in_mesh.rotation};
+  CapsulePlaces places;
+  find_places(mesh, capsule, limit, places);
+  CapsuleContacts found;
+  if (places.count > 0 && places.all[0].distance <= same_place * capsule.radius) {
+    const std::optional<Vec3> out = add_crossing(mesh, capsule, places, found);
+    add_minima(mesh, capsule, places, out, limit, found);
+  } else {
+    add_beside(mesh, capsule, places, limit, found);
+  }
+  ContactWriter writer(o1, o2, room_for(flags, data.settings.max_contacts), contacts, skip);
+  write(found, *mesh_in_world, writer);
+  return limit.finish(places.complete && limit.units > 0, writer.count());
+}
+
+}  // namespace odds::ode

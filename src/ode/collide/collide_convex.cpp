@@ -1,0 +1,79 @@
+// Our class against ODE's convex geoms, which tell nothing about themselves: their arrays must be given once more.
+#include <algorithm>
+#include <exception>
+#include <string_view>
+#include <vector>
+
+#include "ode/collide/convex_contacts.hpp"
+#include "ode/geom/colliders.hpp"
+#include "ode/geom/partners.hpp"
+#include "ode/last_error.hpp"
+#include "ode/statistics.hpp"
+
+namespace odds::ode {
+namespace {
+
+// Whether the geom still is what was registered: ODE's box around it is that around the registered points. So a geom
+// that was destroyed, and another that was made at its address, is found out.
+bool has_bounds_of(const ConvexShape& shape, dGeomID geom) noexcept {
+  const std::optional<math::Pose> pose = world_pose(geom);
+  if (!pose) return true;  // the collision itself answers bad poses
+  dReal aabb[6];
+  dGeomGetAABB(geom, aabb);
+  const double tolerance = 1e-6 * shape.box_half_extents().norm() + 1e-12 * pose->translation.cwiseAbs().maxCoeff();
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 along = pose->rotation.transpose().col(axis);
+    const double lower = pose->translation[axis] - shape.reach(-along);
+    const double upper = pose->translation[axis] + shape.reach(along);
+    const bool same =
+        std::abs(aabb[2 * axis] - lower) <= tolerance && std::abs(aabb[2 * axis + 1] - upper) <= tolerance;
+    if (!same) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+int collide_convex(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int skip) noexcept {
+  const Partner* partner = partner_table().find(o2);
+  if (partner == nullptr || partner->convex == nullptr) return collide_unsupported(o1, o2, flags, contacts, skip);
+  if (!has_bounds_of(*partner->convex, o2)) {
+    count(statistics().changed_partners);
+    return collide_unsupported(o1, o2, flags, contacts, skip);
+  }
+  return collide_convex_body(o1, o2, *partner->convex, flags, contacts, skip);
+}
+
+}  // namespace odds::ode
+
+int oddsRegisterConvex(dGeomID convex, const dReal* points, unsigned point_count, const unsigned* polygons,
+                       unsigned polygon_count) noexcept {
+  using namespace odds::ode;
+  if (oddsGetClass() < 0 || convex == nullptr || dGeomGetClass(convex) != dConvexClass || points == nullptr) {
+    set_last_error(
+        "oddsRegisterConvex: the library is not initialised, or not a geom made by dCreateConvex, or no points");
+    return 0;
+  }
+  try {
+    std::vector<odds::Vec3> corners(point_count);
+    for (odds::Vec3& corner : corners) {
+      corner = odds::Vec3(points[0], points[1], points[2]);
+      points += 3;
+    }
+    auto shape = ConvexShape::make(corners, polygons, polygon_count);
+    if (!shape.ok()) {
+      set_last_error(shape.error());
+      return 0;
+    }
+    auto partner = std::make_unique<Partner>();
+    partner->geom = convex;
+    partner->convex = std::move(shape).value();
+    partner_table().put(std::move(partner));
+    return 1;
+  } catch (const std::exception& error) {
+    set_last_error(std::string_view(error.what()));
+  } catch (...) {
+    set_last_error("oddsRegisterConvex: unknown failure");
+  }
+  return 0;
+}

@@ -1,0 +1,114 @@
+// Our class against ODE's sphere: the places of the surface that are locally nearest to the centre.
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "ode/collide/contact_writer.hpp"
+#include "ode/collide/limit.hpp"
+#include "ode/geom/colliders.hpp"
+#include "ode/mesh/nearest_surface.hpp"
+#include "ode/mesh/triangle_corners.hpp"
+#include "ode/statistics.hpp"
+
+namespace odds::ode {
+namespace {
+
+constexpr std::size_t most_near_triangles = 256;
+// Relative to the radius: nearer places are one place. Neighbours share their common edge to rounding only.
+constexpr double same_place = 1e-6;
+
+struct Place {
+  Vec3 point;
+  double distance;
+  std::uint32_t triangle;
+};
+
+struct Places {
+  std::array<Place, most_near_triangles> all;
+  std::size_t count = 0;
+  bool complete = true;
+};
+
+// The nearest point of every triangle that is no farther than the radius, nearest first.
+void find_places(const PreparedMesh& mesh, const Vec3& center, double radius, Limit& limit, Places& places) noexcept {
+  std::array<std::uint32_t, most_near_triangles> near;
+  const std::size_t count = query::triangles_in_box(*mesh.shape, center, Mat3::Identity(), Vec3::Constant(radius), near,
+                                                    limit.units, &places.complete);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (limit.time_is_up()) {
+      places.complete = false;
+      break;
+    }
+    const Vec3 point = closest_point(mesh.corners(near[i]), center);
+    const double distance = (point - center).norm();
+    if (distance <= radius) places.all[places.count++] = {point, distance, near[i]};
+  }
+  std::sort(places.all.begin(), places.all.begin() + places.count, [](const Place& a, const Place& b) {
+    return a.distance != b.distance ? a.distance < b.distance : a.triangle < b.triangle;
+  });
+}
+
+// A place on an edge or corner is no local minimum of the distance if another triangle that shares it comes closer:
+// then it is only the rim of a neighbour, and its normal would be that of an internal edge.
+bool is_local_minimum(const PreparedMesh& mesh, const Places& places, std::size_t index, double tolerance) noexcept {
+  const Place& place = places.all[index];
+  for (std::size_t i = 0; i < index; ++i) {
+    const Place& closer = places.all[i];
+    const bool same = (closer.point - place.point).norm() <= tolerance;
+    if (same) return false;
+    if (closer.distance >= place.distance) continue;
+    if ((closest_point(mesh.corners(closer.triangle), place.point) - place.point).norm() <= tolerance) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+int collide_sphere(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int skip) noexcept {
+  count(statistics().primitive_queries);
+  const GeomData& data = own_data(o1);
+  const PreparedMesh& mesh = *data.mesh;
+  const std::optional<math::Pose> pose = world_pose(o1);
+  const dReal* p = dGeomGetPosition(o2);
+  const Vec3 world_center(p[0], p[1], p[2]);
+  const double radius = dGeomSphereGetRadius(o2);
+  if (!pose || !is_position(world_center) || !(radius < dInfinity)) {
+    count(statistics().bad_poses);
+    return 0;
+  }
+  Limit limit(data.settings);
+  const Vec3 center = pose->inverse() * world_center;
+  const bool may_be_inside = mesh.closed && in_bounds(mesh, center);
+  const double reach = may_be_inside ? std::numeric_limits<double>::infinity() : radius;
+  const std::optional<NearestSurface> nearest = nearest_surface(mesh, center, reach, limit.units);
+  bool complete = limit.units > 0;
+
+  ContactWriter writer(o1, o2, room_for(flags, data.settings.max_contacts), contacts, skip);
+  if (nearest && (nearest->inside || nearest->distance <= radius)) {
+    // Towards the mesh seen from outside; from the pseudo-normal where the centre is on the surface itself.
+    const bool on_surface = nearest->distance <= same_place * radius;
+    const double side = nearest->inside ? -1.0 : 1.0;
+    const Vec3 into_mesh =
+        on_surface ? Vec3(-nearest->outward) : Vec3(side / nearest->distance * (nearest->point - center));
+    writer.add(*pose * nearest->point, pose->rotation * into_mesh, radius - side * nearest->distance, nearest->triangle,
+               query::no_feature);
+    if (!nearest->inside && !on_surface && !writer.full()) {
+      Places found;
+      find_places(mesh, center, radius, limit, found);
+      complete = complete && found.complete;
+      // Without depth nothing pushes, and every triangle that is touched is told, as by ODE.
+      const bool only_touches = nearest->distance == radius;
+      for (std::size_t i = 0; i < found.count && found.complete && !writer.full(); ++i) {
+        const Place& place = found.all[i];
+        const bool written = only_touches ? place.triangle == nearest->triangle
+                                          : (place.point - nearest->point).norm() <= same_place * radius;
+        if (written || !(only_touches || is_local_minimum(mesh, found, i, same_place * radius))) continue;
+        writer.add(*pose * place.point, pose->rotation * ((place.point - center) / place.distance),
+                   radius - place.distance, place.triangle, query::no_feature);
+      }
+    }
+  }
+  return limit.finish(complete, writer.count());
+}
+
+}  // namespace odds::ode

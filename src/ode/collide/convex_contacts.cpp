@@ -1,0 +1,410 @@
+// Gathering the surface inside a convex body, grouping it, choosing points.
+#include "ode/collide/convex_contacts.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "ode/collide/convex_patch.hpp"
+#include "ode/collide/manifold.hpp"
+#include "ode/geom/geom_data.hpp"
+#include "ode/mesh/nearest_surface.hpp"
+#include "ode/mesh/triangle_corners.hpp"
+#include "ode/statistics.hpp"
+
+namespace odds::ode {
+namespace {
+
+constexpr std::size_t most_pieces = 128;
+constexpr std::size_t most_patches = 6;
+constexpr std::size_t most_points = 256;
+constexpr double same_patch = 0.85;   // cosine of the largest angle to a patch's first normal, 32 degrees
+constexpr double least_depth = 1e-3;  // of the deepest point of a manifold
+constexpr double equally_deep = 1.0 - 1e-6;
+constexpr double clearly_shallower = 0.99;
+constexpr double same_direction = 0.999;  // patches that leave the same way are one manifold
+constexpr double same_place = 1e-6;       // of the body's size
+
+struct Pieces {
+  std::array<Piece, most_pieces> all;
+  std::size_t count = 0;
+  bool complete = true;
+  bool cut_off = false;  // by the limit; else only the room for pieces was too small
+};
+
+struct Patch {
+  std::array<const Piece*, most_pieces> pieces;
+  std::size_t count = 0;
+  Exit exit;
+  [[nodiscard]] std::span<const Piece* const> span() const noexcept { return {pieces.data(), count}; }
+};
+
+struct Point {
+  Vec3 position;  // on the surface, body frame
+  double depth;   // metres inside the body, against the direction
+  std::uint32_t triangle;
+};
+
+// The points of one manifold as a source for select_manifold; only those with a depth worth having.
+struct Points {
+  std::array<Point, most_points> all;
+  std::size_t count = 0;
+  Vec3 normal = Vec3::Zero();
+
+  void add(const Vec3& position, double depth, std::uint32_t triangle) noexcept {
+    if (count < most_points) all[count++] = {position, depth, triangle};
+  }
+  // Drops points that touch only: they would push where nothing overlaps, and hide deeper ones at the same place.
+  void keep_deep() noexcept {
+    double deepest = 0.0;
+    for (std::size_t i = 0; i < count; ++i) deepest = std::max(deepest, all[i].depth);
+    const auto shallow = [deepest](const Point& p) { return p.depth < least_depth * deepest; };
+    count = static_cast<std::size_t>(std::remove_if(all.begin(), all.begin() + count, shallow) - all.begin());
+  }
+  // Drops points that are nearer than `distance` to one that is clearly deeper.
+  void keep_apart(double distance) noexcept {
+    if (!(distance > 0.0)) return;
+    std::sort(all.begin(), all.begin() + count, [](const Point& a, const Point& b) { return a.depth > b.depth; });
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      bool hidden = false;
+      for (std::size_t k = 0; k < kept && !hidden; ++k) {
+        if (!(all[k].depth * clearly_shallower > all[i].depth)) break;  // nor is any after it
+        hidden = (all[k].position - all[i].position).norm() < distance;
+      }
+      if (!hidden) all[kept++] = all[i];
+    }
+    count = kept;
+  }
+  [[nodiscard]] const Vec3& position(std::uint32_t i) const noexcept { return all[i].position; }
+  template <class Value>
+  [[nodiscard]] std::uint32_t greatest(const Value& value) const noexcept {
+    std::uint32_t best = no_item;
+    double best_value = -std::numeric_limits<double>::infinity();
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const double v = value(all[i]);
+      if (v > best_value) {
+        best_value = v;
+        best = i;
+      }
+    }
+    return best;
+  }
+  // Of the deepest the outermost: stable where a whole face lies on the surface.
+  [[nodiscard]] std::uint32_t first() const noexcept {
+    double deepest = 0.0;
+    Vec3 middle = Vec3::Zero();
+    for (std::size_t i = 0; i < count; ++i) {
+      deepest = std::max(deepest, all[i].depth);
+      middle += all[i].position / static_cast<double>(count);
+    }
+    return greatest(
+        [&](const Point& p) { return p.depth < equally_deep * deepest ? -1.0 : (p.position - middle).squaredNorm(); });
+  }
+  [[nodiscard]] std::uint32_t farthest(const Vec3& from) const noexcept {
+    return greatest([&](const Point& p) {
+      const Vec3 d = p.position - from;
+      return (d - d.dot(normal) * normal).squaredNorm();
+    });
+  }
+  [[nodiscard]] std::uint32_t extreme(const Vec3& direction) const noexcept {
+    return greatest([&](const Point& p) { return direction.dot(p.position); });
+  }
+};
+
+// Cuts every triangle near the body. Many small ones are gathered octant by octant, so that those kept are spread
+// evenly.
+void gather(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const ConvexBody& body, Limit& limit,
+            Pieces& pieces) noexcept {
+  std::array<std::uint32_t, most_pieces> near;
+  const math::Pose mesh_in_body = body_in_mesh.inverse();
+  const auto cut_all = [&](std::size_t count) {
+    for (std::size_t i = 0; i < count && pieces.count < most_pieces; ++i) {
+      if (limit.time_is_up()) {
+        pieces.complete = false;
+        pieces.cut_off = true;
+        return;
+      }
+      Corners corners = mesh.corners(near[i]);
+      for (Vec3& corner : corners) corner = mesh_in_body * corner;
+      Piece& piece = pieces.all[pieces.count];
+      piece.triangle = near[i];
+      if (cut_by_sides(corners, body, piece)) ++pieces.count;
+    }
+  };
+  const Vec3& half = body.box_half_extents();
+  const std::size_t found = query::triangles_in_box(*mesh.shape, body_in_mesh * body.box_center(),
+                                                    body_in_mesh.rotation, half, near, limit.units, &pieces.complete);
+  pieces.cut_off = !pieces.complete && found < near.size();
+  if (pieces.complete) return cut_all(found);
+  for (int octant = 0; octant < 8; ++octant) {
+    const Vec3 center = body.box_center() +
+                        0.5 * half.cwiseProduct(Vec3(octant & 1 ? 1 : -1, octant & 2 ? 1 : -1, octant & 4 ? 1 : -1));
+    bool octant_complete = true;
+    const std::size_t part =
+        query::triangles_in_box(*mesh.shape, body_in_mesh * center, body_in_mesh.rotation, 0.5 * half,
+                                std::span(near).first(most_pieces / 8), limit.units, &octant_complete);
+    pieces.cut_off = pieces.cut_off || (!octant_complete && part < most_pieces / 8);
+    cut_all(part);
+  }
+}
+
+// Greedy, largest piece first: a piece joins the first patch whose leader's normal is close, or leads a new one.
+std::size_t group(Pieces& pieces, std::array<Patch, most_patches>& patches) noexcept {
+  std::sort(pieces.all.begin(), pieces.all.begin() + pieces.count, [](const Piece& a, const Piece& b) {
+    return a.area != b.area ? a.area > b.area : a.triangle < b.triangle;
+  });
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < pieces.count; ++i) {
+    const Piece& piece = pieces.all[i];
+    std::size_t into = count;
+    double closest = same_patch;
+    for (std::size_t k = 0; k < count; ++k) {
+      const double cosine = patches[k].pieces[0]->normal.dot(piece.normal);
+      if (cosine > closest || (count == most_patches && into == count)) {
+        closest = std::max(closest, cosine);
+        into = k;
+      }
+    }
+    if (into == count) patches[count++].count = 0;
+    patches[into].pieces[patches[into].count++] = &piece;
+  }
+  return count;
+}
+
+bool contains(const Piece& piece, const Vec3& point) noexcept {
+  for (std::size_t i = 0; i < piece.count; ++i) {
+    const Vec3 edge = piece.corners[(i + 1) % piece.count] - piece.corners[i];
+    if (piece.normal.cross(edge).dot(point - piece.corners[i]) < -1e-12 * edge.squaredNorm()) return false;
+  }
+  return true;
+}
+
+// Corners of the body under the piece: where one dips through a face, no corner of the piece itself is deep.
+void add_corners_below(const Piece& piece, const Vec3& direction, const Features& features, Points& points) noexcept {
+  const double facing = piece.normal.dot(direction);
+  if (!(facing > 1e-6)) return;
+  for (std::size_t c = 0; c < features.corner_count; ++c) {
+    const Vec3& corner = features.corners[c];
+    const double depth = piece.normal.dot(piece.corners[0] - corner) / facing;
+    const Vec3 above = corner + depth * direction;
+    if (depth > 0.0 && contains(piece, above)) points.add(above, depth, piece.triangle);
+  }
+}
+
+// Edges of the surface over edges of the body: the deepest place where a ridge lies across an edge.
+void add_edge_crossings(const Piece& piece, const Vec3& direction, const Features& features, Points& points) noexcept {
+  for (std::size_t i = 0; i < piece.count; ++i) {
+    if (piece.side[i] != Piece::own_edge) continue;
+    const Vec3& begin = piece.corners[i];
+    const Vec3 edge = piece.corners[(i + 1) % piece.count] - begin;
+    for (std::size_t e = 0; e < features.edge_count; ++e) {
+      const Vec3 along = features.edges[e].end - features.edges[e].begin;
+      // begin + s edge = edge's begin + u along + depth direction
+      Mat3 system;
+      system << edge, -along, -direction;
+      const double determinant = system.determinant();
+      if (!(std::abs(determinant) > 1e-9 * edge.norm() * along.norm())) continue;
+      const Vec3 solution = system.inverse() * (features.edges[e].begin - begin);
+      const bool crosses = solution[0] >= 0.0 && solution[0] <= 1.0 && solution[1] >= 0.0 && solution[1] <= 1.0;
+      if (crosses && solution[2] > 0.0) points.add(begin + solution[0] * edge, solution[2], piece.triangle);
+    }
+  }
+}
+
+bool is_flat(const Patch& patch) noexcept {
+  return std::all_of(patch.pieces.begin(), patch.pieces.begin() + patch.count,
+                     [&](const Piece* piece) { return piece->normal.dot(patch.pieces[0]->normal) > 1.0 - 1e-9; });
+}
+
+void add_points(const Patch& patch, const Vec3& direction, const ConvexBody& body, bool ridges, const Limit& limit,
+                Points& points) noexcept {
+  Features features;
+  body.add_features(direction, patch.exit.depth, features);
+  for (const Piece* piece : patch.span()) {
+    if (points.count > 0 && limit.time_is_up()) return;
+    add_corners_below(*piece, direction, features, points);
+    if (ridges) add_edge_crossings(*piece, direction, features, points);
+  }
+  for (const Piece* piece : patch.span()) {
+    if (points.count > 0 && limit.time_is_up()) return;
+    for (std::size_t i = 0; i < piece->count; ++i) {
+      const Vec3 corner = body.pull_in(piece->corners[i]);
+      points.add(corner, body.way_through(corner, -direction), piece->triangle);
+    }
+  }
+}
+
+// Patches whose exits lead the same way are one manifold; the room left is shared among the manifolds still to come.
+void write_manifolds(std::span<Patch> patches, const ConvexBody& body, const math::Pose& body_in_world,
+                     const Limit& limit, ContactWriter& writer, int room) noexcept {
+  std::sort(patches.begin(), patches.end(), [](const Patch& a, const Patch& b) { return a.exit.depth > b.exit.depth; });
+  const auto same = [](const Patch& a, const Patch& b) {
+    return a.exit.direction.dot(b.exit.direction) > same_direction;
+  };
+  std::array<std::size_t, most_patches> leader = {};  // the first patch that leaves the same way
+  std::size_t manifolds = 0;
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    while (leader[i] < i && !(leader[leader[i]] == leader[i] && same(patches[leader[i]], patches[i]))) ++leader[i];
+    manifolds += leader[i] == i ? 1 : 0;
+  }
+  const bool ridges = patches.size() > 1 || !is_flat(patches[0]) || body.crowding() > 0.0;
+  for (std::size_t i = 0; i < patches.size() && !writer.full(); ++i) {
+    if (leader[i] != i) continue;
+    Points points;
+    points.normal = patches[i].exit.direction;
+    for (std::size_t k = i; k < patches.size(); ++k) {
+      if (leader[k] == i) add_points(patches[k], points.normal, body, ridges, limit, points);
+    }
+    points.keep_deep();
+    points.keep_apart(body.crowding());
+    const std::size_t share = (static_cast<std::size_t>(room - writer.count()) + manifolds - 1) / manifolds;
+    --manifolds;
+    std::array<std::uint32_t, most_contacts> chosen;
+    const std::size_t count = select_manifold(points, points.normal, same_place * body.box_half_extents().norm(),
+                                              std::span(chosen).first(std::min(share, most_contacts)));
+    const Vec3 into_mesh = -(body_in_world.rotation * points.normal);
+    for (std::size_t c = 0; c < count; ++c) {
+      const Point& point = points.all[chosen[c]];
+      writer.add(body_in_world * point.position, into_mesh, std::min(point.depth, patches[i].exit.depth),
+                 point.triangle, query::no_feature);
+    }
+  }
+}
+
+// Whether no patch's leading piece lies in front of another's: then they bound a convex corner or edge.
+bool are_convex(std::span<const Patch> patches, double tolerance) noexcept {
+  const auto middle = [](const Piece& piece) {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t i = 0; i < piece.count; ++i) sum += piece.corners[i];
+    return Vec3(sum / static_cast<double>(piece.count));
+  };
+  for (const Patch& a : patches) {
+    for (const Patch& b : patches) {
+      if (a.pieces[0]->normal.dot(middle(*b.pieces[0]) - middle(*a.pieces[0])) > tolerance) return false;
+    }
+  }
+  return true;
+}
+
+// The exits of all patches: one and the same if the body lies on a convex edge or corner, or if a common way is no
+// longer than the longest of their own; else each its own (it stands in a concave corner).
+void find_exits(std::span<Patch> patches, const Pieces& pieces, const ConvexBody& body, const Limit& limit) noexcept {
+  double longest = 0.0;
+  for (Patch& patch : patches) {
+    patch.exit = shortest_exit(patch.span(), body, limit);
+    longest = std::max(longest, patch.exit.depth);
+  }
+  if (patches.size() == 1) return;
+  std::array<const Piece*, most_pieces> everything;
+  for (std::size_t i = 0; i < pieces.count; ++i) everything[i] = &pieces.all[i];
+  const Exit common = shortest_exit({everything.data(), pieces.count}, body, limit);
+  const bool is_common =
+      common.depth <= longest * (1.0 + 1e-6) || are_convex(patches, same_place * body.box_half_extents().norm());
+  if (!is_common || !(common.depth < dInfinity)) return;
+  for (Patch& patch : patches) patch.exit = common;
+}
+
+// No surface inside the body: it may still be swallowed by a closed mesh, and is pushed to the nearest surface.
+void push_out(const PreparedMesh& mesh, const math::Pose& mesh_in_world, const math::Pose& body_in_mesh,
+              const ConvexBody& body, Limit& limit, ContactWriter& writer) noexcept {
+  const Vec3 center = body_in_mesh * body.center();
+  if (!mesh.closed || !in_bounds(mesh, center)) return;
+  const auto nearest = nearest_surface(mesh, center, std::numeric_limits<double>::infinity(), limit.units);
+  if (!nearest || !nearest->inside) return;
+  const Vec3 outward = body_in_mesh.rotation.transpose() * nearest->outward;
+  const double below_center = body.reach(-outward) + outward.dot(body.center());
+  writer.add(mesh_in_world * nearest->point, -(mesh_in_world.rotation * nearest->outward),
+             nearest->distance + below_center, nearest->triangle, query::no_feature);
+}
+
+// What is kept of bodies that rest; false if the contacts must be made.
+bool write_resting(const PreparedMesh& mesh, const math::Pose& mesh_in_world, const math::Pose& body_in_mesh,
+                   const ConvexBody& body, const RestingContacts::Question& question, double motion, double size,
+                   RestingContacts& resting, Limit& limit, ContactWriter& writer) noexcept {
+  const math::Pose mesh_in_body = body_in_mesh.inverse();
+  const auto meets = [&](std::uint32_t triangle) noexcept {
+    if (limit.units == 0 || limit.time_is_up()) return false;
+    --limit.units;
+    Corners corners = mesh.corners(triangle);
+    for (Vec3& corner : corners) corner = mesh_in_body * corner;
+    Piece piece;
+    return cut_by_sides(corners, body, piece);
+  };
+  std::array<query::Contact, query::most_contacts> held;
+  const std::size_t count = resting.write(question, body_in_mesh, motion, size, meets, held);
+  for (const query::Contact& contact : std::span(held).first(count)) {
+    const Vec3 on_mesh = contact.position - 0.5 * contact.depth * contact.normal;
+    writer.add(mesh_in_world * on_mesh, mesh_in_world.rotation * contact.normal, contact.depth, contact.triangle_a,
+               query::no_feature);
+  }
+  return count > 0;
+}
+
+// Keeps what was written. A contact between meshes is half-way between two surfaces, these are on the mesh's own.
+void keep_resting(const math::Pose& mesh_in_world, const math::Pose& body_in_mesh, const ContactWriter& writer,
+                  const RestingContacts::Question& question, RestingContacts& resting) noexcept {
+  std::array<query::Contact, query::most_contacts> made;
+  const math::Pose into_mesh = mesh_in_world.inverse();
+  const auto count = static_cast<std::size_t>(writer.count());
+  for (std::size_t i = 0; i < count; ++i) {
+    const dContactGeom& contact = writer[static_cast<int>(i)];
+    made[i].normal = into_mesh.rotation * Vec3(contact.normal[0], contact.normal[1], contact.normal[2]);
+    made[i].depth = contact.depth;
+    made[i].position =
+        into_mesh * Vec3(contact.pos[0], contact.pos[1], contact.pos[2]) + 0.5 * made[i].depth * made[i].normal;
+    made[i].triangle_a = static_cast<std::uint32_t>(contact.side1);
+    made[i].triangle_b = query::no_feature;
+  }
+  resting.keep(question, std::span(made).first(count), body_in_mesh);
+}
+
+}  // namespace
+
+Seen write_convex_contacts(const PreparedMesh& mesh, const math::Pose& mesh_in_world, const math::Pose& body_in_world,
+                           const ConvexBody& body, Limit& limit, ContactWriter& writer, int room) noexcept {
+  const math::Pose body_in_mesh = mesh_in_world.inverse() * body_in_world;
+  Pieces pieces;
+  gather(mesh, body_in_mesh, body, limit, pieces);
+  if (pieces.count == 0) {
+    push_out(mesh, mesh_in_world, body_in_mesh, body, limit, writer);
+  } else {
+    std::array<Patch, most_patches> patches;
+    const std::size_t count = group(pieces, patches);
+    find_exits(std::span(patches).first(count), pieces, body, limit);
+    write_manifolds(std::span(patches).first(count), body, body_in_world, limit, writer, room);
+  }
+  if (pieces.cut_off || limit.units == 0) return Seen::cut_off;
+  return pieces.complete ? Seen::all : Seen::what_has_room;
+}
+
+int collide_convex_body(dGeomID mesh, dGeomID partner, const ConvexBody& body, int flags, dContactGeom* contacts,
+                        int skip) noexcept {
+  count(statistics().primitive_queries);
+  GeomData& data = own_data(mesh);
+  const std::optional<math::Pose> mesh_in_world = world_pose(mesh);
+  const std::optional<math::Pose> body_in_world = world_pose(partner);
+  if (!mesh_in_world || !body_in_world || !body.box_half_extents().allFinite()) {
+    count(statistics().bad_poses);
+    return 0;
+  }
+  Limit limit(data.settings);
+  const int room = room_for(flags, data.settings.max_contacts);
+  ContactWriter writer(mesh, partner, room, contacts, skip);
+  const RestingContacts::Question question{partner, dGeomGetClass(partner), body.number(), body.box_half_extents(),
+                                           room};
+  const math::Pose body_in_mesh = mesh_in_world->inverse() * *body_in_world;
+  const double size = std::min(data.mesh->mesh().size(), 2.0 * body.box_half_extents().norm());
+  const double motion = data.settings.carry_motion * size;
+  if (write_resting(*data.mesh, *mesh_in_world, body_in_mesh, body, question, motion, size, data.resting, limit,
+                    writer)) {
+    return limit.finish_carried(writer.count());
+  }
+  const Seen seen = write_convex_contacts(*data.mesh, *mesh_in_world, *body_in_world, body, limit, writer, room);
+  if (seen != Seen::cut_off && motion > 0.0 && !limit.time_is_up()) {
+    keep_resting(*mesh_in_world, body_in_mesh, writer, question, data.resting);
+  }
+  return limit.finish(seen == Seen::all, writer.count());
+}
+
+}  // namespace odds::ode

@@ -1,0 +1,133 @@
+// Cutting triangles by a body's sides, and the body's way out of the pieces.
+#include "ode/collide/convex_patch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ode/mesh/triangle_corners.hpp"
+
+namespace odds::ode {
+namespace {
+
+// Directions that the surface faces at less than this (cosine) do not lead out of it.
+constexpr double least_facing = 0.05;
+// A relative margin, so that among equal ways the first one considered wins whatever the rounding.
+constexpr double clearly_shorter = 1.0 - 1e-6;
+// More normals than these are compared one by one without asking whether they were tried.
+constexpr std::size_t most_remembered = 8;
+
+// Keeps the part of the piece in the half-space (Sutherland and Hodgman 1974).
+void cut(Piece& piece, const HalfSpace& half_space, std::int16_t number) noexcept {
+  std::array<double, Piece::most_corners> above;
+  bool any_above = false;
+  for (std::size_t i = 0; i < piece.count; ++i) {
+    above[i] = half_space.normal.dot(piece.corners[i]) - half_space.offset;
+    any_above = any_above || above[i] > 0.0;
+  }
+  if (!any_above) return;
+  Piece kept;
+  const auto add = [&kept](const Vec3& corner, std::int16_t side) {
+    if (kept.count == Piece::most_corners) return;
+    kept.corners[kept.count] = corner;
+    kept.side[kept.count++] = side;
+  };
+  for (std::size_t i = 0; i < piece.count; ++i) {
+    const std::size_t next = (i + 1) % piece.count;
+    const Vec3& a = piece.corners[i];
+    const Vec3& b = piece.corners[next];
+    const auto crossing = [&]() -> Vec3 { return a + (above[i] / (above[i] - above[next])) * (b - a); };
+    if (above[i] <= 0.0) {
+      add(a, piece.side[i]);
+      if (above[next] > 0.0) add(crossing(), number);
+    } else if (above[next] <= 0.0) {
+      add(crossing(), piece.side[i]);
+    }
+  }
+  piece.count = kept.count;
+  std::copy_n(kept.corners.begin(), kept.count, piece.corners.begin());
+  std::copy_n(kept.side.begin(), kept.count, piece.side.begin());
+}
+
+// How far the body must go along `direction` to be clear of the patch; infinity as soon as it is more than `enough`.
+double depth_along(const Vec3& direction, std::span<const Piece* const> patch, const ConvexBody& body,
+                   double enough) noexcept {
+  constexpr double no_way = std::numeric_limits<double>::infinity();
+  const double lowest = -body.reach(-direction);
+  double depth = 0.0;
+  for (const Piece* piece : patch) {
+    bool goes_on_ahead = false;
+    for (std::size_t i = 0; i < piece->count; ++i) {
+      depth = std::max(depth, direction.dot(piece->corners[i]) - lowest);
+      const std::int16_t side = piece->side[i];
+      goes_on_ahead = goes_on_ahead || (side != Piece::own_edge &&
+                                        body.sides()[static_cast<std::size_t>(side)].normal.dot(direction) > 1e-9);
+    }
+    if (goes_on_ahead) {
+      const double facing = direction.dot(piece->normal);
+      if (facing < least_facing) return no_way;
+      depth = std::max(depth, piece->plane_depth / facing);
+    }
+    if (!(depth < enough)) return no_way;
+  }
+  return depth;
+}
+
+Vec3 mean_normal(std::span<const Piece* const> patch) noexcept {
+  Vec3 sum = Vec3::Zero();
+  for (const Piece* piece : patch) sum += piece->area * piece->normal;
+  const double length = sum.norm();
+  return length > 0.0 ? Vec3(sum / length) : patch.front()->normal;
+}
+
+}  // namespace
+
+bool cut_by_sides(const std::array<Vec3, 3>& triangle, const ConvexBody& body, Piece& piece) noexcept {
+  piece.count = 3;
+  for (std::size_t i = 0; i < 3; ++i) {
+    piece.corners[i] = triangle[i];
+    piece.side[i] = Piece::own_edge;
+  }
+  const std::span<const HalfSpace> sides = body.sides();
+  for (std::size_t i = 0; i < sides.size() && piece.count >= 3; ++i) cut(piece, sides[i], static_cast<std::int16_t>(i));
+  if (piece.count < 3) return false;
+  piece.normal = unit_normal(triangle);
+  Vec3 twice_area = Vec3::Zero();
+  for (std::size_t i = 1; i + 1 < piece.count; ++i) {
+    twice_area += (piece.corners[i] - piece.corners[0]).cross(piece.corners[i + 1] - piece.corners[0]);
+  }
+  piece.area = 0.5 * twice_area.norm();
+  if (!(piece.area > 0.0) || piece.normal == Vec3::Zero() || !body.meets(piece)) return false;
+  piece.plane_depth = piece.normal.dot(piece.corners[0]) + body.reach(-piece.normal);
+  return true;
+}
+
+Exit shortest_exit(std::span<const Piece* const> patch, const ConvexBody& body, const Limit& limit) noexcept {
+  const Vec3 mean = mean_normal(patch);
+  Exit best = {mean, std::numeric_limits<double>::infinity()};
+  const auto consider = [&](const Vec3& direction) {
+    if (direction.dot(mean) < least_facing) return;
+    const double depth = depth_along(direction, patch, body, best.depth * clearly_shorter);
+    if (depth < best.depth * clearly_shorter) best = {direction, depth};
+  };
+  // The surface's own normals first: they win every tie.
+  std::array<Vec3, most_remembered> tried;
+  std::size_t tried_count = 0;
+  for (const Piece* piece : patch) {
+    const auto seen = [piece](const Vec3& normal) { return normal.dot(piece->normal) > 1.0 - 1e-9; };
+    if (std::any_of(tried.begin(), tried.begin() + tried_count, seen)) continue;
+    if (tried_count > 0 && limit.time_is_up()) break;
+    consider(piece->normal);
+    if (tried_count < tried.size()) tried[tried_count++] = piece->normal;
+  }
+  if (limit.time_is_up()) return best;
+  ExitList exits(mean);
+  body.add_exits(patch, exits);
+  for (const Vec3& direction : exits.all()) {
+    if (limit.time_is_up()) break;
+    consider(direction);
+  }
+  return best;
+}
+
+}  // namespace odds::ode

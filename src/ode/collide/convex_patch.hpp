@@ -1,0 +1,29 @@
+// The pieces of a mesh's surface inside a convex body, and the direction in which the body leaves them soonest.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "ode/collide/limit.hpp"
+#include "ode/geom/convex_body.hpp"
+
+namespace odds::ode {
+
+/// Cuts a triangle (body frame) by the sides of the body. False if nothing with an area is left, or what is left does
+/// not meet the body.
+[[nodiscard]] bool cut_by_sides(const std::array<Vec3, 3>& triangle, const ConvexBody& body, Piece& piece) noexcept;
+
+/// Where a body goes to leave a patch of surface.
+struct Exit {
+  Vec3 direction = Vec3::Zero();  ///< unit, of the body's motion
+  double depth = 0.0;             ///< metres until the body is clear of the patch; infinity: no way found
+};
+
+/// The shortest way out of `patch` (pieces with similar normals, not empty) among the patch's normals and the body's
+/// own exits. Where the surface goes on beyond the body on the side that the body moves to, the whole plane of the
+/// piece must be cleared, not only the piece: otherwise a body would slip sideways out of a tessellated floor. When the
+/// time is up, the best so far; at least the mean normal was tried.
+[[nodiscard]] Exit shortest_exit(std::span<const Piece* const> patch, const ConvexBody& body,
+                                 const Limit& limit) noexcept;
+
+}  // namespace odds::ode

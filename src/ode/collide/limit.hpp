@@ -1,0 +1,67 @@
+// What one collision with a primitive may spend, from the same settings that bound the queries between meshes.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "odds/realtime/clock.hpp"
+#include "ode/budget_clock.hpp"
+#include "ode/frame/frame_share.hpp"
+#include "ode/statistics.hpp"
+
+namespace odds::ode {
+
+/// Work units and wall time of one collision; starts when it is made.
+class Limit {
+ public:
+  explicit Limit(const Settings& own) noexcept : clock_(budget_clock()) {
+    const Settings settings = within_share(own);
+    shared_time_ = settings.budget_us < own.budget_us;
+    shared_units_ = settings.work_units != own.work_units;
+    if (settings.work_units > 0) units = settings.work_units;
+    begun_with_ = units;
+    const double ns = settings.budget_us * 1e3;
+    timed_ = ns < 9e18;
+    if (!timed_) return;
+    end_ns_ = clock_() + static_cast<std::int64_t>(ns);
+    const auto units_of_time = static_cast<std::uint64_t>(std::ceil(settings.budget_us * nodes_per_us));
+    if (units_of_time < units) shared_units_ = shared_time_;
+    units = std::min(units, units_of_time);
+    begun_with_ = units;
+  }
+
+  [[nodiscard]] bool time_is_up() const noexcept { return timed_ && clock_() >= end_ns_; }
+
+  /// The collision's end: counts it if it was cut off, tells the frame. Gives `contacts` back.
+  [[nodiscard]] int finish(bool complete, int contacts) const noexcept {
+    if (!complete) count(statistics().primitive_cut_off);
+    if (current_share != nullptr) {
+      const bool more_would_help = !complete && (units == 0 ? shared_units_ : shared_time_);
+      const Outcome cut_short = contacts > 0 ? Outcome::enough : Outcome::starved;
+      current_share->report(begun_with_ - units, contacts, more_would_help ? cut_short : Outcome::finished);
+    }
+    return contacts;
+  }
+  /// The end of one that gave contacts of an earlier one.
+  [[nodiscard]] int finish_carried(int contacts) const noexcept {
+    if (current_share != nullptr) current_share->report(begun_with_ - units, contacts, Outcome::carried);
+    return contacts;
+  }
+
+ private:
+  // Searches in a tree do not read the clock at each node; a node takes 10 to 50 ns where the cache holds it.
+  static constexpr double nodes_per_us = 30.0;
+  static constexpr std::uint64_t most_units = std::uint64_t{1} << 40;
+  realtime::Clock clock_;
+  std::int64_t end_ns_ = 0;
+  bool timed_ = false;
+  bool shared_time_ = false;  // the frame's, not the geoms' own
+  bool shared_units_ = false;
+  std::uint64_t begun_with_ = most_units;
+
+ public:
+  std::uint64_t units = most_units;  ///< left; searches take from it
+};
+
+}  // namespace odds::ode

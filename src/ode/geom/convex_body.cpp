@@ -1,0 +1,102 @@
+// What convex bodies have in common; Minkowski portal refinement through libccd.
+#include "ode/geom/convex_body.hpp"
+
+#include <ccd/ccd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace odds::ode {
+namespace {
+
+// libccd caps only its last phase. Support points beyond these are the centre, which ends every phase at once: no
+// direction is found then. A body of many faces needs about ten.
+constexpr int most_supports = 48;
+constexpr unsigned long most_iterations = 24;
+constexpr double refinement_tolerance = 1e-7;  // of the body's size
+// A hull of more corners takes longer to search than its direction is worth.
+constexpr std::size_t most_hull_corners = 256;
+
+struct Hull {
+  std::span<const Piece* const> patch;
+  Vec3 middle;
+};
+
+struct Searched {
+  const ConvexBody& body;
+  mutable int supports_left = most_supports;
+};
+
+Vec3 from_ccd(const ccd_vec3_t& v) noexcept { return {v.v[0], v.v[1], v.v[2]}; }
+void to_ccd(const Vec3& from, ccd_vec3_t* to) noexcept { ccdVec3Set(to, from.x(), from.y(), from.z()); }
+
+void body_support(const void* self, const ccd_vec3_t* direction, ccd_vec3_t* point) noexcept {
+  const auto& searched = *static_cast<const Searched*>(self);
+  const bool goes_on = searched.supports_left-- > 0;
+  to_ccd(goes_on ? searched.body.farthest(from_ccd(*direction)) : searched.body.center(), point);
+}
+
+void body_center(const void* self, ccd_vec3_t* center) noexcept {
+  to_ccd(static_cast<const Searched*>(self)->body.center(), center);
+}
+
+void hull_support(const void* self, const ccd_vec3_t* direction, ccd_vec3_t* point) noexcept {
+  const auto& hull = *static_cast<const Hull*>(self);
+  const Vec3 along = from_ccd(*direction);
+  const Vec3* best = &hull.middle;
+  double greatest = -std::numeric_limits<double>::infinity();
+  for (const Piece* piece : hull.patch) {
+    for (std::size_t i = 0; i < piece->count; ++i) {
+      const double value = along.dot(piece->corners[i]);
+      if (value <= greatest) continue;
+      greatest = value;
+      best = &piece->corners[i];
+    }
+  }
+  to_ccd(*best, point);
+}
+
+void hull_center(const void* self, ccd_vec3_t* center) noexcept {
+  to_ccd(static_cast<const Hull*>(self)->middle, center);
+}
+
+}  // namespace
+
+double ConvexBody::way_through(const Vec3& point, const Vec3& direction) const noexcept {
+  double way = std::numeric_limits<double>::infinity();
+  for (const HalfSpace& side : sides_) {
+    const double speed = side.normal.dot(direction);
+    if (speed < 1e-12) continue;
+    way = std::min(way, std::max(0.0, (side.offset - side.normal.dot(point)) / speed));
+  }
+  return way;
+}
+
+void add_refined_exit(const ConvexBody& body, std::span<const Piece* const> patch, ExitList& exits) noexcept {
+  std::size_t corners = 0;
+  Vec3 sum = Vec3::Zero();
+  for (const Piece* piece : patch) {
+    for (std::size_t i = 0; i < piece->count; ++i) sum += piece->corners[i];
+    corners += piece->count;
+  }
+  if (corners == 0 || corners > most_hull_corners) return;
+  const Hull hull = {patch, sum / static_cast<double>(corners)};
+  ccd_t settings;
+  CCD_INIT(&settings);
+  settings.support1 = &body_support;
+  settings.support2 = &hull_support;
+  settings.center1 = &body_center;
+  settings.center2 = &hull_center;
+  settings.max_iterations = most_iterations;
+  settings.mpr_tolerance = refinement_tolerance * body.box_half_extents().norm();
+  double depth = 0.0;
+  ccd_vec3_t direction;
+  ccd_vec3_t position;
+  const Searched searched = {body};
+  if (ccdMPRPenetration(&searched, &hull, &settings, &depth, &direction, &position) == 0) {
+    exits.add_facing(from_ccd(direction));
+  }
+}
+
+}  // namespace odds::ode

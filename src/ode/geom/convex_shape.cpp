@@ -1,0 +1,154 @@
+// Checking and searching convex polyhedra.
+#include "ode/geom/convex_shape.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace odds::ode {
+namespace {
+
+constexpr double same_plane = 1e-6;  // of the size: rounding of the client's arrays
+constexpr std::size_t most_face_exits = 32;
+
+Error refusal(const std::string& what, const std::string& remedy) { return {"convex", "", what, remedy}; }
+
+}  // namespace
+
+Result<HalfSpace> ConvexShape::face_of(std::span<const Vec3> points, std::span<const unsigned> corners,
+                                       const Vec3& inside, std::size_t number) {
+  Vec3 twice_area = Vec3::Zero();
+  Vec3 middle = Vec3::Zero();
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Vec3& a = points[corners[i]];
+    const Vec3& b = points[corners[(i + 1) % corners.size()]];
+    twice_area += (a - inside).cross(b - inside);
+    middle += a / static_cast<double>(corners.size());
+  }
+  const double length = twice_area.norm();
+  if (!(length > 0.0)) {
+    return refusal("face " + std::to_string(number) + " has no area", "leave it out");
+  }
+  // Clockwise faces are welcome: outwards is away from the inner point.
+  const double sign = twice_area.dot(middle - inside) < 0.0 ? -1.0 : 1.0;
+  HalfSpace face;
+  face.normal = sign / length * twice_area;
+  face.offset = face.normal.dot(middle);
+  return face;
+}
+
+ConvexShape::ConvexShape() noexcept {
+  static constinit std::atomic<std::uint64_t> last{0};
+  number_ = last.fetch_add(1, std::memory_order_relaxed) + 1;
+}
+
+Result<std::shared_ptr<const ConvexShape>> ConvexShape::make(std::span<const Vec3> points, const unsigned* polygons,
+                                                             std::size_t face_count) {
+  if (polygons == nullptr || points.size() < 4 || points.size() > most_points || face_count < 4 ||
+      face_count > most_faces) {
+    return refusal("null array, or not 4 .. 4096 points and 4 .. 1024 faces", "give the arrays of dCreateConvex");
+  }
+  Vec3 lower = points[0];
+  Vec3 upper = points[0];
+  Vec3 sum = Vec3::Zero();
+  for (const Vec3& point : points) {
+    if (!point.allFinite()) return refusal("a point is not finite", "check the coordinates");
+    lower = lower.cwiseMin(point);
+    upper = upper.cwiseMax(point);
+    sum += point;
+  }
+  const std::shared_ptr<ConvexShape> shape(new ConvexShape);
+  shape->points_.assign(points.begin(), points.end());
+  shape->center_ = sum / static_cast<double>(points.size());
+  const double size = (upper - lower).norm();
+  for (std::size_t f = 0; f < face_count; ++f) {
+    const std::span<const unsigned> corners(polygons + 1, *polygons);
+    const auto out_of_range = [&](unsigned corner) { return corner >= points.size(); };
+    if (corners.size() < 3 || corners.size() > points.size() ||
+        std::any_of(corners.begin(), corners.end(), out_of_range)) {
+      return refusal("face " + std::to_string(f) + " has too few corners or an index out of range",
+                     "polygons is, for each face, a count followed by as many indices");
+    }
+    Result<HalfSpace> face = face_of(points, corners, shape->center_, f);
+    if (!face.ok()) return face.error();
+    for (const Vec3& point : points) {
+      if (face.value().normal.dot(point) - face.value().offset > same_plane * size) {
+        return refusal("it is not convex: a point lies outside of face " + std::to_string(f), "use a mesh instead");
+      }
+    }
+    const auto same = [&](const HalfSpace& other) {
+      return face.value().normal.dot(other.normal) > 1.0 - 1e-12;  // of a convex body, so it is the same plane
+    };
+    if (std::none_of(shape->faces_.begin(), shape->faces_.end(), same)) shape->faces_.push_back(face.value());
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const auto [from, to] = std::minmax(corners[i], corners[(i + 1) % corners.size()]);
+      shape->edges_.push_back({from, to});
+    }
+    polygons += 1 + corners.size();
+  }
+  std::sort(shape->edges_.begin(), shape->edges_.end());
+  shape->edges_.erase(std::unique(shape->edges_.begin(), shape->edges_.end()), shape->edges_.end());
+  const auto beside_center = [&](const HalfSpace& face) { return face.offset - face.normal.dot(shape->center_); };
+  const auto has_volume = [&](const HalfSpace& face) { return beside_center(face) > same_plane * size; };
+  if (!std::all_of(shape->faces_.begin(), shape->faces_.end(), has_volume)) {
+    return refusal("it has no volume", "give a solid");
+  }
+  shape->sides_ = shape->faces_;
+  shape->box_center_ = 0.5 * (lower + upper);
+  shape->box_half_extents_ = 0.5 * (upper - lower);
+  return std::shared_ptr<const ConvexShape>(shape);
+}
+
+Vec3 ConvexShape::farthest(const Vec3& direction) const noexcept {
+  const Vec3* best = &points_.front();
+  double greatest = direction.dot(*best);
+  for (const Vec3& point : points_) {
+    const double value = direction.dot(point);
+    if (value <= greatest) continue;
+    greatest = value;
+    best = &point;
+  }
+  return *best;
+}
+
+// Through the faces that the surface enters by, and the way that the refinement finds.
+void ConvexShape::add_exits(std::span<const Piece* const> patch, ExitList& exits) const noexcept {
+  add_refined_exit(*this, patch, exits);
+  std::array<std::int16_t, most_face_exits> used;
+  std::size_t count = 0;
+  for (const Piece* piece : patch) {
+    for (std::size_t i = 0; i < piece->count && count < used.size(); ++i) {
+      const std::int16_t side = piece->side[i];
+      if (side == Piece::own_edge || std::find(used.begin(), used.begin() + count, side) != used.begin() + count) {
+        continue;
+      }
+      used[count++] = side;
+      exits.add(-faces_[static_cast<std::size_t>(side)].normal);
+    }
+  }
+}
+
+// Of too many corners the lowest are kept.
+void ConvexShape::add_features(const Vec3& up, double depth, Features& features) const noexcept {
+  const double highest = up.dot(farthest(-up)) + depth;
+  const auto height = [&up](const Vec3& point) { return up.dot(point); };
+  for (const Vec3& point : points_) {
+    if (height(point) > highest) continue;
+    if (features.corner_count < Features::most) {
+      features.add_corner(point);
+      continue;
+    }
+    const auto top = std::max_element(features.corners.begin(), features.corners.end(),
+                                      [&](const Vec3& a, const Vec3& b) { return height(a) < height(b); });
+    if (height(point) < height(*top)) *top = point;
+  }
+  for (const auto& [from, to] : edges_) {
+    if (std::min(height(points_[from]), height(points_[to])) <= highest) {
+      features.add_edge(points_[from], points_[to]);
+    }
+  }
+}
+
+}  // namespace odds::ode

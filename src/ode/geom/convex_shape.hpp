@@ -1,0 +1,46 @@
+// A convex polyhedron with any number of faces, made from the arrays that ODE's convex geoms are made from.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "odds/math/error.hpp"
+#include "ode/geom/convex_body.hpp"
+
+namespace odds::ode {
+
+/// Immutable; shareable among threads.
+class ConvexShape final : public ConvexBody {
+ public:
+  static constexpr std::size_t most_faces = 1024;
+  static constexpr std::size_t most_points = 4096;
+
+  /// `polygons` is a number of corners followed by as many indices into `points`, for each of `face_count` faces.
+  /// Refused: counts out of range, indices out of range, coordinates not finite, a face without area, a point outside
+  /// of a face by more than 1e-6 of the size (then it is not convex), no volume.
+  static Result<std::shared_ptr<const ConvexShape>> make(std::span<const Vec3> points, const unsigned* polygons,
+                                                         std::size_t face_count);
+  ConvexShape(const ConvexShape&) = delete;
+  ConvexShape& operator=(const ConvexShape&) = delete;
+
+  [[nodiscard]] std::span<const Vec3> points() const noexcept { return points_; }
+
+  [[nodiscard]] std::uint64_t number() const noexcept override { return number_; }
+  [[nodiscard]] Vec3 farthest(const Vec3& direction) const noexcept override;
+  void add_exits(std::span<const Piece* const> patch, ExitList& exits) const noexcept override;
+  void add_features(const Vec3& up, double depth, Features& features) const noexcept override;
+
+ private:
+  ConvexShape() noexcept;
+  [[nodiscard]] static Result<HalfSpace> face_of(std::span<const Vec3> points, std::span<const unsigned> corners,
+                                                 const Vec3& inside, std::size_t number);
+
+  std::vector<Vec3> points_;
+  std::vector<HalfSpace> faces_;
+  std::vector<std::array<unsigned, 2>> edges_;
+  std::uint64_t number_;  ///< unique for the process, never 0
+};
+
+}  // namespace odds::ode

@@ -1,0 +1,202 @@
+// Making, finding and freeing the workspaces of pairs.
+#include "ode/geom/pair_table.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <memory>
+#include <utility>
+
+#include "ode/geom/partners.hpp"
+#include "ode/last_error.hpp"
+#include "ode/pair_hash.hpp"
+#include "ode/statistics.hpp"
+
+namespace odds::ode {
+namespace {
+
+// A short query in full overlap goes through the code and fills the hit list, or queue, as far as it goes: a
+// millisecond or four, which a pair whose first query follows at once does better without.
+void warm(query::Pair& pair) noexcept {
+  query::Request request;
+  request.budget = query::Budget::work(2000);
+  request.max_contacts = 8;
+  for (const query::Method method : {query::Method::time_critical, query::Method::incremental}) {
+    request.method = method;
+    static_cast<void>(pair.run(math::Pose(), request));
+  }
+  pair.reset();
+}
+
+std::unique_ptr<PairEntry> make_entry(GeomData& a, GeomData& b, bool warmed) {
+  auto entry = std::make_unique<PairEntry>();
+  entry->a = &a;
+  entry->b = &b;
+  auto pair = query::Pair::make(a.mesh->shape, b.mesh->shape, {.late_contacts = true});
+  if (pair.ok()) {
+    entry->pair.emplace(std::move(pair).value());
+    if (warmed) warm(*entry->pair);
+  } else {
+    set_last_error(pair.error());
+  }
+  return entry;
+}
+
+// Collisions of a dGeomTransform arrive as collisions of the geom inside it.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored \
+    "-Wdeprecated-declarations"  // ODE advises offsets instead, but its users still have transforms
+dGeomID inside_transforms(dGeomID geom) noexcept {
+  while (geom != nullptr && dGeomGetClass(geom) == dGeomTransformClass) geom = dGeomTransformGetGeom(geom);
+  return geom;
+}
+#pragma GCC diagnostic pop
+
+// The mesh of one geom of a pair: its own, or one that stands in for it. A dTriMesh that is not known yet is read, with
+// the bounding volume of the other. Null for a primitive, and with the last error set if a dTriMesh cannot be read.
+GeomData* prepared_data(dGeomID geom, dGeomID other) noexcept {
+  if (dGeomGetClass(geom) == oddsGetClass()) return &own_data(geom);
+  if (Partner* known = partner_table().find(geom)) {
+    if (known->mesh == nullptr || is_unchanged(*known)) return known->mesh.get();
+  }
+  if (dGeomGetClass(geom) != dTriMeshClass) return nullptr;
+  oddsBuildParams params;
+  oddsBuildParamsInit(&params);
+  if (dGeomGetClass(other) == oddsGetClass()) {
+    params.volume = static_cast<int>(own_data(other).mesh->shape->volume());
+  }
+  const Partner* adopted = adopt_trimesh(geom, &params, true);
+  return adopted != nullptr ? adopted->mesh.get() : nullptr;
+}
+
+}  // namespace
+
+PairTable& pair_table() noexcept {
+  static PairTable only;
+  return only;
+}
+
+std::size_t PairTable::bucket_of(const GeomData& a, const GeomData& b) noexcept {
+  return static_cast<std::size_t>(hash_of_pair(a.number, b.number) % bucket_count);
+}
+
+PairEntry* PairTable::find(const GeomData& x, const GeomData& y) const noexcept {
+  const GeomData& a = x.number < y.number ? x : y;
+  const GeomData& b = x.number < y.number ? y : x;
+  PairEntry* entry = buckets_[bucket_of(a, b)].load(std::memory_order_acquire);
+  while (entry != nullptr && (entry->a != &a || entry->b != &b)) entry = entry->next.load(std::memory_order_acquire);
+  return entry;
+}
+
+PairTable::Made PairTable::prepare(GeomData& x, GeomData& y, bool warmed) noexcept {
+  try {
+    const std::lock_guard lock(writers_);
+    if (PairEntry* found = find(x, y)) {
+      if (!found->pair)
+        set_last_error("the pair could not be prepared before; destroy one of its geoms and make it anew");
+      return {found, false};
+    }
+    GeomData& a = x.number < y.number ? x : y;
+    GeomData& b = x.number < y.number ? y : x;
+    std::unique_ptr<PairEntry> entry = make_entry(a, b, warmed);
+    a.pairs.reserve(a.pairs.size() + 1);
+    b.pairs.reserve(b.pairs.size() + 1);
+    a.pairs.push_back(entry.get());
+    b.pairs.push_back(entry.get());
+    Bucket& bucket = buckets_[bucket_of(a, b)];
+    entry->next.store(bucket.load(std::memory_order_relaxed), std::memory_order_relaxed);
+    bucket.store(entry.get(), std::memory_order_release);
+    count(statistics().live_pairs);
+    return {entry.release(), true};
+  } catch (const std::exception& error) {
+    set_last_error(std::string_view(error.what()));
+  } catch (...) {
+    set_last_error("preparing a pair failed");
+  }
+  return {};
+}
+
+void PairTable::remove_from_bucket(PairEntry& entry) noexcept {
+  Bucket* link = &buckets_[bucket_of(*entry.a, *entry.b)];
+  while (PairEntry* here = link->load(std::memory_order_relaxed)) {
+    if (here == &entry) {
+      link->store(here->next.load(std::memory_order_relaxed), std::memory_order_release);
+      return;
+    }
+    link = &here->next;
+  }
+}
+
+const PairEntry* answered_pair(dGeomID g1, dGeomID g2) noexcept {
+  const GeomData* x = known_data(g1);
+  const GeomData* y = known_data(g2);
+  if (x == nullptr || y == nullptr) return nullptr;
+  const PairEntry* entry = pair_table().find(*x, *y);
+  return entry != nullptr && entry->answered ? entry : nullptr;
+}
+
+void PairTable::forget(GeomData& geom) noexcept {
+  try {
+    const std::lock_guard lock(writers_);
+    for (PairEntry* entry : geom.pairs) {
+      remove_from_bucket(*entry);
+      GeomData& other = entry->a == &geom ? *entry->b : *entry->a;
+      if (&other != &geom) std::erase(other.pairs, entry);
+      delete entry;
+      statistics().live_pairs.fetch_sub(1, std::memory_order_relaxed);
+    }
+    geom.pairs.clear();
+  } catch (...) {
+    count(statistics().caught);
+  }
+}
+
+}  // namespace odds::ode
+
+int oddsPreparePair(dGeomID g1, dGeomID g2) noexcept {
+  using namespace odds::ode;
+  g1 = inside_transforms(g1);
+  g2 = inside_transforms(g2);
+  const int our_class = oddsGetClass();
+  if (g1 == nullptr || g2 == nullptr || g1 == g2 || dGeomIsSpace(g1) != 0 || dGeomIsSpace(g2) != 0) {
+    set_last_error(
+        "oddsPreparePair: needs two different geoms, not null and not spaces; prepare the members of a space one by "
+        "one");
+    return 0;
+  }
+  const auto is_mesh = [our_class](dGeomID geom) {
+    return our_class >= 0 && (dGeomGetClass(geom) == our_class || dGeomGetClass(geom) == dTriMeshClass);
+  };
+  if (!is_mesh(g1) && !is_mesh(g2)) {
+    set_last_error(
+        "oddsPreparePair: neither geom is a mesh made by dCreateOddsMesh or a dTriMesh (or the library is not "
+        "initialised)");
+    return 0;
+  }
+  GeomData* first = prepared_data(g1, g2);
+  GeomData* second = first != nullptr || !is_mesh(g1) ? prepared_data(g2, g1) : nullptr;
+  const bool failed = (is_mesh(g1) && first == nullptr) || (is_mesh(g2) && second == nullptr);
+  if (failed) return 0;
+  if (first == nullptr || second == nullptr) return 1;
+  const PairTable::Made made = pair_table().prepare(*first, *second, true);
+  return made.entry != nullptr && made.entry->pair ? 1 : 0;
+}
+
+int oddsGetLastAnswer(dGeomID g1, dGeomID g2, oddsAnswer* answer) noexcept {
+  using namespace odds::ode;
+  const GeomData* x = find_data(g1, "oddsGetLastAnswer");
+  if (x == nullptr || find_data(g2, "oddsGetLastAnswer") == nullptr) return 0;
+  if (answer == nullptr) {
+    set_last_error("oddsGetLastAnswer: the place for the answer is null; give one");
+    return 0;
+  }
+  const PairEntry* entry = answered_pair(g1, g2);
+  if (entry == nullptr) {
+    set_last_error("oddsGetLastAnswer: these two geoms never collided");
+    return 0;
+  }
+  *answer = entry->last;
+  if (entry->a != x) {
+    for (double& component : answer->cell_normal) component = -component;
+  }
+  return 1;
+}

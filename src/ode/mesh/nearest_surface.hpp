@@ -1,0 +1,27 @@
+// The point of a mesh's surface nearest to a point, and on which side of the surface that point is.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "ode/mesh/prepared_mesh.hpp"
+
+namespace odds::ode {
+
+struct NearestSurface {
+  Vec3 point;       ///< on the surface, mesh frame
+  double distance;  ///< metres, >= 0
+  std::uint32_t triangle;
+  Vec3 outward;  ///< unit pseudo-normal of the surface at `point`; zero if only degenerate triangles meet there
+  bool inside;   ///< behind the surface; only ever true for a closed mesh
+};
+
+/// Nothing if the surface is farther than `reach` (metres; infinity allowed) or `units` ran out before any triangle was
+/// seen. Each visited node takes one from `units`. noexcept, no allocation.
+[[nodiscard]] std::optional<NearestSurface> nearest_surface(const PreparedMesh& mesh, const Vec3& point, double reach,
+                                                            std::uint64_t& units) noexcept;
+
+/// Whether `point` is in the mesh's bounding box: a cheap necessary condition for being inside a closed mesh.
+[[nodiscard]] bool in_bounds(const PreparedMesh& mesh, const Vec3& point) noexcept;
+
+}  // namespace odds::ode

@@ -1,0 +1,93 @@
+// Preparing a shape for geoms: trees over vertices and triangles, and whether the surface closes.
+#include "ode/mesh/prepared_mesh.hpp"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace odds::ode {
+namespace {
+
+// Files without shared vertices (STL) repeat them: equal positions count as one vertex.
+std::vector<std::uint32_t> weld_equal_positions(const mesh::TriangleMesh& mesh) {
+  const auto vertices = mesh.vertices();
+  std::vector<std::uint32_t> order(vertices.size());
+  std::iota(order.begin(), order.end(), 0u);
+  const auto less = [vertices](std::uint32_t a, std::uint32_t b) {
+    const Vec3& u = vertices[a];
+    const Vec3& v = vertices[b];
+    return std::lexicographical_compare(u.data(), u.data() + 3, v.data(), v.data() + 3);
+  };
+  std::sort(order.begin(), order.end(), less);
+  std::vector<std::uint32_t> representative(vertices.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const bool same = i > 0 && vertices[order[i]] == vertices[order[i - 1]];
+    representative[order[i]] = same ? representative[order[i - 1]] : order[i];
+  }
+  return representative;
+}
+
+// Closed: as many edges u->v as v->u, for every u, v. Degenerate triangles have no area and do not count.
+bool closes(const mesh::TriangleMesh& mesh) {
+  const std::vector<std::uint32_t> representative = weld_equal_positions(mesh);
+  std::vector<std::pair<std::array<std::uint32_t, 2>, int>> edges;
+  edges.reserve(3 * mesh.triangles().size());
+  for (const mesh::Triangle& triangle : mesh.triangles()) {
+    const std::array<std::uint32_t, 3> v = {representative[triangle[0]], representative[triangle[1]],
+                                            representative[triangle[2]]};
+    if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) continue;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t from = v[i];
+      const std::uint32_t to = v[(i + 1) % 3];
+      edges.push_back({{std::min(from, to), std::max(from, to)}, from < to ? 1 : -1});
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  for (std::size_t i = 0; i < edges.size();) {
+    int balance = 0;
+    const auto key = edges[i].first;
+    for (; i < edges.size() && edges[i].first == key; ++i) balance += edges[i].second;
+    if (balance != 0) return false;
+  }
+  return !edges.empty();
+}
+
+std::vector<PreparedMesh::Vertex> used_vertices(const mesh::TriangleMesh& mesh) {
+  std::vector<std::uint32_t> user(mesh.vertices().size(), no_item);
+  for (std::uint32_t t = 0; t < mesh.triangles().size(); ++t) {
+    for (const std::uint32_t v : mesh.triangles()[t]) {
+      if (user[v] == no_item) user[v] = t;
+    }
+  }
+  std::vector<PreparedMesh::Vertex> used;
+  for (std::size_t v = 0; v < user.size(); ++v) {
+    if (user[v] != no_item) used.push_back({mesh.vertices()[v], user[v]});
+  }
+  return used;
+}
+
+}  // namespace
+
+std::shared_ptr<const PreparedMesh> PreparedMesh::make(std::shared_ptr<const query::Shape> shape) {
+  auto prepared = std::make_shared<PreparedMesh>();
+  prepared->shape = std::move(shape);
+  prepared->shape->find_flat_faces();  // or the first collision that prepares a pair would
+  const mesh::TriangleMesh& mesh = prepared->mesh();
+  prepared->vertices = used_vertices(mesh);
+  std::vector<BoxTree::Box> boxes;
+  boxes.reserve(std::max(prepared->vertices.size(), mesh.triangles().size()));
+  for (const Vertex& vertex : prepared->vertices) boxes.push_back({vertex.position, vertex.position});
+  prepared->vertex_tree = BoxTree(boxes);
+  boxes.clear();
+  for (std::uint32_t t = 0; t < mesh.triangles().size(); ++t) {
+    const std::array<Vec3, 3> c = prepared->corners(t);
+    boxes.push_back({c[0].cwiseMin(c[1]).cwiseMin(c[2]), c[0].cwiseMax(c[1]).cwiseMax(c[2])});
+  }
+  prepared->triangle_tree = BoxTree(boxes);
+  prepared->closed = closes(mesh);
+  return prepared;
+}
+
+}  // namespace odds::ode

@@ -1,0 +1,37 @@
+// What geoms share of one mesh: the shape for queries, and what collisions with primitives need beside it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "odds/query/shape.hpp"
+#include "ode/mesh/box_tree.hpp"
+
+namespace odds::ode {
+
+/// Immutable; shareable among geoms and threads.
+struct PreparedMesh {
+  struct Vertex {
+    Vec3 position;           ///< mesh frame, metres
+    std::uint32_t triangle;  ///< one triangle that uses it
+  };
+
+  std::shared_ptr<const query::Shape> shape;  ///< never null
+  std::vector<Vertex> vertices;               ///< those that triangles use
+  BoxTree vertex_tree;                        ///< over `vertices`
+  BoxTree triangle_tree;                      ///< over the mesh's triangles
+  bool closed = false;                        ///< every edge has its opposite: inside and outside are defined
+
+  /// Precondition: `shape` is not null. May throw std::bad_alloc.
+  static std::shared_ptr<const PreparedMesh> make(std::shared_ptr<const query::Shape> shape);
+
+  [[nodiscard]] const mesh::TriangleMesh& mesh() const noexcept { return shape->mesh(); }
+  [[nodiscard]] std::array<Vec3, 3> corners(std::uint32_t triangle) const noexcept {
+    const mesh::Triangle& t = mesh().triangles()[triangle];
+    return {mesh().vertices()[t[0]], mesh().vertices()[t[1]], mesh().vertices()[t[2]]};
+  }
+};
+
+}  // namespace odds::ode

@@ -1,0 +1,62 @@
+// Where the surfaces most probably meet, from the pairs of nodes that a search left undecided.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "odds/math/elementary.hpp"
+#include "odds/query/answer.hpp"
+#include "query/node_odds/met_place.hpp"
+#include "query/search/shortlist.hpp"
+
+namespace odds::query {
+
+/// The mean over the shortlist in A's tree frame, each pair weighted by how deep it overlaps for its thickness and how
+/// small it is; the normal also by how flat both patches are and, of solids, how much they face each other, for at an
+/// edge those beside the ones that meet are as near. Two patches that nobody has looked into cannot be told to overlap
+/// deeper than the thinner of them is thick, and they may not meet at all: the depth is the expected one, for
+/// `probability` of a hit, so that a force made of it grows with what is known. `apart()`: the way that solids come
+/// apart where no patch faces another, into A. Precondition: the list is not empty.
+template <class Met, class Apart>
+[[nodiscard]] Contact likeliest_place(const Met& met, const Shortlist& list, double probability, bool both_solid,
+                                      const Apart& apart) noexcept {
+  constexpr double unopposed = 0.01;         // of what is flat: less, and all that is known lies beside what meets
+  constexpr double least_opposition = 0.01;  // so that patches of which none faces another have a direction, too
+  std::array<MetPlace, Shortlist::capacity> places;
+  std::array<double, Shortlist::capacity> weights;
+  Contact mean;
+  Vec3 position = Vec3::Zero();
+  Vec3 facing = Vec3::Zero();
+  double sum = 0.0;
+  double opposed = 0.0;
+  double flat = 0.0;
+  std::size_t count = 0;
+  for (const NodePair& pair : list) {
+    const MetPlace& place = places[count] = met.place(pair.a, pair.b);
+    if (count == 0) mean.position = place.position;
+    const double weight =
+        static_cast<double>(math::rough_exp2(std::clamp(pair.rank, -20.0F, 4.0F) + place.log_likelihood)) *
+        place.inverse_size;
+    weights[count++] = weight;
+    position += weight * place.position;
+    facing += weight * (both_solid ? least_opposition + place.facing.opposition : 1.0) * place.facing.direction;
+    sum += weight;
+    opposed += weight * place.facing.opposition;
+    flat += weight * place.flatness;
+  }
+  if (both_solid && opposed < unopposed * flat) facing = apart();
+  const double length = facing.norm();
+  if (!(sum > 0.0) || !std::isfinite(sum) || !(length > 0.0) || !std::isfinite(length)) return mean;
+  mean.position = position / sum;
+  mean.normal = facing / length;
+  double depth = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double passed = mean.normal.dot(places[i].beyond);
+    depth += weights[i] * places[i].flatness * std::clamp(passed, 0.0, places[i].thickness);
+  }
+  mean.depth = probability * depth / sum;
+  return mean;
+}
+
+}  // namespace odds::query

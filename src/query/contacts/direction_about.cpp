@@ -1,0 +1,114 @@
+#include "query/contacts/direction_about.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <variant>
+
+#include "query/node_odds/facing.hpp"
+#include "query/shape_data.hpp"
+
+namespace odds::query {
+namespace {
+
+constexpr std::size_t sizes = 3;  ///< of nodes about a place: a leaf, about 8 and about 64 times as much
+
+/// The smallest first. A tree that has fewer levels repeats its largest.
+using NodesAbout = std::array<const tree::NodeStatistics*, sizes>;
+
+/// Asks the caches for what is needed next.
+void prefetch(const NodesAbout& nodes) noexcept {
+  for (const tree::NodeStatistics* const at : nodes) {
+    __builtin_prefetch(at);
+    __builtin_prefetch(reinterpret_cast<const char*>(at + 1) - 1);
+  }
+}
+
+NodesAbout nodes_about(const tree::WideTree& tree, const wide::Searches& searches, const Vec3f& place) noexcept {
+  NodesAbout about;
+  const wide::SlotsAbout slots = searches.slots_about(tree, place);
+  for (std::size_t i = 0; i < sizes; ++i) about[i] = &tree.statistics(slots[i]);
+  return about;
+}
+
+/// How far a place is from a node's middle, over the node's size, the more if it lies outside; squared.
+float strangeness(const tree::NodeStatistics& statistics, float radius, const Vec3f& place) noexcept {
+  constexpr float outside_counts = 16.0F;
+  const float along = statistics.slab_normal.dot(place) - statistics.slab_center;
+  const float above = std::max(std::abs(along) - statistics.slab_half, 0.0F);
+  return ((place - statistics.centroid).squaredNorm() + outside_counts * above * above) /
+         std::max(radius * radius, 1e-37F);
+}
+
+template <volume::BoundingVolume V>
+NodesAbout nodes_about(const tree::Hierarchy<V>& tree, const wide::Searches&, const Vec3f& place) noexcept {
+  constexpr std::size_t levels_between = 3;  // three levels of two are one of eight
+  std::array<std::uint32_t, (sizes - 1) * levels_between + 1> last{};
+  std::size_t count = 0;
+  std::uint32_t index = 0;
+  while (true) {
+    last[count++ % last.size()] = index;
+    const auto& node = tree.nodes()[index];
+    if (node.is_leaf()) break;
+    const auto strange = [&](std::uint32_t child) noexcept {
+      return strangeness(tree.statistics()[child], tree.nodes()[child].radius, place);
+    };
+    index = node.first + (strange(node.first + 1) < strange(node.first) ? 1U : 0U);
+  }
+  NodesAbout about;
+  for (std::size_t i = 0; i < sizes; ++i) {
+    about[i] = &tree.statistics()[last[(count - 1 - std::min(i * levels_between, count - 1)) % last.size()]];
+  }
+  return about;
+}
+
+NodesAbout nodes_about(const Shape& shape, const wide::Searches& searches, const Vec3f& place) noexcept {
+  const NodesAbout about =
+      std::visit([&](const auto& tree) noexcept { return nodes_about(tree, searches, place); }, shape.data().tree);
+  prefetch(about);
+  return about;
+}
+
+/// Whether a leaf is met from behind, as a sheet may be: then its normals say nothing of where it pushes.
+bool is_met_from_behind(const NodesAbout& a, const NodesAbout& b, const math::Pose& b_in_a,
+                        const Vec3& into_a) noexcept {
+  return a[0]->mean_normal.cast<double>().dot(into_a) > 0.0 ||
+         (b_in_a.rotation * b[0]->mean_normal.cast<double>()).dot(into_a) < 0.0;
+}
+
+double longest_side(const tree::TriangleCorners& t) noexcept {
+  return std::sqrt(std::max({(t[1] - t[0]).squaredNorm(), (t[2] - t[1]).squaredNorm(), (t[0] - t[2]).squaredNorm()}));
+}
+
+/// How much the triangles' word is worth beside that of nodes that face each other, which say up to 2 each.
+double worth_of_triangles(const PosedMeshes& meshes, const Contact& contact, double flat) noexcept {
+  constexpr double least = 0.15;
+  constexpr double touching = 0.014;  // of a triangle: deeper, and more than these two meet
+  constexpr double most = 1e6;        // all there is to say, squared
+  const double side =
+      std::min(longest_side(meshes.corners_a(contact.triangle_a)), longest_side(meshes.corners_b(contact.triangle_b)));
+  const double at_a_touch = std::min(touching * side / std::max(contact.depth, 1e-300), most);
+  return least + 1.0 - flat + at_a_touch * at_a_touch;
+}
+
+}  // namespace
+
+Vec3 direction_about(const Shape& a, const Shape& b, const wide::Searches& searches, const PosedMeshes& meshes,
+                     const Contact& contact) noexcept {
+  const math::Pose& b_in_a = meshes.pose();
+  const Vec3 place = contact.position - meshes.origin_a();
+  const NodesAbout about_a = nodes_about(a, searches, place.cast<float>());
+  const NodesAbout about_b = nodes_about(b, searches, (b_in_a.inverse() * place).cast<float>());
+  const bool both_solid = a.is_solid() && b.is_solid();
+  if (!both_solid && is_met_from_behind(about_a, about_b, b_in_a, contact.normal)) return contact.normal;
+  Vec3 sum = worth_of_triangles(meshes, contact, flatness_of(*about_a[0], *about_b[0])) * contact.normal;
+  for (std::size_t i = 0; i < sizes; ++i) {
+    const Facing facing = facing_of(*about_a[i], *about_b[i], b_in_a);
+    sum += facing.opposition * facing.direction;
+  }
+  const double length = sum.norm();
+  return length > 1e-3 && std::isfinite(length) ? Vec3(sum / length) : contact.normal;
+}
+
+}  // namespace odds::query

@@ -1,0 +1,442 @@
+#include "odds/query/pair.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <type_traits>
+
+#include "odds/math/tolerances.hpp"
+#include "query/answer_odds/answer_odds_table.hpp"
+#include "query/answer_odds/likeliest_place.hpp"
+#include "query/answer_odds/way_apart.hpp"
+#include "query/contacts/flush_answer.hpp"
+#include "query/contacts/pair_contacts.hpp"
+#include "query/contacts/short_budget.hpp"
+#include "query/memory/near_contacts.hpp"
+#include "query/memory/pair_memory.hpp"
+#include "query/pair/pair_within.hpp"
+#include "query/search/search.hpp"
+#include "query/shape_data.hpp"
+
+namespace odds::query {
+
+namespace {
+
+/// A pose or request that no query can be run with: answered as undecided, never as a NaN.
+Answer refused() noexcept {
+  Answer answer;
+  answer.basis = Basis::budget;
+  answer.probability = 0.5;
+  return answer;
+}
+
+/// The order in which a search looks for an answer. Only one from the roots, the likeliest pair first, may end on
+/// probability.
+Method order_of(const Request& request) noexcept {
+  if (request.polygon_free) return Method::time_critical;
+  if (request.method == Method::exact) return Method::exact;
+  return request.p_min < 1.0 ? Method::time_critical : request.method;
+}
+
+/// The witness of the last hit. True: it still is one, and no more are wanted.
+bool witness_suffices(const PosedMeshes& meshes, const Request& request, Pair::Implementation& pair,
+                      Spending& spending) noexcept {
+  if (order_of(request) != Method::incremental || wanted_hits(request, pair) != 1 || !pair.has_witness ||
+      !spending.allows(1)) {
+    return false;
+  }
+  spending.spend_triangle_pairs(1);
+  if (!meshes.meet(pair.witness)) return false;
+  pair.hits.add(pair.witness);
+  return true;
+}
+
+void remember_witness(Pair::Implementation& pair) noexcept {
+  pair.has_witness = !pair.hits.empty();
+  if (pair.has_witness) pair.witness = pair.hits.pairs().front();
+}
+
+template <volume::BoundingVolume V>
+SearchResult search(const Encounter<V>& encounter, const PosedMeshes&, const Request& request, BucketQueue& queue,
+                    Pair::Implementation& pair, Spending& spending) noexcept {
+  SearchResult result;
+  if (encounter.far_apart()) return result;
+  Method order = order_of(request);
+  if (order == Method::incremental && request.budget.is_limited() && pair.slice.pauses()) order = Method::time_critical;
+  if (pieces_are_long<V> && !spending.may_go_on()) {
+    result.method = order;
+    result.ended = Progressed::spent;
+    consider(result, {0, 0, encounter.rank(0, 0)});
+    return result;
+  }
+  spending.spend_node_pairs(1);
+  if (!encounter.volumes_overlap(0, 0)) return result;
+  const std::uint32_t wanted = wanted_hits(request, pair);
+  if (order == Method::exact) {
+    result.method = Method::exact;
+    search_depth_first(encounter, {0, 0, 0.0F}, wanted, pair.hits, spending, result);
+    return result;
+  }
+  if (order == Method::incremental) {
+    result.method = Method::incremental;
+    pair.slice.search(encounter, wanted, pair.hits, spending, result);
+    remember_witness(pair);
+    return result;
+  }
+  return TimeCriticalSearch<V>(encounter, request, wanted, queue, pair.hits, spending).run({0, 0, 0.0F});
+}
+
+/// Whether searches from the roots are tried. Shorter budgets find next to nothing from there, and keep the front; but
+/// where contacts come late, from work that a search leaves time for, it pays down to a few microseconds: a front that
+/// has nearly all expired takes all of them, as of gears, or of a bolt in its nut.
+[[nodiscard]] bool may_search_from_roots(const Request& request, const Pair::Implementation& pair) noexcept {
+  constexpr double least_us = 4.0;
+  return wide::is_enough_from_roots(request.budget) ||
+         (request.budget.microseconds >= least_us && is_short(request, pair));
+}
+
+/// The incremental search of the wide engine, or one from the roots where that is better.
+void search_from_front(wide::Task& task, const math::Pose& pose, Pair::Implementation& pair) noexcept {
+  const Spending& spending = task.spending;
+  const double reach = task.encounter.b().reach();
+  const bool may_choose = may_search_from_roots(task.request, pair);
+  const Cost before = spending.so_far();
+  const auto work = [&] { return wide::Work::between(before, spending.so_far()); };
+  if (may_choose && pair.front_worth.prefers_roots(pose, reach, task.request.budget.is_limited())) {
+    pair.wide->exact(task);
+    return pair.front_worth.note_roots(work(), task.result.ended != Progressed::spent);
+  }
+  task.result.method = Method::incremental;
+  if (may_choose && pair.front_worth.is_stale()) pair.front.restart();
+  pair.front.move_to(pose, reach);
+  task.sample = task.wanted;
+  if (task.wanted > 1) task.wanted = no_feature;
+  const bool is_new = pair.front.size() == 1;
+  pair.wide->incremental(task, pair.front);
+  if (may_choose) pair.front_worth.note_front(work(), pair.front.size(), is_new, pair.front.last());
+}
+
+SearchResult search(const wide::Encounter& encounter, const PosedMeshes& meshes, const Request& request,
+                    BucketQueue& queue, Pair::Implementation& pair, Spending& spending) noexcept {
+  SearchResult result;
+  if (encounter.far_apart()) return result;
+  const std::uint32_t wanted = wanted_hits(request, pair);
+  wide::Task task{encounter, request, wanted, &queue, pair.hits, spending, result};
+  const Method order = order_of(request);
+  if (order == Method::exact) {
+    pair.wide->exact(task);
+    return result;
+  }
+  if (order == Method::time_critical) {
+    pair.wide->time_critical(task);
+    return result;
+  }
+  search_from_front(task, meshes.pose(), pair);
+  remember_witness(pair);
+  return result;
+}
+
+/// Verdict, basis and probability from what the search found; `undecided_probability` is that of a hit if the budget
+/// ended it.
+void judge(const SearchResult& result, double undecided_probability, const Request& request, bool any_hit,
+           Answer& answer) noexcept {
+  if (any_hit) {
+    answer.verdict = Verdict::hit;
+    answer.basis = Basis::proved;
+    answer.probability = 1.0;
+  } else if (result.estimated_hit || (request.polygon_free && result.ended == Progressed::finished)) {
+    answer.basis = Basis::estimated;
+    answer.probability = static_cast<double>(result.estimate);
+  } else if (result.ended == Progressed::spent) {
+    answer.basis = Basis::budget;
+    answer.probability = undecided_probability;
+  } else {
+    answer.basis = Basis::proved;
+    answer.probability = 0.0;
+  }
+  if (answer.basis != Basis::proved) {
+    // Certainty belongs to proofs alone.
+    answer.probability =
+        std::clamp(answer.probability, tolerances::least_uncertainty, 1.0 - tolerances::least_uncertainty);
+    answer.verdict = answer.probability >= 0.5 ? Verdict::hit : Verdict::clear;
+  }
+}
+
+template <volume::BoundingVolume V>
+Encounter<V> encounter_of(const tree::Hierarchy<V>& a, const tree::Hierarchy<V>& b, const PosedMeshes& meshes,
+                          const Request& request) noexcept {
+  return Encounter<V>(a, b, meshes.pose(), request);
+}
+
+wide::Encounter encounter_of(const tree::WideTree& a, const tree::WideTree& b, const PosedMeshes& meshes,
+                             const Request& request) noexcept {
+  return wide::Encounter(a, b, meshes, request.estimator);
+}
+
+/// Verdict, probability and place from what the search left undecided, if it did.
+template <class Met>
+void forecast(const Met& met, const math::Pose& pose_b_in_a, const SearchResult& result, const Request& request,
+              const Spending& spending, Pair::Implementation& pair) noexcept {
+  Answer& answer = pair.answer;
+  for (const NodePair& open : result.shortlist) met.prefetch(open);
+  double undecided = 0.5;  // of a hit; even odds if nothing is known of what is open
+  float cell_probability = 0.0F;
+  if (!result.shortlist.empty() && pair.hits.empty()) {
+    const NodePair& likeliest = result.shortlist.highest();
+    const AnswerOdds& odds = answer_odds[odds_index(pair.a->volume(), request.estimator, result.method)];
+    cell_probability = met.probability(likeliest.a, likeliest.b);
+    undecided =
+        pair.recalibration(probability_of_hit(odds, remains_of(met, result, spending.so_far(), cell_probability)));
+  }
+  judge(result, undecided, request, !pair.hits.empty(), answer);
+  if (answer.basis == Basis::proved || result.shortlist.empty()) return;
+  answer.has_cell_pair = true;
+  const auto apart = [&]() noexcept {
+    return pair.previous_normal.isZero() ? way_apart(pair.a->mesh(), pair.b->mesh(), pose_b_in_a)
+                                         : pair.previous_normal;
+  };
+  const bool both_solid = pair.a->is_solid() && pair.b->is_solid();
+  answer.cell_pair = likeliest_place(met, result.shortlist, answer.probability, both_solid, apart);
+  answer.cell_pair.position += met.a().origin();
+  answer.cell_pair_probability = static_cast<double>(cell_probability);
+}
+
+/// Whether all are apart because they were, and have hardly moved since.
+template <volume::BoundingVolume V>
+bool is_still_apart(const tree::Hierarchy<V>&, const PosedMeshes&, const Request&,
+                    const Pair::Implementation&) noexcept {
+  return false;
+}
+
+bool is_still_apart(const tree::WideTree& b, const PosedMeshes& meshes, const Request& request,
+                    const Pair::Implementation& pair) noexcept {
+  return order_of(request) == Method::incremental && pair.front.is_apart(meshes.pose(), b.reach());
+}
+
+/// Bodies that have gone by more than half of the smaller one between two runs may have been anywhere: nothing is known
+/// of the sides that they touched before.
+void forget_if_elsewhere(const PosedMeshes& meshes, Pair::Implementation& pair) noexcept {
+  constexpr double elsewhere = 0.5;
+  const math::Pose& now = meshes.pose();
+  const double size_a = pair.a->mesh().size();
+  const double size_b = pair.b->mesh().size();
+  if (pair.known_at) {
+    const math::Pose& before = *pair.known_at;
+    const Vec3 motion = size_b <= size_a ? Vec3(now.translation - before.translation)
+                                         : Vec3(now.inverse().translation - before.inverse().translation);
+    if (motion.norm() > elsewhere * std::min(size_a, size_b)) {
+      pair.came.setZero();
+      pair.previous_normal.setZero();
+      pair.haste.forget();
+      pair.flush.forget();
+      pair.nothing_beside_at.reset();
+      if (!pair.apart_last) pair.apart_at.reset();
+    }
+  }
+  pair.known_at = now;
+  pair.apart_last = false;
+}
+
+template <class Tree>
+void search_and_answer(const Tree& a, const Tree& b, const PosedMeshes& meshes, const math::Pose& pose_b_in_a,
+                       const Request& request, Pair::Implementation& pair, Spending& spending) noexcept {
+  Answer& answer = pair.answer;
+  if (carry_contacts(meshes, pose_b_in_a, request, pair, spending)) return;
+  if (carry_late_contacts(meshes, pose_b_in_a, request, pair, spending)) return;
+  if (is_still_apart(b, meshes, request, pair)) {
+    pair.has_witness = false;
+    pair.flush.note_clear();
+    if (!answer_within(meshes, pose_b_in_a, request, b.reach(), pair.within_is_of_front, pair, spending)) {
+      note_clear(meshes, pose_b_in_a, request, pair);
+    }
+    return;
+  }
+  SearchResult result;
+  const ScratchPool::Loan scratch = pair.scratch.borrow();
+  if (witness_suffices(meshes, request, pair, spending)) {
+    result.ended = Progressed::enough;
+    result.method = Method::incremental;
+    judge(result, 0.5, request, true, answer);
+  } else {
+    const auto encounter = encounter_of(a, b, meshes, request);
+    result = search(encounter, meshes, request, scratch->queue, pair, spending);
+    forecast(encounter, pose_b_in_a, result, request, spending, pair);
+    if (answer.basis == Basis::budget) judge_by_flat_faces(meshes, request, pair, spending);
+  }
+  pair.within_is_of_front = false;
+  if (!pair.hits.empty()) pair.within = Within::neither;
+  if (!pair.hits.empty() && request.max_contacts > 0) {
+    const double most_depth = pair.known_depth.most(meshes.pose(), b.reach());
+    make_contacts(meshes, pose_b_in_a, result, most_depth, request, scratch->patches, pair, spending);
+  } else if (answer.basis == Basis::proved && answer.verdict == Verdict::clear) {
+    pair.flush.note_clear();
+    if (!answer_within(meshes, pose_b_in_a, request, b.reach(), false, pair, spending)) {
+      note_clear(meshes, pose_b_in_a, request, pair);
+    }
+    pair.within_is_of_front = pair.within_is_of_front && result.method == Method::incremental;
+  } else if (pair.within == Within::neither && answer.contacts.empty()) {
+    pair.previous_normal.setZero();
+  }
+}
+
+template <class Tree>
+void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const Request& request,
+            Pair::Implementation& pair) noexcept {
+  // A hit that the search finds last still wants its contact, a rough one; of pages and triangles that its reserve pays
+  // for, the search has just touched some.
+  const std::int64_t last_contact_ns = request.max_contacts > 0 ? pair.endings.rough.ns() * 2 / 3 : 0;
+  Spending spending(request.budget,
+                    {.search_ns = pair.endings.search.ns(),
+                     .contacts_ns = (request.max_contacts > 1 ? pair.endings.rough : pair.endings.single).ns(),
+                     .last_contact_ns = last_contact_ns,
+                     .pieces_are_long = are_pieces_long(pair.a->volume())});
+  Answer& answer = pair.answer;
+  answer = {};
+  pair.hits.clear();
+  pair.flush.begin();
+  pair.front.begin_run();
+  if (pair.late) pair.late->age(pose_b_in_a, smaller_size(pair));
+  const PosedMeshes meshes(pair.a->mesh(), pair.b->mesh(), a.origin(), b.origin(), pose_b_in_a);
+  forget_if_elsewhere(meshes, pair);
+  search_and_answer(a, b, meshes, pose_b_in_a, request, pair, spending);
+  if (request.margin > 0.0) {
+    add_near_contacts(pose_b_in_a, request, pair, spending);
+  } else {
+    pair.near.forget();
+  }
+  settle_late(request, pair, spending);
+  answer.cost = spending.close();
+  if (spending.ending_ns() > 0 && pair.hits.empty()) pair.endings.search.note(spending.ending_ns());
+}
+
+bool usable(const math::Pose& pose, const Request& request) noexcept {
+  return pose.is_rigid(tolerances::pose_orthonormality) && request.budget.microseconds > 0.0 &&
+         request.budget.work_units > 0 && request.p_min > 0.0 && request.p_min <= 1.0 && request.k_min >= 1 &&
+         request.max_contacts >= 0 && request.margin >= 0.0 && std::isfinite(request.margin) &&
+         request.carry_motion >= 0.0 && request.carry_motion <= 1.0;
+}
+
+}  // namespace
+
+Result<Pair> Pair::make(std::shared_ptr<const Shape> a, std::shared_ptr<const Shape> b, const PairOptions& options) {
+  if (!a || !b) return Error{"", "", "a pair needs two shapes", "build both shapes first"};
+  if (a->volume() != b->volume()) {
+    return Error{b->mesh().name(), "",
+                 "its bounding volume is " + std::string(volume::name(b->volume())) + ", but that of " +
+                     a->mesh().name() + " is " + std::string(volume::name(a->volume())),
+                 "build both shapes with the same volume"};
+  }
+  if (options.queue_capacity < 64 || options.queue_capacity > (1U << 20U)) {
+    return Error{"", "", "queue_capacity is " + std::to_string(options.queue_capacity), "choose 64 to 1048576"};
+  }
+  if (options.hit_capacity < 8 || options.hit_capacity > 65536) {
+    return Error{"", "", "hit_capacity is " + std::to_string(options.hit_capacity), "choose 8 to 65536"};
+  }
+  if (options.slice_capacity < 64 || options.slice_capacity > (1U << 24U)) {
+    return Error{"", "", "slice_capacity is " + std::to_string(options.slice_capacity), "choose 64 to 16777216"};
+  }
+  if (options.calibration_poses > 1'000'000) {
+    return Error{"", "", "calibration_poses is " + std::to_string(options.calibration_poses), "choose 0 to 1000000"};
+  }
+  if (wide::searches_for(options.instruction_set) == nullptr) {
+    return Error{"", "", "this processor, or this build, lacks the instructions asked for",
+                 "choose InstructionSet::best"};
+  }
+  static_cast<void>(realtime::fastest_clock());  // calibrates now, so that no query has to
+  const bool may_be_late = options.late_contacts && a->has_polygons() && b->has_polygons();
+  auto late = may_be_late ? std::make_unique<LateContacts>(a, b, options) : nullptr;
+  Pair pair(std::make_unique<Implementation>(std::move(a), std::move(b), options));
+  if (late) {
+    Implementation& made = *pair.implementation_;
+    made.flush = FlushContacts(made.a->data().flat_faces(), made.b->data().flat_faces(), made.wide->patch);
+  }
+  pair.implementation_->late = std::move(late);
+  // Once through what a query ends with, so that the first real one does not wait for pages of code. How long that took
+  // says nothing of other endings, and would differ from run to run.
+  Request first;
+  first.budget = {.microseconds = 1.0, .work_units = 64};
+  first.max_contacts = 0;
+  static_cast<void>(pair.run({}, first));
+  pair.reset();
+  pair.implementation_->endings = {};
+  if (options.calibration_poses > 0) {
+    pair.implementation_->recalibration = learn_recalibration(pair, options.calibration_poses);
+    pair.reset();
+  }
+  return pair;
+}
+
+Pair::Pair(std::unique_ptr<Implementation> implementation) : implementation_(std::move(implementation)) {}
+Pair::~Pair() = default;
+Pair::Pair(Pair&&) noexcept = default;
+Pair& Pair::operator=(Pair&&) noexcept = default;
+
+void run_pair(Pair::Implementation& pair, const math::Pose& pose_b_in_a, const Request& request) noexcept {
+  if (!usable(pose_b_in_a, request)) {
+    pair.answer = refused();
+    return;
+  }
+  Request possible = request;
+  possible.polygon_free = request.polygon_free || pair.polygon_free;
+  std::visit(
+      [&](const auto& a) {
+        using Tree = std::remove_cvref_t<decltype(a)>;
+        run_on(a, *std::get_if<Tree>(&pair.b->data().tree), pose_b_in_a, possible, pair);
+      },
+      pair.a->data().tree);
+}
+
+const Answer& Pair::run(const math::Pose& pose_b_in_a, const Request& request) noexcept {
+  run_pair(*implementation_, pose_b_in_a, request);
+  return implementation_->answer;
+}
+
+void Pair::note_apart(const math::Pose& pose_b_in_a) noexcept {
+  Implementation& pair = *implementation_;
+  if (!pose_b_in_a.is_rigid(tolerances::pose_orthonormality)) return;
+  std::visit(
+      [&](const auto& a) {
+        using Tree = std::remove_cvref_t<decltype(a)>;
+        const Tree& b = *std::get_if<Tree>(&pair.b->data().tree);
+        const PosedMeshes meshes(pair.a->mesh(), pair.b->mesh(), a.origin(), b.origin(), pose_b_in_a);
+        note_clear(meshes, pose_b_in_a, {.solids = true}, pair);
+        pair.near.forget();
+        pair.haste.forget();
+        pair.flush.forget();
+        pair.nothing_beside_at.reset();
+        if (pair.late) pair.late->forget();
+        pair.within_is_of_front = false;
+      },
+      pair.a->data().tree);
+}
+std::uint32_t Pair::slice_size() const noexcept {
+  if (implementation_->a->volume() != volume::Kind::wide) return implementation_->slice.size();
+  return std::max(implementation_->front.size(), 1U);
+}
+std::span<const TrianglePair> Pair::crossings() const noexcept { return implementation_->hits.pairs(); }
+const Shape& Pair::a() const noexcept { return *implementation_->a; }
+const Shape& Pair::b() const noexcept { return *implementation_->b; }
+void Pair::reset() noexcept {
+  implementation_->answer = {};
+  implementation_->slice.reset();
+  implementation_->front.reset();
+  implementation_->front_worth.reset();
+  implementation_->previous_normal.setZero();
+  implementation_->came.setZero();
+  implementation_->apart_at.reset();
+  implementation_->known_at.reset();
+  implementation_->apart_last = false;
+  implementation_->known_depth.forget();
+  implementation_->known_direction.forget();
+  implementation_->carried.forget();
+  implementation_->near.forget();
+  implementation_->has_witness = false;
+  implementation_->haste.forget();
+  implementation_->flush.forget();
+  implementation_->hasty_runs = 0;
+  if (implementation_->late) implementation_->late->forget();
+  implementation_->within = Within::neither;
+  implementation_->within_is_of_front = false;
+}
+
+}  // namespace odds::query

@@ -1,0 +1,435 @@
+// Puts the steps together: rim, patches, normal, depth, choice. Every loop looks at the deadline.
+#include "odds/query/contact_patch.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "odds/math/tolerances.hpp"
+#include "query/patch/eight.hpp"
+#include "query/patch/scratch.hpp"
+#include "query/spread_step.hpp"
+
+namespace odds::query {
+namespace {
+
+using patch::Effort;
+using patch::hasty_pieces;
+using patch::least_pairs;
+using patch::Patch;
+using patch::thorough;
+using patch::Watch;
+using patch::Witness;
+
+/// Centroid of the surface that the rim spans, which unlike the mean of the rim does not care how finely it is cut.
+Vec3 span_centre(const patch::Rim& rim, std::span<const std::uint32_t> indices, const Vec3& middle, const Vec3& normal,
+                 Watch& watch) noexcept {
+  Vec3 sum = Vec3::Zero();
+  double weight = 0.0;
+  double magnitude = 0.0;
+  for (std::size_t i = 0; i < indices.size() && !watch.late_in_small_steps(i); ++i) {
+    const patch::RimPiece& piece = rim.pieces[indices[i]];
+    if (!piece.counts) continue;
+    const Vec3 from = piece.from - middle;
+    const Vec3 to = piece.to - middle;
+    const double w = normal.dot(from.cross(to));
+    sum += w * (from + to) / 3.0;
+    weight += w;
+    magnitude += std::abs(w);
+  }
+  if (!(std::abs(weight) > 0.1 * magnitude)) return middle;
+  return middle + sum / weight;
+}
+
+}  // namespace
+
+void PatchBuilder::Scratch::place_pairs(const PatchInput& input, Watch& watch) noexcept {
+  const std::size_t count = std::min(input.hits.size(), pairs.size());
+  const std::size_t taken = std::min<std::size_t>(count, input.most_pairs);
+  const std::size_t step = count > 0 ? spread_step(count) % count : 0;
+  std::array<TrianglePair, patch::eight> some;
+  std::size_t next = 0;
+  pair_count = 0;
+  for (std::size_t i = 0; i < taken; i += some.size()) {
+    if (watch.late_before_next(i) && pair_count >= least_pairs) break;
+    const std::size_t asked = std::min(some.size(), taken - i);
+    for (std::size_t k = 0; k < asked; ++k) {
+      some[k] = input.hits[next];
+      next += next + step < count ? step : step - count;
+    }
+    pair_count += kernels->place(input, {some.data(), asked}, pairs.data() + pair_count);
+  }
+}
+
+void PatchBuilder::Scratch::make_rim(const PatchInput& input, std::size_t most_pairs, Watch& watch) noexcept {
+  const std::size_t count = std::min(pair_count, most_pairs);
+  cut_pairs(input, count, false, watch);
+  if (piece_count == 0) cut_pairs(input, count, true, watch);
+  Vec3 lower = Vec3::Constant(std::numeric_limits<double>::infinity());
+  Vec3 upper = -lower;
+  for (std::size_t i = 0; i < piece_count; ++i) {
+    static_cast<void>(watch.late_in_small_steps(i));
+    lower = lower.cwiseMin(pieces[i].from).cwiseMin(pieces[i].to);
+    upper = upper.cwiseMax(pieces[i].from).cwiseMax(pieces[i].to);
+  }
+  rim.pieces = {pieces.data(), piece_count};
+  rim.pairs = {pairs.data(), pair_count};
+  rim.origin = piece_count > 0 ? Vec3(0.5 * lower + 0.5 * upper) : Vec3::Zero();
+}
+
+/// Coplanar triangles that face the same way are silent between solids: they speak only where nothing else does.
+void PatchBuilder::Scratch::cut_pairs(const PatchInput& input, std::size_t count, bool silent_too,
+                                      Watch& watch) noexcept {
+  piece_count = 0;
+  const bool skip_silent = input.solid_a && input.solid_b && !silent_too;
+  std::array<patch::RimPiece, patch::most_pieces_of_a_pair> found;
+  patch::CutEight cut;
+  for (std::size_t i = 0; i < count && !watch.late_before_next(i); i += patch::eight) {
+    const std::size_t lanes = std::min(patch::eight, count - i);
+    kernels->cut(&pairs[i], lanes, cut);
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      if (piece_count + found.size() > pieces.size()) return;
+      const auto pair = static_cast<std::uint32_t>(i + lane);
+      if ((cut.plain >> lane & 1U) != 0) {
+        pieces[piece_count++] = cut.piece(lane, pair);
+        continue;
+      }
+      const std::size_t number = patch::rim_pieces(pairs[pair], skip_silent, pair, found);
+      for (std::size_t k = 0; k < number; ++k) {
+        if (found[k].from.allFinite() && found[k].to.allFinite()) pieces[piece_count++] = found[k];
+      }
+    }
+  }
+}
+
+void PatchBuilder::Scratch::sort_by_patch(std::size_t count, Watch& watch) noexcept {
+  first_of_patch.fill(0);
+  for (std::size_t i = 0; i < piece_count && !watch.late_in_small_steps(i); ++i) {
+    if (pieces[i].component < count) ++first_of_patch[pieces[i].component + 1];
+  }
+  for (std::size_t p = 1; p < first_of_patch.size(); ++p) first_of_patch[p] += first_of_patch[p - 1];
+  std::array<std::uint32_t, patch::Components::most + 1> next = first_of_patch;
+  for (std::uint32_t i = 0; i < piece_count && !watch.late_in_small_steps(i); ++i) {
+    if (pieces[i].component < count) by_patch[next[pieces[i].component]++] = i;
+  }
+}
+
+/// False if the time was up before all was done.
+bool PatchBuilder::Scratch::make_patches(const PatchInput& input, Watch& watch) noexcept {
+  patch_count = 0;
+  make_rim(input, pair_count, watch);
+  if (watch.late()) return false;
+  const std::span<const patch::RimSums> sums = components.group(rim, input.solid_a, input.solid_b, watch);
+  if (watch.late()) return false;
+  sort_by_patch(sums.size(), watch);
+  if (watch.late()) return false;
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    const Indices indices = pieces_of(i);
+    if (indices.empty()) continue;
+    patches[patch_count++] = make_patch(input, sums[i], indices, thorough, watch);
+    if (watch.late()) return false;
+  }
+  if (input.believed_depth > 0.0 || (input.solid_a && input.solid_b && patch_count > 1)) straighten(input, sums, watch);
+  return true;
+}
+
+/// A few pieces that a search without time has left of a rim, say along the side of a brick that stands flush on
+/// another, span an area of their own: where a brick hangs over by as little as it is deep, that points anywhere. Nor
+/// has a crumb that rounding has left of a whole rim a direction of its own. What is no deeper than is believed, or
+/// else than the rest is, along the direction that is known, or else that on which most of the rim agrees, belongs to
+/// that.
+void PatchBuilder::Scratch::straighten(const PatchInput& input, std::span<const patch::RimSums> sums,
+                                       Watch& watch) noexcept {
+  const double rounding = tolerances::rim_noise * rim.origin.cwiseAbs().maxCoeff();
+  const std::span<const Patch> made(patches.data(), patch_count);
+  const auto agree = [](const Vec3& x, const Vec3& y) noexcept { return x.dot(y) > tolerances::same_face; };
+  const Vec3* chosen = input.known_normal;
+  double longest = 0.0;
+  for (std::size_t p = 0; p < patch_count && input.known_normal == nullptr; ++p) {
+    double agreeing = 0.0;
+    for (const Patch& other : made) agreeing += agree(other.normal, made[p].normal) ? other.length + rounding : 0.0;
+    if (!(agreeing > longest)) continue;
+    chosen = &made[p].normal;
+    longest = agreeing;
+  }
+  if (chosen == nullptr) return;
+  const Vec3 direction = *chosen;
+  double deepest = 0.0;
+  for (const Patch& patch : made) deepest = agree(patch.normal, direction) ? std::max(deepest, patch.depth) : deepest;
+  const double limit = input.believed_depth > 0.0 ? input.believed_depth : deepest + rounding;
+  for (std::size_t i = 0, next = 0; i < sums.size() && !watch.late(); ++i) {
+    const Indices indices = pieces_of(i);
+    if (indices.empty()) continue;
+    Patch& own = patches[next++];
+    if (agree(own.normal, direction)) continue;
+    // A whole rim has a direction of its own, unless this is by far the shorter way out: as of a lump between faces
+    // that are flush to within rounding, which overlaps from one end of them to the other.
+    const bool is_whole = sums[i].closed() && sums[i].length > 0.0;
+    const double most =
+        is_whole ? std::min(tolerances::flush_lump * limit, tolerances::by_far_shorter * own.depth) : limit;
+    const patch::PatchView view{input, *kernels, rim, sums[i], indices, thorough.sample};
+    if (!patch::is_of_direction(view, direction, most, watch)) continue;
+    const Patch straight = patch_along(direction, input, sums[i], indices, thorough, watch);
+    if (watch.late()) return;  // it was not measured to its end
+    if (straight.depth <= most) own = straight;
+  }
+}
+
+/// The overlap's corners of up to eight pairs, one pair after the other.
+void PatchBuilder::Scratch::add_witnesses(std::span<const patch::PlacedPair* const> asked,
+                                          const patch::Frame& frame) noexcept {
+  patch::CornersOfEight corners;
+  kernels->corners(asked, frame, Vec3::Zero(), 0.0, corners);
+  const std::array<std::uint16_t, patch::eight> kinds = corners.kinds_of_lanes();
+  for (std::size_t lane = 0; lane < asked.size(); ++lane) {
+    for (unsigned left = kinds[lane]; left != 0; left &= left - 1U) {
+      if (witness_count == witnesses.size()) return;
+      const auto kind = static_cast<std::size_t>(std::countr_zero(left));
+      witnesses[witness_count++] = corners.witness(*asked[lane], frame, kind, lane);
+    }
+  }
+}
+
+/// Fills `witnesses` with the overlap's corners of the pairs of the pieces; at least one.
+void PatchBuilder::Scratch::find_witnesses(Indices indices, const patch::Frame& frame, Watch& watch) noexcept {
+  witness_count = 0;
+  std::array<const patch::PlacedPair*, patch::eight> asked;
+  std::size_t count = 0;
+  std::uint32_t last_pair = no_feature;
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    const std::uint32_t pair = pieces[indices[i]].pair;
+    if (pair == last_pair) continue;  // the pieces of one pair follow each other
+    last_pair = pair;
+    asked[count++] = &pairs[pair];
+    if (count < asked.size()) continue;
+    add_witnesses(asked, frame);
+    count = 0;
+    if (watch.late()) break;
+  }
+  if (count > 0) add_witnesses({asked.data(), count}, frame);
+  if (witness_count == 0) {  // rounding has parted triangles that only touch
+    const patch::RimPiece& piece = pieces[indices[0]];
+    const patch::PlacedPair& placed = pairs[piece.pair];
+    witnesses[witness_count++] = {piece.middle(), piece.middle(), 0.0, placed.index.a, placed.index.b};
+  }
+}
+
+/// Measures the overlap inside the rim: at the centre and a little inside of the points that span the patch. A deep
+/// overlap's rim triangles reach only as far as they are large. Where the overlap is round (a ball), leaves out all but
+/// its depth: what lies at its rim bears nothing.
+std::size_t PatchBuilder::Scratch::probe(const PatchInput& input, const Vec3& centre, double reach,
+                                         const patch::Frame& frame, const patch::Chosen& spread, Measured& measured,
+                                         Watch& watch) noexcept {
+  const auto measure = [&](const Vec3& place, Witness& found) noexcept {
+    return !watch.late() && patch::probe_overlap(input, place, frame.normal, reach, watch, found);
+  };
+  std::size_t count = 0;
+  Witness inside;
+  if (measure(centre, inside)) measured[count++] = inside;
+  for (std::size_t i = 0; i < spread.count; ++i) {
+    Witness w = spread.witnesses[i];
+    const Vec3 place = w.middle();
+    if (measure(place + 0.02 * (centre - place), inside) && inside.depth > w.depth) {
+      w = inside;
+      w.on_a = place + frame.normal * frame.normal.dot(inside.on_a - place);
+      w.on_b = place + frame.normal * frame.normal.dot(inside.on_b - place);
+    }
+    measured[count++] = w;
+  }
+  Witness deepest = patch::deepest_of({measured.data(), count}, frame, centre, 0.25 * reach);
+  // The last run's summit is near this one's; starting from it, the climb follows one summit and does not flicker. That
+  // of another side is not in this overlap.
+  if (input.previous_position != nullptr && (*input.previous_position - centre).norm() < 0.5 * reach &&
+      input.previous_normal != nullptr && input.previous_normal->dot(frame.normal) > tolerances::same_as_before &&
+      measure(*input.previous_position, inside) && inside.depth > deepest.depth) {
+    deepest = inside;
+    measured[count++] = inside;
+  }
+  const Witness higher = patch::climb(input, deepest, frame.normal, 0.25 * reach, reach, watch);
+  if (higher.depth > (1.0 + tolerances::level_overlap) * deepest.depth) measured[count++] = deepest = higher;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Witness& w = measured[i];
+    const double linear = 0.5 * (w.depth + deepest.depth);
+    const bool round = w.depth < 0.5 * deepest.depth && measure(0.5 * (w.middle() + deepest.middle()), inside) &&
+                       inside.depth > linear + tolerances::round_overlap * deepest.depth;
+    if (!round) measured[kept++] = patch::pulled_in(w, deepest);
+  }
+  return kept;
+}
+
+Patch PatchBuilder::Scratch::make_patch(const PatchInput& input, const patch::RimSums& sums, Indices indices,
+                                        const Effort& effort, Watch& watch) noexcept {
+  const patch::PatchView view{input, *kernels, rim, sums, indices, effort.sample};
+  return shorter_way_out(patch_along(patch::patch_normal(view, watch), input, sums, indices, effort, watch), view,
+                         effort, watch);
+}
+
+/// The patch, or another way out of it that is shorter.
+Patch PatchBuilder::Scratch::shorter_way_out(const Patch& made, const patch::PatchView& view, const Effort& effort,
+                                             Watch& watch) noexcept {
+  const patch::RimSums& sums = view.sums;
+  // A lump at the corner of two faces that nearly coincide has an area of its own, along which the bodies overlap from
+  // end to end. Where pieces of a rim are missing, what is left of it may be such a lump whatever its size.
+  const double wide = (patch::is_part_of_a_rim(view) ? 1.0 : tolerances::lump_depth) * sums.diagonal();
+  if (!(made.depth > wide) || sums.length == 0.0 || watch.late()) return made;
+  const Patch other = patch_along(patch::shortest_way_out(view, watch), view.input, sums, view.pieces, effort, watch);
+  return other.depth < made.depth ? other : made;
+}
+
+Patch PatchBuilder::Scratch::patch_along(const Vec3& normal, const PatchInput& input, const patch::RimSums& sums,
+                                         Indices indices, const Effort& effort, Watch& watch) noexcept {
+  Patch made;
+  made.lower = sums.lower;
+  made.upper = sums.upper;
+  made.normal = normal;
+  made.length = sums.length;
+  if (watch.late()) return made;  // here and below: what is not finished then is not used
+  const patch::Frame frame(made.normal);
+  const Vec3 centre = span_centre(rim, indices, sums.centre(rim.origin), made.normal, watch);
+  find_witnesses(effort.ends_only ? telling.ends_of(*kernels, rim, indices, frame, fan, centre, watch)
+                                  : telling.of(*kernels, rim, indices, frame, fan, centre, watch),
+                 frame, watch);
+  if (watch.late()) return made;
+  const double radius = 0.5 * sums.diagonal();
+  const Witness deepest = patch::deepest_of({witnesses.data(), witness_count}, frame, centre, radius);
+  patch::Extremes extremes(*kernels, frame, fan, centre, deepest);
+  const std::span<const Witness> found{witnesses.data(), witness_count};
+  for (std::size_t i = 0; i < found.size() && !watch.late_before_next(i); i += patch::Extremes::at_once) {
+    extremes.add(found.subspan(i, std::min(patch::Extremes::at_once, found.size() - i)));
+  }
+  if (watch.late()) return made;
+  made.centre = centre;
+  const double lever = (input.reference_a - centre).norm();
+  made.depth = deepest.depth;
+  made.chosen = patch::choose(extremes.all(), frame, most_contacts, patch::spacing(made.depth, lever));
+  Measured measured;
+  std::size_t count = made.chosen.count;
+  if (input.probe_a && input.probe_b && sums.length > 0.0 && !watch.late()) {
+    const double reach = 2.0 * (sums.diagonal() + made.depth);
+    count = probe(input, centre, reach, frame, made.chosen, measured, watch);
+    if (watch.late()) return made;
+    for (std::size_t i = 0; i < count; ++i) made.depth = std::max(made.depth, measured[i].depth);
+  } else {
+    for (std::size_t i = 0; i < count; ++i) measured[i] = patch::pulled_in(made.chosen.witnesses[i], deepest);
+  }
+  made.chosen = patch::choose({measured.data(), count}, frame, most_contacts, patch::spacing(made.depth, lever));
+  made.low = std::numeric_limits<double>::infinity();
+  made.high = -made.low;
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    static_cast<void>(watch.late_in_small_steps(i));
+    const double height = made.normal.dot(pieces[indices[i]].middle() - rim.origin);
+    made.low = std::min(made.low, height);
+    made.high = std::max(made.high, height);
+  }
+  made.low = std::min(made.low, made.high - made.depth);
+  return made;
+}
+
+/// Faces that are flush to within rounding leave crumbs of a rim between them, closed ones too, whose normals are those
+/// of the faces. Beside a patch that bears they are left out.
+void PatchBuilder::Scratch::drop_crumbs() noexcept {
+  double deepest = 0.0;
+  Vec3 lower = Vec3::Constant(std::numeric_limits<double>::infinity());
+  Vec3 upper = -lower;
+  for (std::size_t i = 0; i < patch_count; ++i) {
+    deepest = std::max(deepest, patches[i].depth);
+    lower = lower.cwiseMin(patches[i].lower);
+    upper = upper.cwiseMax(patches[i].upper);
+  }
+  const double limit =
+      std::min(tolerances::shallow_patch * deepest, tolerances::bears_nothing * (upper - lower).maxCoeff());
+  for (std::size_t i = 0; i < patch_count; ++i) patches[i].dropped = patches[i].depth < limit;
+}
+
+/// Two patches that push against each other through the same stuff (a rod that has run through a plate) cannot both be
+/// obeyed: the shorter way out stays.
+void PatchBuilder::Scratch::drop_opposed(const Vec3* previous) noexcept {
+  const auto cost = [previous](const Patch& p) noexcept {
+    return p.depth *
+           (previous != nullptr && previous->dot(p.normal) > tolerances::same_as_before ? tolerances::hysteresis : 1.0);
+  };
+  for (std::size_t i = 0; i < patch_count; ++i) {
+    for (std::size_t j = i + 1; j < patch_count; ++j) {
+      Patch& p = patches[i];
+      Patch& q = patches[j];
+      if (p.dropped || q.dropped || p.normal.dot(q.normal) > tolerances::opposed) continue;
+      if ((p.lower.array() - p.depth > q.upper.array() + q.depth).any()) continue;
+      if ((q.lower.array() - q.depth > p.upper.array() + p.depth).any()) continue;
+      // Along p's normal p's overlap reaches down from its rim, q's up from its own.
+      const double q_low = -q.high;
+      const double q_high = -q.low;
+      if (p.low > q_high || q_low > p.high) continue;
+      (cost(q) < cost(p) ? p : q).dropped = true;
+    }
+  }
+}
+
+/// Deals the contacts out: every patch its first, the deepest patch first, then every patch its second, and so on.
+void PatchBuilder::Scratch::write(const PatchInput& input) noexcept {
+  std::array<Patch*, patch::Components::most> order{};
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < patch_count; ++i) {
+    if (!patches[i].dropped && patches[i].chosen.count > 0) order[count++] = &patches[i];
+  }
+  const auto rank = [&input](const Patch* p) noexcept {
+    const bool before =
+        input.previous_normal != nullptr && input.previous_normal->dot(p->normal) > tolerances::same_as_before;
+    return before ? p->depth * tolerances::keep_first : p->depth;
+  };
+  std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count),
+            [&rank](const Patch* p, const Patch* q) { return rank(p) != rank(q) ? rank(p) > rank(q) : p < q; });
+  const std::size_t wanted = most_wanted;
+  if (count >= wanted) {
+    count = wanted;  // one contact a patch: at its middle, so that it bears without tipping
+    for (std::size_t i = 0; i < count; ++i) {
+      if (order[i]->chosen.count > 1)
+        order[i]->chosen.witnesses[0] = patch::merged(order[i]->chosen, order[i]->normal, order[i]->centre);
+      order[i]->chosen.count = 1;
+    }
+  }
+  contact_count = 0;
+  for (std::size_t round = 0; round < most_contacts; ++round) {
+    for (std::size_t i = 0; i < count && contact_count < wanted; ++i) {
+      if (round >= order[i]->chosen.count) continue;
+      const patch::Witness& w = order[i]->chosen.witnesses[round];
+      contacts[contact_count++] = {w.middle(), order[i]->normal, w.depth, w.triangle_a, w.triangle_b};
+    }
+  }
+}
+
+PatchBuilder::PatchBuilder(std::size_t hit_capacity)
+    : scratch_(std::make_unique<Scratch>(std::clamp<std::size_t>(hit_capacity, 8, 65536))) {}
+PatchBuilder::~PatchBuilder() = default;
+PatchBuilder::PatchBuilder(PatchBuilder&&) noexcept = default;
+PatchBuilder& PatchBuilder::operator=(PatchBuilder&&) noexcept = default;
+
+std::span<const Contact> PatchBuilder::build(const PatchInput& input, const Deadline& deadline,
+                                             const Deadline& last) noexcept {
+  Scratch& s = *scratch_;
+  s.kernels = input.kernels != nullptr ? input.kernels : &patch::best_kernels();
+  Watch watch(deadline);
+  s.place_pairs(input, watch);
+  s.piece_count = 0;
+  s.finished = s.make_patches(input, watch);
+  s.most_wanted = static_cast<std::size_t>(std::clamp(input.max_contacts, 1, most_contacts));
+  s.contact_count = 0;
+  if (!s.finished) {
+    s.make_hasty_contacts(input, last);
+  } else {
+    s.drop_crumbs();
+    s.drop_opposed(input.previous_normal);
+    s.write(input);
+  }
+  return {s.contacts.data(), s.contact_count};
+}
+
+bool PatchBuilder::finished() const noexcept { return scratch_->finished; }
+std::uint32_t PatchBuilder::pairs_used() const noexcept {
+  return static_cast<std::uint32_t>(scratch_->finished ? scratch_->pair_count
+                                                       : std::min(scratch_->piece_count, hasty_pieces));
+}
+
+}  // namespace odds::query

@@ -1,0 +1,85 @@
+#include "odds/query/ray.hpp"
+
+#include <array>
+#include <cmath>
+#include <variant>
+
+#include "odds/primitive/ray_triangle.hpp"
+#include "query/counted_ray.hpp"
+#include "query/search/search.hpp"
+#include "query/shape_data.hpp"
+#include "query/wide/searches.hpp"
+
+namespace odds::query {
+namespace {
+
+template <volume::BoundingVolume V>
+std::optional<RayHit> cast(const tree::Hierarchy<V>& hierarchy, const Vec3& origin, const Vec3& direction,
+                           double length, std::uint64_t budget_nodes, RayEffort& effort) noexcept {
+  volume::RaySegment segment = volume::RaySegment::make(origin, direction, length, hierarchy.reach());
+  std::array<std::uint32_t, stack_capacity> stack;
+  std::size_t size = 0;
+  stack[size++] = 0;
+  std::optional<RayHit> nearest;
+  std::uint64_t visited = 0;
+  for (; size != 0 && visited < budget_nodes; ++visited) {
+    const auto& node = hierarchy.nodes()[stack[--size]];
+    if (!met_by(node.volume, segment)) continue;
+    if (!node.is_leaf()) {
+      // The child whose surface lies nearer along the ray is searched first, so that the segment shrinks early.
+      const float first = hierarchy.statistics()[node.first].centroid.dot(segment.direction);
+      const float second = hierarchy.statistics()[node.first + 1].centroid.dot(segment.direction);
+      const bool swap = second < first;
+      stack[size++] = node.first + (swap ? 0U : 1U);
+      stack[size++] = node.first + (swap ? 1U : 0U);
+      continue;
+    }
+    for (std::uint32_t t = node.first; t < node.first + node.count; ++t) {
+      const double distance = primitive::distance_along_ray(hierarchy.corners()[t].data(), origin, direction);
+      if (!(distance >= 0.0 && distance <= length)) continue;
+      if (nearest && distance >= nearest->distance) continue;
+      nearest = RayHit{distance, hierarchy.order()[t]};
+      segment.length = static_cast<float>(distance * (1.0 + 1e-6));
+    }
+  }
+  effort = {visited, size == 0};
+  return nearest;
+}
+
+std::optional<RayHit> cast(const mesh::TriangleMesh& mesh, const tree::WideTree& tree, const Vec3& origin,
+                           const Vec3& direction, double length, std::uint64_t budget_nodes,
+                           RayEffort& effort) noexcept {
+  return wide::searches_for(InstructionSet::best)->ray({mesh, tree, origin, direction, length, budget_nodes, effort});
+}
+
+template <volume::BoundingVolume V>
+std::optional<RayHit> cast(const mesh::TriangleMesh&, const tree::Hierarchy<V>& hierarchy, const Vec3& origin,
+                           const Vec3& direction, double length, std::uint64_t budget_nodes,
+                           RayEffort& effort) noexcept {
+  return cast(hierarchy, origin, direction, length, budget_nodes, effort);
+}
+
+}  // namespace
+
+std::optional<RayHit> cast_ray(const Shape& shape, const Vec3& origin, const Vec3& direction, double max_distance,
+                               std::uint64_t budget_nodes) noexcept {
+  RayEffort effort;
+  return cast_counted_ray(shape, origin, direction, max_distance, budget_nodes, effort);
+}
+
+std::optional<RayHit> cast_counted_ray(const Shape& shape, const Vec3& origin, const Vec3& direction,
+                                       double max_distance, std::uint64_t budget_nodes, RayEffort& effort) noexcept {
+  effort = {};
+  if (!shape.has_polygons()) return {};
+  if (!origin.allFinite() || !(std::abs(direction.squaredNorm() - 1.0) < 1e-6) || !(max_distance >= 0.0)) return {};
+  return std::visit(
+      [&](const auto& tree) -> std::optional<RayHit> {
+        const Vec3 local = origin - tree.origin();
+        // Nothing lies beyond the far side of the enclosing ball; this also makes an infinite length finite.
+        const double length = std::fmin(max_distance, (local.norm() + tree.reach()) * (1.0 + 1e-9));
+        return cast(shape.mesh(), tree, local, direction, length, budget_nodes, effort);
+      },
+      shape.data().tree);
+}
+
+}  // namespace odds::query
