@@ -69,6 +69,7 @@ struct Pair::Implementation {
   BottomSlice slice;         ///< of the incremental method with volumes of the generic framework
   wide::KineticFront front;  ///< of the same with the wide engine
   wide::FrontWorth front_worth;
+  wide::Sweep sweep;  ///< of searches from the roots that short budgets end
   bool has_witness = false;
   TrianglePair witness;  ///< the pair of triangles that proved the last incremental hit
   const wide::Searches* wide;

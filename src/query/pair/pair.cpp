@@ -101,6 +101,7 @@ void search_from_front(wide::Task& task, const math::Pose& pose, Pair::Implement
   const double reach = task.encounter.b().reach();
   const bool may_choose = may_search_from_roots(task.request, pair);
   const Cost before = spending.so_far();
+  if (is_short(task.request, pair)) task.sweep = &pair.sweep;
   const auto work = [&] { return wide::Work::between(before, spending.so_far()); };
   if (may_choose && pair.front_worth.prefers_roots(pose, reach, task.request.budget.is_limited())) {
     pair.wide->exact(task);
@@ -227,6 +228,7 @@ void forget_if_elsewhere(const PosedMeshes& meshes, Pair::Implementation& pair) 
     if (motion.norm() > elsewhere * std::min(size_a, size_b)) {
       pair.came.setZero();
       pair.previous_normal.setZero();
+      pair.sweep.forget();
       pair.haste.forget();
       pair.flush.forget();
       pair.nothing_beside_at.reset();
@@ -431,6 +433,7 @@ void Pair::reset() noexcept {
   implementation_->carried.forget();
   implementation_->near.forget();
   implementation_->has_witness = false;
+  implementation_->sweep.forget();
   implementation_->haste.forget();
   implementation_->flush.forget();
   implementation_->hasty_runs = 0;

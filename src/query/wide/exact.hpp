@@ -2,6 +2,7 @@
 #pragma once
 
 #include "query/wide/depth_first.hpp"
+#include "query/wide/instalment.hpp"
 #include "query/wide/likeliest_first.hpp"
 
 namespace odds::query::wide {
@@ -20,11 +21,32 @@ struct Exact {
   }
   static void run(Task& task, Slot start_a, Slot start_b) noexcept {
     Frontier<L> frontier(task, start_a, start_b);
+    if (wants_several(task) && task.sweep != nullptr) return go_on(frontier, start_a, start_b);
     if (wants_several(task)) return DepthFirst<L, true>(frontier).run();
     if (frontier.open.size == 0 || LikeliestFirst<L>(frontier).run()) DepthFirst<L, false>(frontier).run();
   }
 
  private:
+  /// With what met and what was left open, then from the roots.
+  static void go_on(Frontier<L>& frontier, Slot start_a, Slot start_b) noexcept {
+    Task& task = frontier.task;
+    Instalment<L> instalment(frontier);
+    const bool resumes = instalment.resume();
+    if (!instalment.look_at_met()) {
+      if (task.result.ended == Progressed::spent) frontier.leave_newest();
+      return;
+    }
+    DepthFirst<L, true>(frontier).run();
+    if (resumes && task.result.ended == Progressed::finished) {
+      if (task.hits.empty()) {
+        frontier.start(start_a, start_b);
+        DepthFirst<L, true>(frontier).run();
+      } else {
+        task.result.ended = Progressed::enough;  // there may be more that has come since
+      }
+    }
+    instalment.keep();
+  }
   [[nodiscard]] static bool wants_several(const Task& task) noexcept { return task.request.max_contacts > 1; }
 };
 

@@ -11,10 +11,11 @@ class Frontier {
  public:
   /// With more than these open the newest is opened, one at a time, and then seven more a level are all there can be.
   static constexpr std::size_t crowded = wide_stack_capacity / 2;
+  static constexpr std::size_t most_leaf_pairs = (Opener<L>::most + 1) * wide_lanes;
 
  private:
   LaneAddress open_lanes_[2][crowded + (Opener<L>::most + 2) * wide_lanes + wide_stack_capacity];
-  Slot leaf_slots_[2][(Opener<L>::most + 1) * wide_lanes];
+  Slot leaf_slots_[2][most_leaf_pairs];
 
  public:
   Task& task;
@@ -22,9 +23,18 @@ class Frontier {
   const Opener<L> opener;
   OpenPairs open{open_lanes_[0], open_lanes_[1]};
   SlotPairs leaf_pairs{{leaf_slots_[0], leaf_slots_[1]}};
+  MetLeaves looked_at;  ///< in this run already: passed over
 
   Frontier(Task& given, Slot start_a, Slot start_b) noexcept
       : task(given), met(given.encounter), opener(given.encounter) {
+    start(start_a, start_b);
+  }
+  Frontier(const Frontier&) = delete;
+  Frontier& operator=(const Frontier&) = delete;
+
+  /// With one pair, and nothing else.
+  void start(Slot start_a, Slot start_b) noexcept {
+    open.size = leaf_pairs.size = 0;
     if (met.are_leaves(start_a, start_b)) {
       leaf_pairs.of[0][0] = start_a;
       leaf_pairs.of[1][0] = start_b;
@@ -33,8 +43,6 @@ class Frontier {
       open.add(met, {{start_a, start_b}});
     }
   }
-  Frontier(const Frontier&) = delete;
-  Frontier& operator=(const Frontier&) = delete;
 
   /// Whether the budget allows to open one more pair.
   [[nodiscard]] bool may_open() noexcept {
@@ -51,6 +59,7 @@ class Frontier {
       }
       if (task.spending.nears_end()) ask_for_statistics();
       const SlotPair pair = leaf_pairs.take();
+      if (looked_at.has({pair.of[0], pair.of[1]})) continue;
       if (visit_leaves<L>(task, pair.of[0], pair.of[1])) continue;
       if (task.result.ended == Progressed::spent) {
         leave_open<L>(task, {pair.of[0], pair.of[1], unranked});

@@ -55,6 +55,7 @@ ODDS_LANES_INLINE bool visit_triangles(Task& task, Slot slot_a, Slot slot_b, con
       }
       if (task.hits.empty() && task.wanted > 1) task.spending.keep_time_for_contacts();
       task.hits.add({a, b});
+      if (task.sweep != nullptr) task.sweep->met.note({slot_a, slot_b});
       if (task.hits.full(task.wanted)) {
         task.result.ended = Progressed::enough;
         return false;

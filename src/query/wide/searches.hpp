@@ -15,6 +15,7 @@
 #include "query/wide/encounter.hpp"
 #include "query/wide/kinetic_front.hpp"
 #include "query/wide/known_faces.hpp"
+#include "query/wide/sweep.hpp"
 
 namespace odds::query::wide {
 
@@ -37,6 +38,7 @@ struct Task {
   /// to what may have begun to meet.
   std::uint32_t sample = no_feature;
   std::uint32_t apart = 0;  ///< exact tests so far of triangles that do not meet
+  Sweep* sweep = nullptr;   ///< of a search in instalments
 };
 
 /// The same for the distance.
