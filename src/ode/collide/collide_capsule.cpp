@@ -53,10 +53,45 @@ void add_ends_behind(const Capsule& capsule, const Vec3& on_surface, const Vec3&
   }
 }
 
+// How far the capsule's axis must go along `out` to be clear of a plane through `on_surface`.
+double depth_behind(const Capsule& capsule, const Vec3& on_surface, const Vec3& out) noexcept {
+  return std::max(out.dot(on_surface - capsule.ends[0]), out.dot(on_surface - capsule.ends[1]));
+}
+
+// A capsule that lies across a solid would be left along its axis, by half its length. The way out at the surface
+// nearest to the middle of a part within, if that takes less than `least`.
+std::optional<NearestSurface> way_out_sideways(const PreparedMesh& mesh, const Capsule& capsule,
+                                               const CapsulePlaces& places, double least, Limit& limit) noexcept {
+  constexpr std::size_t most_crossings = 6;
+  const Vec3 axis = capsule.ends[1] - capsule.ends[0];
+  const double square = axis.squaredNorm();
+  if (!(square > 0.0)) return std::nullopt;
+  std::array<double, most_crossings + 2> at{0.0, 1.0};  // along the axis: its ends, and where it crosses the surface
+  std::size_t count = 2;
+  for (const CapsulePlace& place : places.span()) {
+    if (place.distance > same_place * capsule.radius || count == at.size()) break;
+    at[count++] = axis.dot(place.on_axis - capsule.ends[0]) / square;
+  }
+  std::sort(at.begin(), at.begin() + static_cast<std::ptrdiff_t>(count));
+  std::optional<NearestSurface> best;
+  for (std::size_t i = 1; i < count && !limit.time_is_up(); ++i) {
+    if (!(at[i] - at[i - 1] > 1e-6)) continue;
+    const Vec3 middle = capsule.ends[0] + 0.5 * (at[i - 1] + at[i]) * axis;
+    if (!in_bounds(mesh, middle)) continue;
+    const auto nearest = nearest_surface(mesh, middle, least, limit.units);
+    if (!nearest || !nearest->inside || nearest->outward == Vec3::Zero()) continue;
+    const double depth = depth_behind(capsule, nearest->point, nearest->outward);
+    if (!(depth < least)) continue;
+    least = depth;
+    best = nearest;
+  }
+  return best;
+}
+
 // The axis goes through the surface: of all crossings the one whose plane is left soonest tells the way out. A sheet
 // is left to the side of the capsule's middle.
 std::optional<Vec3> add_crossing(const PreparedMesh& mesh, const Capsule& capsule, const CapsulePlaces& places,
-                                 CapsuleContacts& contacts) noexcept {
+                                 Limit& limit, CapsuleContacts& contacts) noexcept {
   const CapsulePlace* best = nullptr;
   Vec3 best_out = Vec3::Zero();
   double least = std::numeric_limits<double>::infinity();
@@ -65,14 +100,19 @@ std::optional<Vec3> add_crossing(const PreparedMesh& mesh, const Capsule& capsul
     Vec3 out = unit_normal(mesh.corners(place.triangle));
     if (out == Vec3::Zero()) continue;
     if (!mesh.closed && out.dot(capsule.middle() - place.on_surface) < 0.0) out = -out;
-    const double depth =
-        std::max(out.dot(place.on_surface - capsule.ends[0]), out.dot(place.on_surface - capsule.ends[1]));
+    const double depth = depth_behind(capsule, place.on_surface, out);
     if (depth >= least) continue;
     least = depth;
     best = &place;
     best_out = out;
   }
   if (best == nullptr) return std::nullopt;
+  if (mesh.closed && least > capsule.radius) {
+    if (const auto sideways = way_out_sideways(mesh, capsule, places, least, limit)) {
+      add_ends_behind(capsule, sideways->point, sideways->outward, sideways->triangle, contacts);
+      return sideways->outward;
+    }
+  }
   add_ends_behind(capsule, best->on_surface, best_out, best->triangle, contacts);
   return best_out;
 }
@@ -171,7 +211,7 @@ int collide_capsule(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, i
   find_places(mesh, capsule, limit, places);
   CapsuleContacts found;
   if (places.count > 0 && places.all[0].distance <= same_place * capsule.radius) {
-    const std::optional<Vec3> out = add_crossing(mesh, capsule, places, found);
+    const std::optional<Vec3> out = add_crossing(mesh, capsule, places, limit, found);
     add_minima(mesh, capsule, places, out, limit, found);
   } else {
     add_beside(mesh, capsule, places, limit, found);

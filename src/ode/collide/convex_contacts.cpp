@@ -305,6 +305,33 @@ void find_exits(std::span<Patch> patches, const Pieces& pieces, const ConvexBody
   for (Patch& patch : patches) patch.exit = common;
 }
 
+// A body that lies across a solid would be left along its own length. Where that takes more than the body is thick, the
+// way out at the surface nearest to the middle of what lies within is tried, too.
+void leave_sideways(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const Pieces& pieces,
+                    const ConvexBody& body, Limit& limit, std::span<Patch> patches) noexcept {
+  double deepest = 0.0;
+  for (const Patch& patch : patches) deepest = std::max(deepest, patch.exit.depth);
+  if (!mesh.closed || !(deepest > 2.0 * body.box_half_extents().minCoeff()) || limit.time_is_up()) return;
+  Vec3 middle = Vec3::Zero();
+  double area = 0.0;
+  for (std::size_t i = 0; i < pieces.count; ++i) {
+    const Piece& piece = pieces.all[i];
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t k = 0; k < piece.count; ++k) sum += piece.corners[k];
+    middle += piece.area / static_cast<double>(piece.count) * sum;
+    area += piece.area;
+  }
+  middle = body_in_mesh * Vec3(middle / area);
+  if (!in_bounds(mesh, middle)) return;
+  const auto nearest = nearest_surface(mesh, middle, deepest, limit.units);
+  if (!nearest || !nearest->inside || nearest->outward == Vec3::Zero()) return;
+  const Vec3 out = body_in_mesh.rotation.transpose() * nearest->outward;
+  const double depth = out.dot(body_in_mesh.inverse() * nearest->point) + body.reach(-out);
+  for (Patch& patch : patches) {
+    if (depth > 0.0 && depth < patch.exit.depth) patch.exit = {out, depth};
+  }
+}
+
 // No surface inside the body: it may still be swallowed by a closed mesh, and is pushed to the nearest surface.
 void push_out(const PreparedMesh& mesh, const math::Pose& mesh_in_world, const math::Pose& body_in_mesh,
               const ConvexBody& body, Limit& limit, ContactWriter& writer) noexcept {
@@ -372,6 +399,7 @@ Seen write_convex_contacts(const PreparedMesh& mesh, const math::Pose& mesh_in_w
     std::array<Patch, most_patches> patches;
     const std::size_t count = group(pieces, patches);
     find_exits(std::span(patches).first(count), pieces, body, limit);
+    leave_sideways(mesh, body_in_mesh, pieces, body, limit, std::span(patches).first(count));
     write_manifolds(std::span(patches).first(count), body, body_in_world, limit, writer, room);
   }
   if (pieces.cut_off || limit.units == 0) return Seen::cut_off;
