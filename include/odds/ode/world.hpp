@@ -177,7 +177,7 @@ class World {
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;
 
-  /// A body that never moves. `name` stands in error messages. It may reach 1000 km from the origin, no farther.
+  /// A body that never moves. `name` stands in error messages. It may reach 10,000 km from the origin, no farther.
   Result<BodyId> add_fixed(std::shared_ptr<const query::Shape> shape, const math::Pose& pose, const std::string& name);
   /// A body that moves.
   Result<BodyId> add_dynamic(std::shared_ptr<const query::Shape> shape, const math::Pose& pose, const MassSpec& mass,

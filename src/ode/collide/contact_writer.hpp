@@ -12,11 +12,10 @@
 
 namespace odds::ode {
 
-/// ODE passes the number of places in the low 16 bits, and CONTACTS_UNIMPORTANT if one contact is as good as many.
+/// ODE passes the number of places in the low 16 bits. CONTACTS_UNIMPORTANT, above them, allows any contacts, not
+/// fewer: programs that rest bodies on what they get set it, too.
 [[nodiscard]] inline int room_for(int flags, int max_contacts) noexcept {
-  const int asked =
-      (static_cast<unsigned>(flags) & CONTACTS_UNIMPORTANT) != 0 ? std::min(1, flags & 0xffff) : flags & 0xffff;
-  return std::min(asked, max_contacts);
+  return std::min(flags & 0xffff, max_contacts);
 }
 
 /// Fills the array that starts at `contacts` with a stride of `skip` bytes.

@@ -92,7 +92,9 @@ PairTable::Made PairTable::prepare(GeomData& x, GeomData& y, bool warmed) noexce
     const std::lock_guard lock(writers_);
     if (PairEntry* found = find(x, y)) {
       if (!found->pair)
-        set_last_error("the pair could not be prepared before; destroy one of its geoms and make it anew");
+        set_last_error(
+            "the pair could not be prepared before; make one of its geoms anew, of data with the other's volume if "
+            "they differ");
       return {found, false};
     }
     GeomData& a = x.number < y.number ? x : y;
