@@ -31,6 +31,13 @@ struct Exact {
   static void go_on(Frontier<L>& frontier, Slot start_a, Slot start_b) noexcept {
     Task& task = frontier.task;
     Instalment<L> instalment(frontier);
+    if (task.sweep->runs_left == 0) {
+      const MetLeaves before = task.sweep->met;
+      task.sweep->met.forget();
+      DepthFirst<L, true>(frontier).run();
+      return instalment.judge_search_from_roots(before);
+    }
+    --task.sweep->runs_left;
     const bool resumes = instalment.resume();
     if (!instalment.look_at_met()) {
       if (task.result.ended == Progressed::spent) frontier.leave_newest();

@@ -47,6 +47,15 @@ class Instalment {
     return task_.result.ended == Progressed::finished;
   }
 
+  /// At the end of a search that began at the roots and with nothing else: `before` is what met in the last ones. If
+  /// it has found nothing, others are made in instalments.
+  void judge_search_from_roots(const MetLeaves& before) noexcept {
+    if (task_.result.ended != Progressed::spent || !task_.hits.empty()) return;
+    sweep_.met = before;
+    sweep_.runs_left = Sweep::a_while;
+    keep();
+  }
+
   /// Leaves what is open for the next search; of too much the newest, which lie deepest.
   void keep() noexcept {
     sweep_.open_count = std::min(at_.open.size, Sweep::most_open);
@@ -64,7 +73,7 @@ class Instalment {
   /// Pairs of leaves in a run: the rest of its time is for what has begun to meet.
   static constexpr std::size_t most_looks = 4;
   /// Of one pair of leaves: more of the same place say little.
-  static constexpr std::uint32_t most_hits = 2;
+  static constexpr std::uint32_t most_hits = 1;
   static_assert(Sweep::most_open <= Frontier<L>::crowded);
   static_assert(Sweep::most_leaf_pairs == Frontier<L>::most_leaf_pairs);
 

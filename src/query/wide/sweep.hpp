@@ -40,8 +40,12 @@ class MetLeaves {
 /// A search that always begins at the roots, and is always ended soon, looks at the same beginning each time, and may
 /// never come to where the bodies touch. So it is gone on with where the last one was ended, at another pose, and the
 /// pairs of leaves that met are looked at first, some in each run. What is open may be of poses some runs ago: only a
-/// search that began at the roots in the same run proves that nothing meets. No allocation.
+/// search that began at the roots in the same run proves that nothing meets.
+///
+/// Only for a while after a search from the roots has found nothing: where it does find hits, they come from all over
+/// the rim. No allocation.
 struct Sweep {
+  static constexpr int a_while = 32;  ///< runs
   /// A pair as OpenPairs has it.
   struct Open {
     std::uint32_t opened;
@@ -53,6 +57,7 @@ struct Sweep {
   void forget() noexcept {
     met.forget();
     open_count = leaf_pair_count = 0;
+    runs_left = 0;
   }
 
   MetLeaves met;
@@ -60,6 +65,7 @@ struct Sweep {
   std::array<MetLeaves::Entry, most_leaf_pairs> leaf_pairs;
   std::size_t open_count = 0;
   std::size_t leaf_pair_count = 0;
+  int runs_left = 0;  ///< in instalments
 };
 
 }  // namespace odds::query::wide
