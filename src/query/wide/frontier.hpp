@@ -23,7 +23,7 @@ class Frontier {
   const Opener<L> opener;
   OpenPairs open{open_lanes_[0], open_lanes_[1]};
   SlotPairs leaf_pairs{{leaf_slots_[0], leaf_slots_[1]}};
-  MetLeaves looked_at;  ///< in this run already: passed over
+  const MetLeaves* looked_at = nullptr;  ///< in this run already, if not null: passed over
 
   Frontier(Task& given, Slot start_a, Slot start_b) noexcept
       : task(given), met(given.encounter), opener(given.encounter) {
@@ -59,7 +59,7 @@ class Frontier {
       }
       if (task.spending.nears_end()) ask_for_statistics();
       const SlotPair pair = leaf_pairs.take();
-      if (looked_at.has({pair.of[0], pair.of[1]})) continue;
+      if (looked_at != nullptr && looked_at->has({pair.of[0], pair.of[1]})) continue;
       if (visit_leaves<L>(task, pair.of[0], pair.of[1])) continue;
       if (task.result.ended == Progressed::spent) {
         leave_open<L>(task, {pair.of[0], pair.of[1], unranked});

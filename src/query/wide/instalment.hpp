@@ -12,7 +12,10 @@ namespace odds::query::wide {
 template <class L>
 class Instalment {
  public:
-  explicit Instalment(Frontier<L>& frontier) noexcept : at_(frontier), task_(frontier.task), sweep_(*task_.sweep) {}
+  explicit Instalment(Frontier<L>& frontier) noexcept : at_(frontier), task_(frontier.task), sweep_(*task_.sweep) {
+    sweep_.looked_at.forget();
+    at_.looked_at = &sweep_.looked_at;
+  }
 
   /// Puts what the last search left open in place of what the frontier starts with. False: it has left nothing.
   bool resume() noexcept {
@@ -41,7 +44,7 @@ class Instalment {
     const MetLeaves still = sweep_.met;
     sweep_.met.forget();
     for (const MetLeaves::Entry& pair : before.pairs()) {
-      if (!at_.looked_at.has(pair)) sweep_.met.note(pair);
+      if (!sweep_.looked_at.has(pair)) sweep_.met.note(pair);
     }
     for (const MetLeaves::Entry& pair : still.pairs()) sweep_.met.note(pair);
     return task_.result.ended == Progressed::finished;
@@ -83,7 +86,7 @@ class Instalment {
       task_.result.ended = Progressed::spent;
       return false;
     }
-    at_.looked_at.note(pair);
+    sweep_.looked_at.note(pair);
     const std::uint32_t wanted = task_.wanted;
     task_.wanted = std::min(wanted, static_cast<std::uint32_t>(task_.hits.size()) + most_hits);
     const bool goes_on = visit_leaves<L>(task_, pair.a, pair.b);

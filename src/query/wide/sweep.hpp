@@ -61,6 +61,7 @@ struct Sweep {
   }
 
   MetLeaves met;
+  MetLeaves looked_at;               ///< of those, in the run that is under way
   std::array<Open, most_open> open;  ///< oldest first
   std::array<MetLeaves::Entry, most_leaf_pairs> leaf_pairs;
   std::size_t open_count = 0;
