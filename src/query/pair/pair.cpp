@@ -404,6 +404,7 @@ void Pair::note_apart(const math::Pose& pose_b_in_a) noexcept {
         const PosedMeshes meshes(pair.a->mesh(), pair.b->mesh(), a.origin(), b.origin(), pose_b_in_a);
         note_clear(meshes, pose_b_in_a, {.solids = true}, pair);
         pair.near.forget();
+        pair.sweep.forget();
         pair.haste.forget();
         pair.flush.forget();
         pair.nothing_beside_at.reset();
