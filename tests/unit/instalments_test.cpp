@@ -7,7 +7,7 @@
 
 #include "odds/mesh/made/by_name.hpp"
 #include "odds/query/pair.hpp"
-#include "query/wide/sweep.hpp"
+#include "query/wide/few_leaf_pairs.hpp"
 #include "support/shapes.hpp"
 #include "support/short_request.hpp"
 
@@ -81,11 +81,11 @@ TEST(Instalments, ProveNothingThatIsNotSo) {
   }
 }
 
-TEST(MetLeaves, KeepsEachOnceAndAsManyAsThereIsRoomFor) {
-  wide::MetLeaves met;
+TEST(FewLeafPairs, KeepsEachOnceAndAsManyAsThereIsRoomFor) {
+  wide::FewLeafPairs<16> met;
   for (tree::Slot i = 0; i < 40; ++i) met.note({i / 2, 7});
-  ASSERT_EQ(met.pairs().size(), wide::MetLeaves::most);
-  EXPECT_EQ(met.pairs()[1], (wide::MetLeaves::Entry{1, 7}));
+  ASSERT_EQ(met.pairs().size(), 16u);
+  EXPECT_EQ(met.pairs()[1], (wide::TwoLeafSlots{1, 7}));
   EXPECT_TRUE(met.has({15, 7}));
   EXPECT_FALSE(met.has({16, 7}));
   met.forget();

@@ -32,7 +32,7 @@ struct Exact {
     Task& task = frontier.task;
     Instalment<L> instalment(frontier);
     if (task.sweep->runs_left == 0) {
-      const MetLeaves before = task.sweep->met;
+      const Sweep::MetLeaves before = task.sweep->met;
       task.sweep->met.forget();
       DepthFirst<L, true>(frontier).run();
       return instalment.judge_search_from_roots(before);

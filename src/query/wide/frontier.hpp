@@ -23,7 +23,7 @@ class Frontier {
   const Opener<L> opener;
   OpenPairs open{open_lanes_[0], open_lanes_[1]};
   SlotPairs leaf_pairs{{leaf_slots_[0], leaf_slots_[1]}};
-  const MetLeaves* looked_at = nullptr;  ///< in this run already, if not null: passed over
+  const Sweep::MetLeaves* looked_at = nullptr;  ///< in this run already, if not null: passed over
 
   Frontier(Task& given, Slot start_a, Slot start_b) noexcept
       : task(given), met(given.encounter), opener(given.encounter) {

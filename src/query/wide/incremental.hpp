@@ -116,7 +116,7 @@ class Incremental {
       task_.spending.spend_node_pairs(wide_lanes);
       SlotPair pair = from;
       const Slot first = from.of[side] - from.of[side] % wide_lanes;
-      for (unsigned lanes = overlapping_neighbours<L>(met_, side, from); lanes != 0 && around_count_ < around_.size();
+      for (unsigned lanes = overlapping_neighbours<L>(met_, side, from); lanes != 0 && !around_.is_full();
            lanes &= lanes - 1U) {
         pair.of[side] = first + static_cast<Slot>(std::countr_zero(lanes));
         if (pair.of[side] == from.of[side] || !met_.are_leaves(pair.of[0], pair.of[1])) continue;
@@ -131,18 +131,13 @@ class Incremental {
     const bool goes_on = visit_leaves<L>(task_, pair.of[0], pair.of[1]);
     if (task_.hits.size() > hits) {
       note_met(pair.of[0], pair.of[1], false);
-      if (around_count_ < around_.size()) around_[around_count_++] = pair;
+      around_.note({pair.of[0], pair.of[1]});
     }
     return goes_on;
   }
   void note_met(Slot a, Slot b, bool is_entry) noexcept { front_.last_met() = {a, b, is_entry, true}; }
   /// Whether its hits are known already in this run.
-  [[nodiscard]] bool was_met_around(Slot a, Slot b) const noexcept {
-    for (std::size_t i = 0; i < around_count_; ++i) {
-      if (around_[i].of[0] == a && around_[i].of[1] == b) return true;
-    }
-    return false;
-  }
+  [[nodiscard]] bool was_met_around(Slot a, Slot b) const noexcept { return around_.has({a, b}); }
 
   [[nodiscard]] std::uint64_t spent() const noexcept {
     const Cost& cost = task_.spending.so_far();
@@ -377,8 +372,7 @@ class Incremental {
   std::uint64_t last_unit_ = std::numeric_limits<std::uint64_t>::max();  ///< for what is not yet known to meet
   std::uint32_t first_left_ = no_feature;
   std::uint32_t planes_missed_ = 0;
-  std::array<SlotPair, 8> around_;
-  std::size_t around_count_ = 0;
+  FewLeafPairs<8> around_;
   Slot slots_[2][2 * wide_stack_capacity];
   SlotPairs stack_{{slots_[0], slots_[1]}};
 };

@@ -35,24 +35,24 @@ class Instalment {
 
   /// Looks at some of what met in the last searches, at others in the next. False: the search has ended.
   bool look_at_met() noexcept {
-    const MetLeaves before = sweep_.met;
+    const Sweep::MetLeaves before = sweep_.met;
     sweep_.met.forget();
     std::size_t looks = 0;
-    for (const MetLeaves::Entry& pair : before.pairs()) {
+    for (const TwoLeafSlots& pair : before.pairs()) {
       if (looks++ == most_looks || !look_at(pair)) break;
     }
-    const MetLeaves still = sweep_.met;
+    const Sweep::MetLeaves still = sweep_.met;
     sweep_.met.forget();
-    for (const MetLeaves::Entry& pair : before.pairs()) {
+    for (const TwoLeafSlots& pair : before.pairs()) {
       if (!sweep_.looked_at.has(pair)) sweep_.met.note(pair);
     }
-    for (const MetLeaves::Entry& pair : still.pairs()) sweep_.met.note(pair);
+    for (const TwoLeafSlots& pair : still.pairs()) sweep_.met.note(pair);
     return task_.result.ended == Progressed::finished;
   }
 
   /// At the end of a search that began at the roots and with nothing else: `before` is what met in the last ones. If
   /// it has found nothing, others are made in instalments.
-  void judge_search_from_roots(const MetLeaves& before) noexcept {
+  void judge_search_from_roots(const Sweep::MetLeaves& before) noexcept {
     if (task_.result.ended != Progressed::spent || !task_.hits.empty()) return;
     sweep_.met = before;
     sweep_.runs_left = Sweep::a_while;
@@ -81,7 +81,7 @@ class Instalment {
   static_assert(Sweep::most_leaf_pairs == Frontier<L>::most_leaf_pairs);
 
   /// False: the search has ended.
-  bool look_at(const MetLeaves::Entry& pair) noexcept {
+  bool look_at(const TwoLeafSlots& pair) noexcept {
     if (!at_.may_open()) {
       task_.result.ended = Progressed::spent;
       return false;
