@@ -15,7 +15,7 @@ namespace odds::query::wide {
 /// search that began at the roots in the same run proves that nothing meets.
 ///
 /// Only for a while after a search from the roots has found nothing: where it does find hits, they come from all over
-/// the rim. No allocation.
+/// the rim. Also after a proof that nothing meets, for what hops touches there again. No allocation.
 struct Sweep {
   using MetLeaves = FewLeafPairs<16>;
   static constexpr int a_while = 32;  ///< runs
