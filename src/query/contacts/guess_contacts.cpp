@@ -146,6 +146,9 @@ bool guess_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, co
     return !as_before.is_elsewhere(crossing, expected);
   });
   if (known == 0) known_normal = nullptr;
+  const double size = smaller_size(pair);
+  pair.haste.spread.begin(meshes.pose().translation, tolerances::hasty_line * size);
+  for (const Crossing& crossing : sample.made()) pair.haste.spread.see(crossing.middle());
   // Those elsewhere have a say, too: where they are many, or all around as in a thread, there is no one direction.
   for (const Crossing& crossing : sample.made()) {
     if (beside) break;
@@ -157,9 +160,10 @@ bool guess_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, co
   const Vec3 direction = known_normal != nullptr ? *known_normal
                          : known > 0             ? as_before.direction_of(sample.made().first(known), pair.haste)
                                                  : anew.direction_of(sample.made(), HastyMemory());
-  const double size = smaller_size(pair);
   // A corner that has just come through is not deeper than its rim is wide, though the triangles reach on.
-  const double most_depth = std::min(tolerances::unmeasured_depth * size, extent_of(sample.made()));
+  const double extent = extent_of(sample.made());
+  const double given = pair.haste.guessed.most() * size;
+  double overlaps = 0.0;
   const std::span<Contact> room = room_for_contacts(request, pair);
   const std::size_t count = std::min(sample.count, room.size());
   for (std::size_t i = 0; i < count; ++i) {
@@ -170,13 +174,16 @@ bool guess_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, co
       const Vote vote = (elsewhere ? anew : as_before).vote_of(crossing);
       if (vote.weight > 0.0) normal = vote.direction;
     }
-    room[i] = {crossing.middle() + meshes.origin_a(), normal, std::min(most_depth, crossing.overlap_along(normal)),
-               sample.hits[i].a, sample.hits[i].b};
+    const double overlap = std::min(extent, crossing.overlap_along(normal));
+    overlaps += overlap;
+    room[i] = {crossing.middle() + meshes.origin_a(), normal, std::min(given, overlap), sample.hits[i].a,
+               sample.hits[i].b};
   }
   const double near = tolerances::hasty_spacing * size;
   const std::size_t all =
       pair.haste.add_to(room, count, each_its_own || known == 0 ? nullptr : &direction, pose_b_in_a, near);
-  limit_depths(room.first(all), tolerances::unmeasured_depth * size);
+  limit_depths(room.first(all), given);
+  pair.haste.guessed.note(overlaps / (static_cast<double>(count) * size));
   double deepest = 0.0;
   for (const Contact& contact : room.first(all)) deepest = std::max(deepest, contact.depth);
   pair.haste.remember(room.first(count), pose_b_in_a, near);
@@ -191,7 +198,7 @@ bool recall_guess(const math::Pose& pose_b_in_a, const Request& request, Pair::I
   const std::span<Contact> room = room_for_contacts(request, pair);
   const std::size_t count = pair.haste.add_to(room, 0, nullptr, pose_b_in_a, tolerances::hasty_spacing * size);
   if (count == 0) return false;
-  limit_depths(room.first(count), tolerances::unmeasured_depth * size);
+  limit_depths(room.first(count), pair.haste.guessed.most() * size);
   pair.answer.contacts = room.first(count);
   pair.answer.contact_pairs = static_cast<std::uint32_t>(count);
   return true;

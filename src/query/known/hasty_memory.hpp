@@ -10,6 +10,8 @@
 #include "odds/math/tolerances.hpp"
 #include "odds/query/answer.hpp"
 #include "odds/query/contact_patch.hpp"
+#include "query/known/guessed_depth.hpp"
+#include "query/known/place_spread.hpp"
 
 namespace odds::query {
 
@@ -46,10 +48,15 @@ struct Vote {
 /// together. All in A's mesh frame, metres.
 class HastyMemory {
  public:
+  GuessedDepth guessed;  ///< depth of contacts
+  PlaceSpread spread;    ///< of places that were seen
+
   void forget() noexcept {
     lean_.setZero();
     weight_ = 0.0;
     count_ = 0;
+    guessed.forget();
+    spread.forget();
   }
 
   /// A run begins with B at `pose` in A; `slack`: by so much a remembered place may part sideways.
@@ -78,8 +85,6 @@ class HastyMemory {
   [[nodiscard]] bool has_seen() const noexcept { return weight_ > 0.0; }
   /// Whether what was seen points one way; else there are contacts that push against each other.
   [[nodiscard]] bool is_of_one_mind() const noexcept { return lean_.norm() > one_mind * weight_; }
-  /// Whether it points one way for the most part, with little that pushes elsewhere.
-  [[nodiscard]] bool is_unanimous() const noexcept { return has_seen() && lean_.norm() > unanimous * weight_; }
   /// Unit, into A. Precondition: is_of_one_mind().
   [[nodiscard]] Vec3 direction() const noexcept { return lean_.normalized(); }
 
@@ -153,7 +158,6 @@ class HastyMemory {
 
   static constexpr double kept = 0.95;
   static constexpr double one_mind = 0.4;
-  static constexpr double unanimous = 0.8;
   static constexpr std::uint32_t oldest = 200;
 
   /// Its turn it is, for those elsewhere support the body elsewhere.

@@ -102,7 +102,8 @@ void search_from_front(wide::Task& task, const math::Pose& pose, Pair::Implement
   const bool may_choose = may_search_from_roots(task.request, pair);
   const Cost before = spending.so_far();
   // Contacts of a bolt in its nut have to be from all around, as a search that begins anew finds them.
-  if (is_short(task.request, pair) && pair.haste.is_unanimous()) task.sweep = &pair.sweep;
+  const bool in_one_place = pair.haste.spread.metres() <= tolerances::one_place * smaller_size(pair);
+  if (in_one_place && is_short(task.request, pair)) task.sweep = &pair.sweep;
   const auto work = [&] { return wide::Work::between(before, spending.so_far()); };
   if (may_choose && pair.front_worth.prefers_roots(pose, reach, task.request.budget.is_limited())) {
     pair.wide->exact(task);

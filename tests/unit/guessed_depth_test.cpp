@@ -1,0 +1,73 @@
+// How deep guessed contacts may say that they are.
+#include "query/known/guessed_depth.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "odds/query/pair.hpp"
+#include "support/short_request.hpp"
+#include "support/slabs.hpp"
+
+namespace odds::query {
+namespace {
+
+TEST(GuessedDepth, RisesWhileBodiesSinkIn) {
+  GuessedDepth depth;
+  EXPECT_EQ(depth.most(), tolerances::unmeasured_depth);
+  // A bolt shakes where it rises three times as fast, and sinks where it takes three times as long: to twice what need
+  // not be measured in some 17 runs.
+  for (int run = 0; run < 17; ++run) depth.note(0.01);
+  EXPECT_NEAR(depth.most(), 2e-4, 1e-5);
+  for (int run = 0; run < 16; ++run) depth.note(0.004);
+  EXPECT_NEAR(depth.most(), tolerances::unmeasured_depth, 1e-5) << "it comes out, if it still is deep";
+  for (int run = 0; run < 100; ++run) depth.note(5e-5);
+  EXPECT_EQ(depth.most(), tolerances::unmeasured_depth);
+  for (int run = 0; run < 10000; ++run) depth.note(0.01);
+  EXPECT_NEAR(depth.most(), 2e-3, 1e-12) << "whatever it sinks in";
+  depth.forget();
+  EXPECT_EQ(depth.most(), tolerances::unmeasured_depth);
+}
+
+std::shared_ptr<const Shape> gear(int teeth) {
+  return Shape::build(std::make_shared<const mesh::TriangleMesh>(testing::made_mesh(
+                          "made:gear:module=0.002,backlash=1e-4,width=0.01,teeth=" + std::to_string(teeth))))
+      .value();
+}
+
+math::Pose turned(double angle, double x) {
+  return {Eigen::AngleAxisd(angle, Vec3::UnitZ()).toRotationMatrix(), {x, 0.0, 0.0}};
+}
+
+double deepest(const Answer& answer) {
+  double depth = 0.0;
+  for (const Contact& contact : answer.contacts) depth = std::max(depth, contact.depth);
+  return depth;
+}
+
+// Gears that are driven into each other within 5 us: what a guess gave never grew, and they went through each other.
+TEST(GuessedDepth, IsGivenToContactsOfGearsThatSinkIn) {
+  const auto a = gear(24);
+  const auto b = gear(36);
+  auto pair = std::move(Pair::make(a, b, {.late_contacts = true})).value();
+  auto exact = std::move(Pair::make(a, b)).value();
+  realtime::ManualClock clock(280);
+  const double least = tolerances::unmeasured_depth * std::min(a->mesh().size(), b->mesh().size());
+  double into = 0.0028;
+  double sinking = 0.0;
+  for (int tick = 0; tick < 900; ++tick) {
+    into += tick < 300 ? 4e-6 : tick < 600 ? -1e-6 : 0.0;
+    const double angle = 0.001 * tick;
+    const math::Pose pose = turned(angle, 0.0).inverse() * turned(std::numbers::pi / 36 - angle * 24 / 36 + into, 0.06);
+    const Answer answer = pair.run(pose, testing::short_request(clock, 5.0));
+    if (answer.contacts_late) continue;
+    const double truly = deepest(exact.run(pose, {.max_contacts = 8}));
+    EXPECT_LE(deepest(answer), std::max(2.0 * truly, least)) << tick;
+    if (tick >= 250 && tick < 300) sinking = std::max(sinking, deepest(answer));
+  }
+  EXPECT_GT(sinking, 2.5 * least);
+}
+
+}  // namespace
+}  // namespace odds::query
