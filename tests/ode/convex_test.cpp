@@ -185,6 +185,45 @@ TEST_F(ConvexTest, AnotherGeomAtTheSameAddressIsFoundOut) {
   EXPECT_EQ(stats().unsupported, 2u);
 }
 
+// dGeomSetConvex leaves ODE's box around the geom as it was until it moves, so that the new points seemed to be those
+// of another geom.
+TEST_F(ConvexTest, OtherPointsServeAtOnce) {
+  const Arrays small = cuboid(Vec3::Constant(0.1));
+  const Arrays large = cuboid(Vec3::Constant(0.3));
+  const dWorldID world = dWorldCreate();
+  for (const bool moved : {false, true}) {
+    const dGeomID mesh = mesh_geom(box_shape(1.0, 1.0, 1.0, 2), space);
+    const dGeomID geom = convex_of(small);
+    const Vec3 place(0.1, -0.2, 0.75);
+    dBodyID body = nullptr;
+    if (moved) {
+      body = dBodyCreate(world);
+      dGeomSetBody(geom, body);
+      dGeomSetOffsetPosition(geom, 0.01, 0.02, 0.03);
+      dBodySetPosition(body, place.x() - 0.01, place.y() - 0.02, place.z() - 0.03);
+      dBodySetLinearVel(body, 1.0, 2.0, 3.0);
+    } else {
+      dGeomSetPosition(geom, place.x(), place.y(), place.z());
+    }
+    dContactGeom contacts[8];
+    EXPECT_EQ(dCollide(mesh, geom, 8, contacts, sizeof(dContactGeom)), 0);
+    dGeomSetConvex(geom, large.planes.data(), large.faces, large.points.data(), large.count(), large.polygons.data());
+    ASSERT_EQ(oddsRegisterConvex(geom, large.points.data(), large.count(), large.polygons.data(), large.faces), 1);
+    EXPECT_GT(dCollide(mesh, geom, 8, contacts, sizeof(dContactGeom)), 0) << moved;
+    EXPECT_NEAR(contacts[0].depth, 0.05, 1e-9);
+    const dReal* const at = dGeomGetPosition(geom);
+    EXPECT_NEAR((Vec3(at[0], at[1], at[2]) - place).norm(), 0.0, 1e-15);
+    if (body != nullptr) {
+      EXPECT_EQ(dBodyGetLinearVel(body)[2], 3.0);
+    }
+    oddsForgetGeom(geom);
+    known.clear();
+    dGeomDestroy(geom);
+    dGeomDestroy(mesh);
+  }
+  dWorldDestroy(world);
+}
+
 TEST_F(ConvexTest, AnExhaustedBudgetIsCountedAndSound) {
   const dGeomID mesh = mesh_geom(sphere_shape(1, 20), space);
   const Arrays arrays = cuboid(Vec3(0.5, 0.5, 0.5));

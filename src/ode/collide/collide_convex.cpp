@@ -32,6 +32,18 @@ bool has_bounds_of(const ConvexShape& shape, dGeomID geom) noexcept {
   return true;
 }
 
+// dGeomSetConvex leaves ODE's box around the geom as it was, until the geom moves. So it is moved to where it is; one
+// with a body by its body, for a geom's own offset would be added with a rounding.
+void renew_bounds(dGeomID geom) noexcept {
+  if (const dBodyID body = dGeomGetBody(geom); body != nullptr) {
+    const dReal* const at = dBodyGetPosition(body);
+    dBodySetPosition(body, at[0], at[1], at[2]);
+  } else {
+    const dReal* const at = dGeomGetPosition(geom);
+    dGeomSetPosition(geom, at[0], at[1], at[2]);
+  }
+}
+
 }  // namespace
 
 int collide_convex(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int skip) noexcept {
@@ -69,6 +81,7 @@ int oddsRegisterConvex(dGeomID convex, const dReal* points, unsigned point_count
     partner->geom = convex;
     partner->convex = std::move(shape).value();
     partner_table().put(std::move(partner));
+    renew_bounds(convex);
     return 1;
   } catch (const std::exception& error) {
     set_last_error(std::string_view(error.what()));
