@@ -191,12 +191,12 @@ TEST_F(ConvexTest, OtherPointsServeAtOnce) {
   const Arrays small = cuboid(Vec3::Constant(0.1));
   const Arrays large = cuboid(Vec3::Constant(0.3));
   const dWorldID world = dWorldCreate();
-  for (const bool moved : {false, true}) {
+  for (const bool on_body : {false, true}) {
     const dGeomID mesh = mesh_geom(box_shape(1.0, 1.0, 1.0, 2), space);
     const dGeomID geom = convex_of(small);
     const Vec3 place(0.1, -0.2, 0.75);
     dBodyID body = nullptr;
-    if (moved) {
+    if (on_body) {
       body = dBodyCreate(world);
       dGeomSetBody(geom, body);
       dGeomSetOffsetPosition(geom, 0.01, 0.02, 0.03);
@@ -209,7 +209,7 @@ TEST_F(ConvexTest, OtherPointsServeAtOnce) {
     EXPECT_EQ(dCollide(mesh, geom, 8, contacts, sizeof(dContactGeom)), 0);
     dGeomSetConvex(geom, large.planes.data(), large.faces, large.points.data(), large.count(), large.polygons.data());
     ASSERT_EQ(oddsRegisterConvex(geom, large.points.data(), large.count(), large.polygons.data(), large.faces), 1);
-    EXPECT_GT(dCollide(mesh, geom, 8, contacts, sizeof(dContactGeom)), 0) << moved;
+    EXPECT_GT(dCollide(mesh, geom, 8, contacts, sizeof(dContactGeom)), 0) << on_body;
     EXPECT_NEAR(contacts[0].depth, 0.05, 1e-9);
     const dReal* const at = dGeomGetPosition(geom);
     EXPECT_NEAR((Vec3(at[0], at[1], at[2]) - place).norm(), 0.0, 1e-15);

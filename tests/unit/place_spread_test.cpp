@@ -3,9 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
+#include <string>
+#include <utility>
 
 #include "odds/math/tolerances.hpp"
 #include "odds/query/pair.hpp"

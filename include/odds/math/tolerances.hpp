@@ -117,16 +117,16 @@ inline constexpr double hasty_spacing = 0.02;
 /// flush overlap by nothing along each other's normals, but neither is a way out. Test:
 /// Vote.OfFlushFacesIsWhatIsExpected.
 inline constexpr double hasty_alike = 0.003;
-/// The same: of how deep triangles that cross say that they are, a guess gives so much more than what nobody need have
-/// measured each run in which they sink deeper, and no more than the second. Starved bolts shake without, and with three
-/// times the first, or with all of the second at once (`odds_ode_scenes --only bolt --ours --counted 280 --budgets
+/// Of the smaller body's size: by how much a contact that is guessed may be deeper than the one guessed before it, while
+/// bodies sink in, and how deep it may become. Starved gears pass through each other without; bolts shake with three
+/// times the first, or with all of the second at once (`odds_ode_scenes --only gears --ours --counted 280 --budgets
 /// 5,10`). Test: GuessedDepth.RisesWhileBodiesSinkIn.
 inline constexpr double hasty_rise = 6e-6;
 inline constexpr double hasty_deepest = 2e-3;  ///< see hasty_rise
-/// The same: bodies meet in one part of them where their places of contact are spread (PlaceSpread) by no more than
-/// this. Of gears that is .06 to .1, of a bolt in its nut .16 to .19. Test: PlaceSpread.TellsGearsFromABoltInItsNut.
+/// Of the smaller body's size: bodies meet in one part of them where their places of contact are spread (PlaceSpread) by
+/// no more than this. Of gears that is .06 to .1, of a bolt in its nut .16 to .19. Test: PlaceSpread.TellsGearsFromABoltInItsNut.
 inline constexpr double one_place = 0.13;
-/// The same: centres that are no farther from each other have no direction that one could go by. Test:
+/// Of the smaller body's size: centres no farther from each other have no direction that one could go by. Test:
 /// PlaceSpread.IsOfWhatStandsStillBetweenTwoCentres.
 inline constexpr double hasty_line = 0.1;
 /// Cosine between the normals of two contacts that may be the same one: 30 degrees.

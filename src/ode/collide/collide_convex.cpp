@@ -80,8 +80,8 @@ int oddsRegisterConvex(dGeomID convex, const dReal* points, unsigned point_count
     auto partner = std::make_unique<Partner>();
     partner->geom = convex;
     partner->convex = std::move(shape).value();
+    if (!has_bounds_of(*partner->convex, convex)) renew_bounds(convex);  // else it may be called from a callback
     partner_table().put(std::move(partner));
-    renew_bounds(convex);
     return 1;
   } catch (const std::exception& error) {
     set_last_error(std::string_view(error.what()));

@@ -147,11 +147,11 @@ bool guess_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, co
   });
   if (known == 0) known_normal = nullptr;
   const double size = smaller_size(pair);
-  pair.haste.spread.begin(meshes.pose().translation, tolerances::hasty_line * size);
-  for (const Crossing& crossing : sample.made()) pair.haste.spread.see(crossing.middle());
+  if (!beside) pair.haste.spread.begin(meshes.pose().translation, tolerances::hasty_line * size);
   // Those elsewhere have a say, too: where they are many, or all around as in a thread, there is no one direction.
   for (const Crossing& crossing : sample.made()) {
     if (beside) break;
+    pair.haste.spread.see(crossing.middle());
     const Vote vote = as_before.vote_of(crossing);
     pair.haste.see(vote.weight * vote.direction, vote.weight);
   }

@@ -73,6 +73,7 @@ void write_late(const math::Pose& pose_b_in_a, const Request& request, Pair::Imp
   pair.answer.contacts = room.first(pair.haste.hold_beside(room, written, pose_b_in_a, tolerances::hasty_spacing * size,
                                                            tolerances::unmeasured_depth * size));
   pair.answer.contacts_late = true;
+  pair.haste.guessed.forget();  // what is guessed after these begins anew
   pair.answer.contacts_flush = false;
   pair.answer.contact_pairs = manifold.made_from();
 }

@@ -8,24 +8,27 @@
 
 namespace odds::query {
 
-/// Where two triangles cross they say how deep they are in each other there, if little of how deep the bodies are; of
-/// that a guess gives what nobody need have measured at once. While bodies go on sinking in that is not enough, and a
-/// little more is given each run: as slowly as of late contacts, for the guess may be wrong. Once they come out it is
-/// taken back as slowly, for what pushes a body off what it rests on makes it hop. Parts of the smaller body's size.
+/// Where two triangles cross they say how deep they are in each other there, if little of how deep the bodies are. A
+/// guess gives no more of that than what nobody need have measured; but bodies that go on sinking in are not held by so
+/// little. So with each guess that finds them deeper than those before it did, a little more may be given, and with
+/// each that finds them less deep a little less: as slowly as late contacts get deeper, for a guess may be wrong, and
+/// what pushes a body off what it rests on makes it hop. Parts of the smaller body's size.
 class GuessedDepth {
  public:
   void forget() noexcept {
     most_ = tolerances::unmeasured_depth;
-    usual_ = 0.0;
+    usual_ = -1.0;
   }
   /// Of one contact.
   [[nodiscard]] double most() const noexcept { return most_; }
-  /// A run has guessed; `overlap`: by how much what crosses overlaps, in the mean.
+  /// A run has guessed; `overlap`: by how much what crosses overlaps, in the mean. Not what is no number.
   void note(double overlap) noexcept {
     if (!std::isfinite(overlap)) return;
-    const bool sinks = overlap > most_ && overlap >= usual_;
-    const double next = most_ + (sinks ? tolerances::hasty_rise : -tolerances::hasty_rise);
-    most_ = std::clamp(next, tolerances::unmeasured_depth, tolerances::hasty_deepest);
+    if (usual_ < 0.0) usual_ = overlap;
+    const bool sinks = overlap > most_ && overlap > usual_;
+    const bool rests = overlap > most_ && overlap == usual_;
+    const double change = sinks ? tolerances::hasty_rise : rests ? 0.0 : -tolerances::hasty_rise;
+    most_ = std::clamp(most_ + change, tolerances::unmeasured_depth, tolerances::hasty_deepest);
     usual_ = kept * usual_ + (1.0 - kept) * overlap;
   }
 
@@ -33,7 +36,7 @@ class GuessedDepth {
   static constexpr double kept = 0.95;
 
   double most_ = tolerances::unmeasured_depth;
-  double usual_ = 0.0;  ///< overlap in the last dozens of runs
+  double usual_ = -1.0;  ///< overlap of the last dozens of guesses; negative: of none
 };
 
 }  // namespace odds::query

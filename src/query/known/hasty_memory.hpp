@@ -85,6 +85,8 @@ class HastyMemory {
   [[nodiscard]] bool has_seen() const noexcept { return weight_ > 0.0; }
   /// Whether what was seen points one way; else there are contacts that push against each other.
   [[nodiscard]] bool is_of_one_mind() const noexcept { return lean_.norm() > one_mind * weight_; }
+  /// Whether it points one way for the most part, with little that pushes elsewhere.
+  [[nodiscard]] bool is_unanimous() const noexcept { return has_seen() && lean_.norm() > unanimous * weight_; }
   /// Unit, into A. Precondition: is_of_one_mind().
   [[nodiscard]] Vec3 direction() const noexcept { return lean_.normalized(); }
 
@@ -158,6 +160,7 @@ class HastyMemory {
 
   static constexpr double kept = 0.95;
   static constexpr double one_mind = 0.4;
+  static constexpr double unanimous = 0.8;
   static constexpr std::uint32_t oldest = 200;
 
   /// Its turn it is, for those elsewhere support the body elsewhere.

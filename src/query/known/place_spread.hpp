@@ -8,9 +8,9 @@
 
 namespace odds::query {
 
-/// Gears meet in one place, a bolt and its nut all around. Mean distance (root of the mean square) of the places of
-/// some dozens of runs from their middle, which goes along with the line from A's centre to B's: so it is one place,
-/// too, where both gears turn and only that line stands still. In A's hierarchy frame, metres.
+/// Gears meet in one place, a bolt and its nut all around. RMS distance of the places of some dozens of runs from their
+/// middle, which goes along with the line from A's centre to B's as that turns about an axis across it: so it is one
+/// place, too, where both gears turn and only that line stands still. In A's hierarchy frame, metres.
 class PlaceSpread {
  public:
   void forget() noexcept {
@@ -22,7 +22,8 @@ class PlaceSpread {
   void begin(const Vec3& centre_b, double little) noexcept {
     const double far = centre_b.norm();
     const Vec3 line = far > little ? Vec3(centre_b / far) : Vec3(Vec3::Zero());
-    if (!line.isZero() && !line_.isZero()) sum_ = Eigen::Quaterniond::FromTwoVectors(line_, line) * sum_;
+    if (!line.isZero() && !line_.isZero() && line.dot(line_) > -0.9)
+      sum_ = Eigen::Quaterniond::FromTwoVectors(line_, line) * sum_;
     line_ = line;
     sum_ *= kept;
     squares_ *= kept;

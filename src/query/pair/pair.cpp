@@ -95,15 +95,21 @@ SearchResult search(const Encounter<V>& encounter, const PosedMeshes&, const Req
          (request.budget.microseconds >= least_us && is_short(request, pair));
 }
 
+/// Whether a search that the budget ends is gone on with in the next run. Contacts of a bolt in its nut have to be from
+/// all around, as a search that begins anew finds them. Of bodies of which nothing is known yet, a search may never
+/// come to where they meet.
+[[nodiscard]] bool may_go_on_next_run(const Pair::Implementation& pair) noexcept {
+  const bool in_one_place = pair.haste.spread.metres() <= tolerances::one_place * smaller_size(pair);
+  return in_one_place || pair.haste.is_unanimous();
+}
+
 /// The incremental search of the wide engine, or one from the roots where that is better.
 void search_from_front(wide::Task& task, const math::Pose& pose, Pair::Implementation& pair) noexcept {
   const Spending& spending = task.spending;
   const double reach = task.encounter.b().reach();
   const bool may_choose = may_search_from_roots(task.request, pair);
   const Cost before = spending.so_far();
-  // Contacts of a bolt in its nut have to be from all around, as a search that begins anew finds them.
-  const bool in_one_place = pair.haste.spread.metres() <= tolerances::one_place * smaller_size(pair);
-  if (in_one_place && is_short(task.request, pair)) task.sweep = &pair.sweep;
+  if (is_short(task.request, pair) && may_go_on_next_run(pair)) task.sweep = &pair.sweep;
   const auto work = [&] { return wide::Work::between(before, spending.so_far()); };
   if (may_choose && pair.front_worth.prefers_roots(pose, reach, task.request.budget.is_limited())) {
     pair.wide->exact(task);

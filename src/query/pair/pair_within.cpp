@@ -49,6 +49,7 @@ void note_clear(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const 
   pair.known_at = meshes.pose();
   pair.apart_last = true;
   pair.known_depth.note(meshes.pose(), 0.0);
+  pair.haste.guessed.forget();
   if (!request.solids && may_be_within(*pair.a, *pair.b, pose_b_in_a)) pair.known_depth.forget();
 }
 
