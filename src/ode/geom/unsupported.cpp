@@ -20,7 +20,7 @@ Remedy remedy_for(dGeomID geom) noexcept {
   switch (dGeomGetClass(geom)) {
     case dConvexClass:
       return {"convex", known ? "it is not the one that was registered; call oddsForgetGeom before dGeomDestroy, and "
-                                "oddsRegisterConvex again"
+                                "oddsRegisterConvex again, also after dGeomSetConvex"
                               : "ODE does not tell its points; call oddsRegisterConvex"};
     case dHeightfieldClass:
       return {"heightfield", "ODE does not tell its heights; call oddsMeshDataBuildHeightfield and oddsSetStandIn"};
