@@ -124,7 +124,8 @@ inline constexpr double hasty_alike = 0.003;
 inline constexpr double hasty_rise = 6e-6;
 inline constexpr double hasty_deepest = 2e-3;  ///< see hasty_rise
 /// Of the smaller body's size: bodies meet in one part of them where their places of contact are spread (PlaceSpread) by
-/// no more than this. Of gears that is .06 to .1, of a bolt in its nut .16 to .19. Test: PlaceSpread.TellsGearsFromABoltInItsNut.
+/// no more than this. Of gears that is .06 to .1, of a bolt in its nut .16 to .19. Test:
+/// PlaceSpread.TellsGearsFromABoltInItsNut.
 inline constexpr double one_place = 0.13;
 /// Of the smaller body's size: centres no farther from each other have no direction that one could go by. Test:
 /// PlaceSpread.IsOfWhatStandsStillBetweenTwoCentres.

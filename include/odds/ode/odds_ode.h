@@ -206,7 +206,8 @@ int oddsPrepareTriMesh(dGeomID trimesh, const oddsBuildParams* params) ODDS_NOTH
 int oddsSetStandIn(dGeomID geom, oddsMeshDataID data, int placeable) ODDS_NOTHROW;
 
 /* Copies the points and polygons that dCreateConvex was given, or dGeomSetConvex since: then it has to be called again,
- * outside of callbacks, and renews ODE's box around the geom, which dGeomSetConvex leaves. Refused: what is not a convex solid. */
+ * outside of callbacks, and renews ODE's box around the geom, which dGeomSetConvex leaves. Refused: what is not a convex
+ * solid. */
 int oddsRegisterConvex(dGeomID convex, const dReal* points, unsigned point_count, const unsigned* polygons,
                        unsigned polygon_count) ODDS_NOTHROW;
 

@@ -25,10 +25,11 @@ class GuessedDepth {
   void note(double overlap) noexcept {
     if (!std::isfinite(overlap)) return;
     if (usual_ < 0.0) usual_ = overlap;
-    const bool sinks = overlap > most_ && overlap > usual_;
-    const bool rests = overlap > most_ && overlap == usual_;
-    const double change = sinks ? tolerances::hasty_rise : rests ? 0.0 : -tolerances::hasty_rise;
-    most_ = std::clamp(most_ + change, tolerances::unmeasured_depth, tolerances::hasty_deepest);
+    if (overlap <= most_ || overlap < usual_) {
+      most_ = std::max(most_ - tolerances::hasty_rise, tolerances::unmeasured_depth);
+    } else if (overlap > usual_) {
+      most_ = std::min(most_ + tolerances::hasty_rise, tolerances::hasty_deepest);
+    }
     usual_ = kept * usual_ + (1.0 - kept) * overlap;
   }
 
