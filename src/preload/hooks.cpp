@@ -5,6 +5,7 @@
 #include <exception>
 #include <fstream>
 
+#include "ode/geom/partners.hpp"
 #include "ode/geom/takeover.hpp"
 #include "preload/environment.hpp"
 #include "preload/exit_page.hpp"
@@ -144,6 +145,14 @@ void dGeomSetConvex(dGeomID geom, const dReal* planes, unsigned int plane_count,
   static const auto next = real<decltype(dGeomSetConvex)>("dGeomSetConvex");
   next(geom, planes, plane_count, points, point_count, polygons);
   odds::preload::after_convex(geom, points, point_count, polygons, plane_count);
+}
+
+// A program calls it where it has moved vertices. What then answers is ODE's own collider, whose tree is refitted: ours
+// would have to be built anew, inside the loop.
+void dGeomTriMeshDataUpdate(dTriMeshDataID data) {
+  static const auto next = real<decltype(dGeomTriMeshDataUpdate)>("dGeomTriMeshDataUpdate");
+  next(data);
+  odds::ode::partner_table().note_deformed(data);
 }
 
 void dGeomDestroy(dGeomID geom) {

@@ -75,6 +75,21 @@ TEST_F(Preload, PartnersThatAreNotTakenStayWithOde) {
   EXPECT_EQ(with.moved_mm, alone.moved_mm);
 }
 
+TEST_F(Preload, AMeshWhoseVerticesTheProgramMovesIsOdesFromThenOn) {
+  const auto changed = [](const ClientRun& client) {
+    const std::string label = "changed meshes: ";
+    const std::size_t at = client.output.find(label);
+    return at == std::string::npos ? -1 : std::stoi(client.output.substr(at + label.size()));
+  };
+  const ClientRun still = run("ODDS_REPORT=-", true);
+  ASSERT_EQ(still.status, 0) << still.output;
+  EXPECT_EQ(changed(still), 0) << still.output;
+  const ClientRun moved = run("DEFORM=1 ODDS_REPORT=-", true);
+  ASSERT_EQ(moved.status, 0) << moved.output;
+  EXPECT_GT(changed(moved), 500) << "as often as the lower brick meets the ground\n" << moved.output;
+  EXPECT_LE(changed(moved), 1000) << moved.output;
+}
+
 TEST_F(Preload, MistakesInTheEnvironmentAreToldAndHarmless) {
   const ClientRun with = run("ODDS_BUDGET_US=soon ODDS_PARTNERS=trimesh,teapot ODDS_REPORT=/nowhere/at/all", true);
   ASSERT_EQ(with.status, 0) << with.output;

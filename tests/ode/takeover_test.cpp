@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <random>
 
+#include "ode/geom/partners.hpp"
 #include "ode/geom/takeover.hpp"
 #include "ode/trimesh_fixture.hpp"
 
@@ -124,6 +125,57 @@ TEST_F(Takeover, WhatItCannotAnswerIsLeftToOde) {
   same(collide(cylinder, second.geom), odes_cylinder_swapped);
   EXPECT_EQ(stats().fallbacks, 3u);
   EXPECT_EQ(stats().taken_over, 0u);
+}
+
+TEST_F(Takeover, AMeshWithAMovedCornerIsLeftToOdeUntilItIsReadAgain) {
+  const auto shape = box_shape(1, 1, 1, 4);
+  const TriMesh first(shape->mesh(), space);
+  TriMesh second(shape->mesh(), space);
+  dGeomSetPosition(second.geom, 0.1, 0.2, 0.9);
+  take_over();
+  ASSERT_EQ(oddsPreparePair(first.geom, second.geom), 1) << oddsGetLastError();
+  ASSERT_FALSE(collide(first.geom, second.geom).empty());
+  second.vertices[0] -= 0.3;
+  const auto triangles = static_cast<int>(second.indices.size() / 3);
+  // One triangle is compared in each collision: the first round finds out, whatever the corner's triangles are.
+  for (int i = 0; i < triangles; ++i) static_cast<void>(collide(first.geom, second.geom));
+  const auto before = stats();
+  EXPECT_GT(before.fallbacks, 0u);
+  for (int i = 0; i < triangles; ++i) static_cast<void>(collide(first.geom, second.geom));
+  EXPECT_EQ(stats().fallbacks, before.fallbacks + static_cast<unsigned>(triangles)) << "not now ours and then ODE's";
+  ASSERT_EQ(oddsPrepareTriMesh(second.geom, nullptr), 1) << oddsGetLastError();
+  const auto again = stats();
+  for (int i = 0; i < triangles; ++i) EXPECT_FALSE(collide(first.geom, second.geom).empty());
+  EXPECT_EQ(stats().fallbacks, again.fallbacks);
+}
+
+TEST_F(Takeover, AProgramThatSaysItMovedVerticesIsBelievedAtOnce) {
+  const auto shape = sphere_shape(0.5, 16);  // of thousands of triangles one is moved
+  TriMesh first(shape->mesh(), space);
+  const TriMesh second(shape->mesh(), space);
+  dGeomSetPosition(second.geom, 0.1, 0.2, 0.9);
+  take_over();
+  ASSERT_EQ(oddsPreparePair(first.geom, second.geom), 1) << oddsGetLastError();
+  ode::partner_table().note_deformed(second.data);
+  ode::partner_table().note_deformed(nullptr);
+  static_cast<void>(collide(first.geom, second.geom));
+  EXPECT_EQ(stats().fallbacks, 1u);
+  ASSERT_EQ(oddsPreparePair(first.geom, second.geom), 1) << oddsGetLastError();
+  EXPECT_FALSE(collide(first.geom, second.geom).empty());
+  EXPECT_EQ(stats().fallbacks, 1u);
+}
+
+TEST_F(Takeover, ARotationThatIsOffByLittleIsNoMovedCorner) {
+  const auto shape = sphere_shape(0.5, 8);
+  const TriMesh first(shape->mesh(), space);
+  const TriMesh second(shape->mesh(), space);
+  dGeomSetPosition(second.geom, 0.1, 0.2, 0.9);
+  dMatrix3 scaled = {1 + 1e-4, 0, 0, 0, 0, 1, 1e-4, 0, 0, 0, 1 - 1e-4, 0};
+  dGeomSetRotation(second.geom, scaled);
+  take_over();
+  for (int i = 0; i < 100; ++i) EXPECT_FALSE(collide(first.geom, second.geom).empty());
+  EXPECT_EQ(stats().fallbacks, 0u);
+  EXPECT_EQ(stats().changed_partners, 0u);
 }
 
 TEST_F(Takeover, AStackOfMeshBricksStands) {

@@ -9,6 +9,7 @@
 #include "ode/last_error.hpp"
 #include "ode/mesh/mesh_data.hpp"
 #include "ode/statistics.hpp"
+#include "ode/vectors.hpp"
 
 namespace odds::ode {
 
@@ -100,6 +101,15 @@ void PartnerTable::clear() noexcept {
   }
 }
 
+void PartnerTable::note_deformed(dTriMeshDataID data) noexcept {
+  for (const Bucket& bucket : buckets_) {
+    for (Partner* here = bucket.load(std::memory_order_acquire); here != nullptr;
+         here = here->next.load(std::memory_order_acquire)) {
+      if (here->trimesh_data == data) here->deformed.store(true, std::memory_order_relaxed);
+    }
+  }
+}
+
 std::unique_ptr<Partner> make_partner(dGeomID geom, std::shared_ptr<const PreparedMesh> mesh) {
   auto partner = std::make_unique<Partner>();
   partner->geom = geom;
@@ -112,23 +122,29 @@ std::unique_ptr<Partner> make_partner(dGeomID geom, std::shared_ptr<const Prepar
 
 bool is_unchanged(Partner& partner) noexcept {
   if (partner.trimesh_data == nullptr) return true;
-  const std::size_t triangles = partner.mesh->mesh->mesh().triangles().size();
+  const mesh::TriangleMesh& mesh = partner.mesh->mesh->mesh();
+  const std::size_t triangles = mesh.triangles().size();
   if (dGeomTriMeshGetData(partner.geom) != partner.trimesh_data) return false;
   if (dGeomTriMeshGetTriangleCount(partner.geom) != static_cast<int>(triangles)) return false;
-  const std::optional<math::Pose> pose = world_pose(partner.geom);
-  if (!pose) return true;  // the collision itself answers bad poses
+  // A mesh with one moved corner must not answer from what it was wherever the compared triangle is another's.
+  if (partner.deformed.load(std::memory_order_relaxed)) return false;
+  if (!world_pose(partner.geom)) return true;  // the collision itself answers bad poses
   const std::uint32_t number =
       partner.next_check.fetch_add(1, std::memory_order_relaxed) % static_cast<std::uint32_t>(triangles);
   std::array<dVector3, 3> found;
   dGeomTriMeshGetTriangle(partner.geom, static_cast<int>(number), &found[0], &found[1], &found[2]);
   const std::array<Vec3, 3> known = partner.mesh->mesh->corners(number);
+  // ODE's own pose, which need not be as rigid as `world_pose` makes it.
+  const Vec3 place = vector_of(dGeomGetPosition(partner.geom));
+  const Mat3 turn = matrix_of(dGeomGetRotation(partner.geom));
   // ODE's corners are rounded to single precision before they are placed.
-  const mesh::TriangleMesh& mesh = partner.mesh->mesh->mesh();
   const double rounding = 1e-6 * (mesh.lower().cwiseAbs().cwiseMax(mesh.upper().cwiseAbs()).maxCoeff() +
-                                  1e-6 * pose->translation.cwiseAbs().maxCoeff());
+                                  1e-6 * place.cwiseAbs().maxCoeff());
   for (std::size_t i = 0; i < 3; ++i) {
-    const Vec3 corner(found[i][0], found[i][1], found[i][2]);
-    if (!((corner - *pose * known[i]).cwiseAbs().maxCoeff() <= rounding)) return false;
+    const Vec3 off = vector_of(found[i]) - place - turn * known[i];
+    if ((off.array().abs() <= rounding).all()) continue;
+    partner.deformed.store(true, std::memory_order_relaxed);
+    return false;
   }
   return true;
 }

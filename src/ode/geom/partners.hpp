@@ -19,6 +19,7 @@ struct Partner {
   dTriMeshDataID trimesh_data = nullptr;      ///< what `mesh` was read from, if it was read from the geom
   bool placeable = true;                      ///< false: a geom without a pose (only heightfields can be)
   std::atomic<std::uint32_t> next_check{0};   ///< triangle to compare with ODE's at the next collision
+  std::atomic<bool> deformed{false};          ///< one was found elsewhere, or the client has said so
   std::atomic<Partner*> next{nullptr};        ///< in its bucket
 };
 
@@ -34,6 +35,9 @@ class PartnerTable {
   /// False if nothing is known about the geom.
   bool forget(dGeomID geom) noexcept;
   void clear() noexcept;
+  /// The vertices of this data were moved: no partner that was read from it answers any more until it is read again.
+  /// Not while another thread collides.
+  void note_deformed(dTriMeshDataID data) noexcept;
 
  private:
   static constexpr std::size_t bucket_count = 4096;
@@ -59,8 +63,8 @@ class PartnerTable {
 [[nodiscard]] std::unique_ptr<Partner> make_partner(dGeomID geom, std::shared_ptr<const PreparedMesh> mesh);
 
 /// Whether the geom is still the one that was read: the same data, as many triangles, and the next of them where it
-/// was. A geom that was destroyed, and another that was made at its address, or a mesh that was deformed, are found out
-/// so.
+/// was, and every one that was compared before. A geom that was destroyed, and another that was made at its address, or
+/// a mesh that was deformed, are found out so.
 [[nodiscard]] bool is_unchanged(Partner& partner) noexcept;
 
 /// Reads a dTriMesh, builds its hierarchy (or shares that of another geom of the same data), and puts it into the
