@@ -7,6 +7,7 @@
 
 #include "odds/math/random.hpp"
 #include "odds/primitive/ray_triangle.hpp"
+#include "query/counted_ray.hpp"
 #include "support/all_kinds.hpp"
 #include "support/brute_force.hpp"
 #include "support/shapes.hpp"
@@ -98,6 +99,38 @@ TEST_P(Rays, GrazeNothingAwayAtAnySizeInAnyDirection) {
       EXPECT_LT(met, 390);
     }
   }
+}
+
+/// Two shapes of one volume, two of which one is of the default's.
+TEST_P(Rays, CastTwoAtATimeMeetWhatEachMeets) {
+  const auto shape = Shape::build(testing::wavy_sphere(16), {.volume = GetParam()}).value();
+  const auto other = Shape::build(testing::wavy_sphere(9, 0.3)).value();
+  math::Random random(8);
+  int met = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const std::uint64_t nodes = i % 4 == 0 ? random.below(12) : UINT64_MAX;
+    const auto ray = [&random, i](const Shape& of) {
+      CountedRay made{of, 1.5 * random.uniform() * random.direction(), random.direction(), random.uniform(0.0, 3.0)};
+      if (i % 50 == 0) made.max_distance = INFINITY;
+      if (i % 50 == 1 && random.below(2) == 0) made.max_distance = NAN;
+      if (i % 50 == 2 && random.below(2) == 0) made.direction *= 2.0;
+      return made;
+    };
+    const CountedRay first = ray(*shape);
+    const CountedRay second = ray(i % 2 == 0 ? *shape : *other);
+    const auto found = cast_two_rays(first, second, nodes);
+    for (std::size_t k = 0; k < 2; ++k) {
+      const CountedRay& one = k == 0 ? first : second;
+      const auto expected = cast_ray(one.shape, one.origin, one.direction, one.max_distance, nodes);
+      ASSERT_EQ(found[k].has_value(), expected.has_value()) << i;
+      if (!expected) continue;
+      ++met;
+      ASSERT_EQ(found[k]->distance, expected->distance) << i;
+      ASSERT_EQ(found[k]->triangle, expected->triangle) << i;
+    }
+  }
+  EXPECT_GT(met, 500);
+  EXPECT_LT(met, 1800);
 }
 
 TEST_P(Rays, RefuseWhatIsNoRay) {

@@ -38,6 +38,16 @@ struct DepthProbe {
   explicit operator bool() const noexcept { return ray != nullptr; }
 };
 
+/// A ray for a probe, in that mesh's own frame, and what it found.
+struct ProbeRay {
+  Vec3 origin = Vec3::Zero();
+  Vec3 direction = Vec3::UnitX();  ///< unit
+  double max_distance = 0.0;       ///< metres
+  bool found = false;
+  double distance = 0.0;  ///< metres, in [0, max_distance]
+  std::uint32_t triangle = 0;
+};
+
 /// Says whether the time is up. Null: never. Polled every microsecond or two.
 struct Deadline {
   bool (*expired)(void* self) noexcept = nullptr;
@@ -73,6 +83,9 @@ struct PatchInput {
   int max_contacts = 4;              ///< 1 .. most_contacts (clamped)
   DepthProbe probe_a;                ///< optional
   DepthProbe probe_b;                ///< optional
+  /// Casts a ray with the probe of A and one with that of B in less time than one after the other takes, or null. Finds
+  /// what `DepthProbe::ray` of each does.
+  void (*probe_both)(const DepthProbe& a, ProbeRay& ray_a, const DepthProbe& b, ProbeRay& ray_b) noexcept = nullptr;
   /// Of the instruction set that a pair runs on, or null: of the best. All give the same bits.
   const patch::Kernels* kernels = nullptr;
 };

@@ -33,15 +33,31 @@ std::uint32_t hits_in(double microseconds, double per_microsecond) noexcept {
       std::clamp(per_microsecond * (microseconds - patch_base_us), least_hits, most_hits));
 }
 
-/// Casts a ray for the depth inside a rim. A few node visits' worth: a probe that finds nothing in them is left out.
+/// A few node visits' worth of a ray: a probe that finds nothing in them is left out.
+constexpr std::uint64_t most_probe_nodes = 96;
+
+/// Casts a ray for the depth inside a rim.
 bool probe_depth(const void* shape, const Vec3& origin, const Vec3& direction, double max_distance, double* distance,
                  std::uint32_t* triangle) noexcept {
-  constexpr std::uint64_t most_nodes = 96;
-  const auto hit = cast_ray(*static_cast<const Shape*>(shape), origin, direction, max_distance, most_nodes);
+  const auto hit = cast_ray(*static_cast<const Shape*>(shape), origin, direction, max_distance, most_probe_nodes);
   if (!hit) return false;
   *distance = hit->distance;
   *triangle = hit->triangle;
   return true;
+}
+
+void probe_both_depths(const DepthProbe& a, ProbeRay& ray_a, const DepthProbe& b, ProbeRay& ray_b) noexcept {
+  const CountedRay of_a{*static_cast<const Shape*>(a.self), ray_a.origin, ray_a.direction, ray_a.max_distance};
+  const CountedRay of_b{*static_cast<const Shape*>(b.self), ray_b.origin, ray_b.direction, ray_b.max_distance};
+  const auto hits = cast_two_rays(of_a, of_b, most_probe_nodes);
+  const auto note = [](const std::optional<RayHit>& hit, ProbeRay& ray) noexcept {
+    ray.found = hit.has_value();
+    if (!hit) return;
+    ray.distance = hit->distance;
+    ray.triangle = hit->triangle;
+  };
+  note(hits[0], ray_a);
+  note(hits[1], ray_b);
 }
 
 double deepest_of(std::span<const Contact> contacts) noexcept {
@@ -207,6 +223,7 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   if (request.max_contacts > 1) {  // a single contact is asked for its speed
     input.probe_a = {&probe_depth, pair.a.get()};
     input.probe_b = {&probe_depth, pair.b.get()};
+    input.probe_both = &probe_both_depths;
   }
   // As many hits as there was time for are a part of them; as many as were asked for, or as are kept, are what was
   // asked.

@@ -28,34 +28,57 @@ bool leaves_through(const Probed& body, std::uint32_t triangle, const Vec3& outw
   return normal.dot(outwards) > tolerances::along_a_face * normal.norm();
 }
 
-/// Signed distance from `point` along `outwards` to the surface where a line in that direction leaves the body. False:
-/// it does not, or the time was up between two rays.
-bool exit_along(const Probed& body, const Vec3& point, const Vec3& outwards, double reach, Watch& watch,
-                double* distance, std::uint32_t* triangle) noexcept {
-  const double limit = body.solid ? std::numeric_limits<double>::max() / 4 : reach;
-  double ahead = 0.0;
-  std::uint32_t triangle_ahead = no_feature;
-  const bool found_ahead = body.probe.ray(body.probe.self, point, outwards, limit, &ahead, &triangle_ahead);
-  if (body.solid && found_ahead && leaves_through(body, triangle_ahead, outwards)) {
-    *distance = ahead;
-    *triangle = triangle_ahead;
-    return true;
-  }
-  if (watch.late()) return false;
-  double behind = 0.0;
-  std::uint32_t triangle_behind = no_feature;
-  const Vec3 backwards = -outwards;
-  bool found_behind = body.probe.ray(body.probe.self, point, backwards, limit, &behind, &triangle_behind);
-  if (body.solid) found_behind = found_behind && leaves_through(body, triangle_behind, outwards);
-  if (!body.solid && found_ahead && (!found_behind || ahead <= behind)) {
-    *distance = ahead;
-    *triangle = triangle_ahead;
-    return true;
-  }
-  *distance = -behind;
-  *triangle = triangle_behind;
-  return found_behind;
+void cast(const DepthProbe& probe, ProbeRay& ray) noexcept {
+  ray.found = probe.ray(probe.self, ray.origin, ray.direction, ray.max_distance, &ray.distance, &ray.triangle);
 }
+
+/// One ray with each probe; a null one is left out.
+void cast_both(const PatchInput& input, ProbeRay* ray_a, ProbeRay* ray_b) noexcept {
+  if (ray_a != nullptr && ray_b != nullptr && input.probe_both != nullptr) {
+    return input.probe_both(input.probe_a, *ray_a, input.probe_b, *ray_b);
+  }
+  if (ray_a != nullptr) cast(input.probe_a, *ray_a);
+  if (ray_b != nullptr) cast(input.probe_b, *ray_b);
+}
+
+/// Where a line through a point leaves a body: looked for ahead, and, where that tells nothing, behind.
+class Exit {
+ public:
+  Exit(const Probed& body, const Vec3& point, const Vec3& outwards, double reach) noexcept
+      : body_(body), ahead_(ray_from(point, outwards, reach)), behind_(ray_from(point, -outwards, reach)) {}
+
+  [[nodiscard]] ProbeRay* first() noexcept { return &ahead_; }
+  /// Once the first is cast; null if that has told all.
+  [[nodiscard]] ProbeRay* second() noexcept { return is_ahead() ? nullptr : &behind_; }
+
+  /// Once both are cast: the signed distance from the point along the line, and the triangle. False: it does not leave.
+  [[nodiscard]] bool place(double& distance, std::uint32_t& triangle) const noexcept {
+    if (is_ahead()) return give(ahead_, 1.0, distance, triangle);
+    const bool found_behind =
+        behind_.found && (!body_.solid || leaves_through(body_, behind_.triangle, ahead_.direction));
+    if (!body_.solid && ahead_.found && (!found_behind || ahead_.distance <= behind_.distance)) {
+      return give(ahead_, 1.0, distance, triangle);
+    }
+    return found_behind && give(behind_, -1.0, distance, triangle);
+  }
+
+ private:
+  [[nodiscard]] ProbeRay ray_from(const Vec3& point, const Vec3& direction, double reach) const noexcept {
+    return {point, direction, body_.solid ? std::numeric_limits<double>::max() / 4 : reach};
+  }
+  [[nodiscard]] bool is_ahead() const noexcept {
+    return body_.solid && ahead_.found && leaves_through(body_, ahead_.triangle, ahead_.direction);
+  }
+  static bool give(const ProbeRay& ray, double sign, double& distance, std::uint32_t& triangle) noexcept {
+    distance = sign * ray.distance;
+    triangle = ray.triangle;
+    return true;
+  }
+
+  const Probed& body_;
+  ProbeRay ahead_;
+  ProbeRay behind_;
+};
 
 /// How the height of a surface along `up` changes across it.
 Vec3 slope_of(const Vec3& surface_normal, const Vec3& up) noexcept {
@@ -82,19 +105,23 @@ double pair_depth(const PlacedPair& placed, const Frame& frame, const Vec3& shif
 
 Probing probe_line(const PatchInput& input, const Vec3& point, const Vec3& normal, double reach, Watch& watch,
                    Witness& witness) noexcept {
-  if (!input.probe_a || !input.probe_b) return Probing::unknown;
+  if (!input.probe_a || !input.probe_b || watch.late()) return Probing::unknown;
   const Probed a{input.probe_a, input.vertices_a, input.triangles_a, input.solid_a};
   const Probed b{input.probe_b, input.vertices_b, input.triangles_b, input.solid_b};
   const Mat3 to_b = input.pose_b_in_a.rotation.transpose();
+  Exit of_a(a, point, -normal, reach);
+  Exit of_b(b, to_b * (point - input.pose_b_in_a.translation), to_b * normal, reach);
+  cast_both(input, of_a.first(), of_b.first());
+  ProbeRay* const again_a = of_a.second();
+  ProbeRay* const again_b = of_b.second();
+  if (again_a != nullptr || again_b != nullptr) {
+    if (watch.late()) return Probing::unknown;
+    cast_both(input, again_a, again_b);
+  }
   double down = 0.0;
   double up = 0.0;
   Witness found;
-  if (watch.late() || !exit_along(a, point, -normal, reach, watch, &down, &found.triangle_a)) return Probing::unknown;
-  if (watch.late()) return Probing::unknown;
-  if (!exit_along(b, to_b * (point - input.pose_b_in_a.translation), to_b * normal, reach, watch, &up,
-                  &found.triangle_b)) {
-    return Probing::unknown;
-  }
+  if (!of_a.place(down, found.triangle_a) || !of_b.place(up, found.triangle_b)) return Probing::unknown;
   found.depth = up + down;
   if (!std::isfinite(found.depth)) return Probing::unknown;
   if (!(found.depth >= 0.0)) return Probing::apart;

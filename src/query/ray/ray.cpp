@@ -59,6 +59,21 @@ std::optional<RayHit> cast(const mesh::TriangleMesh&, const tree::Hierarchy<V>& 
   return cast(hierarchy, origin, direction, length, budget_nodes, effort);
 }
 
+bool is_castable(const Shape& shape, const Vec3& origin, const Vec3& direction, double max_distance) noexcept {
+  return shape.has_polygons() && origin.allFinite() && std::abs(direction.squaredNorm() - 1.0) < 1e-6 &&
+         max_distance >= 0.0;
+}
+
+/// Nothing lies beyond the far side of the enclosing ball; this also makes an infinite length finite.
+double length_within(double reach, const Vec3& local, double max_distance) noexcept {
+  return std::fmin(max_distance, (local.norm() + reach) * (1.0 + 1e-9));
+}
+
+const tree::WideTree* castable_wide_tree(const CountedRay& ray) noexcept {
+  if (!is_castable(ray.shape, ray.origin, ray.direction, ray.max_distance)) return nullptr;
+  return std::get_if<tree::WideTree>(&ray.shape.data().tree);
+}
+
 }  // namespace
 
 std::optional<RayHit> cast_ray(const Shape& shape, const Vec3& origin, const Vec3& direction, double max_distance,
@@ -70,16 +85,33 @@ std::optional<RayHit> cast_ray(const Shape& shape, const Vec3& origin, const Vec
 std::optional<RayHit> cast_counted_ray(const Shape& shape, const Vec3& origin, const Vec3& direction,
                                        double max_distance, std::uint64_t budget_nodes, RayEffort& effort) noexcept {
   effort = {};
-  if (!shape.has_polygons()) return {};
-  if (!origin.allFinite() || !(std::abs(direction.squaredNorm() - 1.0) < 1e-6) || !(max_distance >= 0.0)) return {};
+  if (!is_castable(shape, origin, direction, max_distance)) return {};
   return std::visit(
       [&](const auto& tree) -> std::optional<RayHit> {
         const Vec3 local = origin - tree.origin();
-        // Nothing lies beyond the far side of the enclosing ball; this also makes an infinite length finite.
-        const double length = std::fmin(max_distance, (local.norm() + tree.reach()) * (1.0 + 1e-9));
-        return cast(shape.mesh(), tree, local, direction, length, budget_nodes, effort);
+        return cast(shape.mesh(), tree, local, direction, length_within(tree.reach(), local, max_distance),
+                    budget_nodes, effort);
       },
       shape.data().tree);
+}
+
+std::array<std::optional<RayHit>, 2> cast_two_rays(const CountedRay& first, const CountedRay& second,
+                                                   std::uint64_t budget_nodes) noexcept {
+  const tree::WideTree* const tree = castable_wide_tree(first);
+  const tree::WideTree* const other_tree = castable_wide_tree(second);
+  if (tree == nullptr || other_tree == nullptr) {
+    return {cast_ray(first.shape, first.origin, first.direction, first.max_distance, budget_nodes),
+            cast_ray(second.shape, second.origin, second.direction, second.max_distance, budget_nodes)};
+  }
+  RayEffort effort;
+  RayEffort other_effort;
+  const Vec3 local = first.origin - tree->origin();
+  const Vec3 other_local = second.origin - other_tree->origin();
+  return wide::searches_for(InstructionSet::best)
+      ->two_rays({first.shape.mesh(), *tree, local, first.direction,
+                  length_within(tree->reach(), local, first.max_distance), budget_nodes, effort},
+                 {second.shape.mesh(), *other_tree, other_local, second.direction,
+                  length_within(other_tree->reach(), other_local, second.max_distance), budget_nodes, other_effort});
 }
 
 }  // namespace odds::query

@@ -64,6 +64,8 @@ struct RayTask {
   RayEffort& effort;  ///< what it took
 };
 
+using RayHits = std::array<std::optional<RayHit>, 2>;
+
 /// A leaf, its parent and the parent of that; the root repeats where there are fewer.
 using SlotsAbout = std::array<tree::Slot, 3>;
 
@@ -79,6 +81,7 @@ struct Searches {
   /// The nearest points; the bodies may be apart.
   void (*nearest)(NearestTask& task) noexcept;
   std::optional<RayHit> (*ray)(const RayTask& task) noexcept;
+  RayHits (*two_rays)(const RayTask& first, const RayTask& second) noexcept;
   /// The leaf that a place, in the tree's frame, belongs to, and the next larger nodes about it.
   SlotsAbout (*slots_about)(const tree::WideTree& tree, const Vec3f& place) noexcept;
   patch::Kernels patch;

@@ -21,6 +21,7 @@ constexpr Searches searches_of() noexcept {
           &BesideFaces<L>::run,
           &Nearest<L>::run,
           &RayCast<L>::run,
+          &RayCast<L>::run_two,
           &WayDown<L>::run,
           PatchKernel<L>::table()};
 }
