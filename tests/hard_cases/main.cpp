@@ -102,7 +102,7 @@ std::uint64_t units(const std::string& text) {
 }
 
 int run(const std::string& folder, const std::string& only, const std::string& knot, const RunOptions& options) {
-  std::filesystem::create_directories(folder);
+  const bool is_new = std::filesystem::create_directories(folder);
   register_troubled_device();
   const std::vector<HardCase> cases = all_cases(folder, knot);
   const auto is_wanted = [&](const HardCase& hard_case) { return only.empty() || hard_case.name == only; };
@@ -110,6 +110,7 @@ int run(const std::string& folder, const std::string& only, const std::string& k
     fmt::print(stderr, "error: there is no case '{}'; choose one of:", only);
     for (const HardCase& hard_case : cases) fmt::print(stderr, " {}", hard_case.name);
     fmt::print(stderr, "\n");
+    if (is_new) std::filesystem::remove_all(folder);  // with the meshes of the cases
     return 2;
   }
   const auto began = std::chrono::steady_clock::now();

@@ -58,5 +58,37 @@ TEST(GuessedContacts, OfAnotherPlaceHaveADirectionOfTheirOwn) {
   }
 }
 
+// Where two facets cross by little they overlap as little in the wrong direction: a bolt was pushed into the other side
+// of its nut, and jammed.
+TEST(GuessedContacts, OfTheOppositeSideDoNotPushIntoIt) {
+  const auto bump = testing::wavy_sphere(40, 0.0);
+  const auto walls = shape_of(testing::joined(*bump, *bump, Vec3(2.602, 0.0, 0.0)));
+  const auto ball = shape_of(testing::made_mesh("made:icosphere:frequency=24,radius=0.3"));
+  for (const std::int64_t look_ns : {100, 150, 200}) {
+    int guessed = 0;
+    int into = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+      realtime::ManualClock clock(look_ns);
+      Pair pair = std::move(Pair::make(walls, ball, {.late_contacts = true})).value();
+      const Request request = testing::short_request(clock, 5.0);
+      math::Random random(seed);
+      const Mat3 turned = random.rotation().toRotationMatrix();
+      const auto run_at = [&](double x) {
+        return pair.run({turned, Vec3(1.301 + x, random.uniform(-1e-5, 1e-5), 0.0)}, request);
+      };
+      for (int run = 0; run < 60; ++run) static_cast<void>(run_at(-0.004));
+      for (int run = 0; run < 6; ++run) {
+        const Answer answer = run_at(0.004);
+        for (const Contact& contact : answer.contacts) {
+          ++guessed;
+          into += contact.normal.x() < -0.7 ? 1 : 0;  // into the walls
+        }
+      }
+    }
+    EXPECT_GT(guessed, 100) << look_ns;
+    EXPECT_LT(into, guessed / 20) << look_ns << " ns a look, of " << guessed;
+  }
+}
+
 }  // namespace
 }  // namespace odds::query

@@ -81,6 +81,23 @@ TEST(Instalments, ProveNothingThatIsNotSo) {
   }
 }
 
+// A hit in leaves that met before is one of which contacts are made, too: time for them used to be kept only if a
+// search found it elsewhere.
+TEST(Instalments, LeaveTimeForContactsOfWhatMetBefore) {
+  auto pair = std::move(Pair::make(gear(24), gear(36), {.late_contacts = true})).value();
+  realtime::ManualClock clock(280);
+  int beyond = 0;
+  int hits = 0;
+  constexpr int ticks = 1000;
+  for (int tick = 0; tick < ticks; ++tick) {
+    const Answer& answer = pair.run(meshing(tick, 0.004), short_request(clock, 5.0));
+    hits += answer.basis == Basis::proved && answer.verdict == Verdict::hit ? 1 : 0;
+    beyond += answer.cost.overshoot_us > 0.5 ? 1 : 0;
+  }
+  EXPECT_GT(hits, ticks / 2);
+  EXPECT_LT(beyond, ticks / 50);
+}
+
 TEST(FewLeafPairs, KeepsEachOnceAndAsManyAsThereIsRoomFor) {
   wide::FewLeafPairs<16> met;
   for (tree::Slot i = 0; i < 40; ++i) met.note({i / 2, 7});

@@ -69,12 +69,15 @@ class Judge {
     return Vote::of(-by_a, by_b, crossing.overlap_along(by_a), crossing.overlap_along(by_b),
                     (crossing.segment.end - crossing.segment.begin).norm(), little_, expected_);
   }
-  /// Whether bodies that part in a direction (unit, into A) still cross there, and would part sooner in another: it is
-  /// another place than the one that the direction is known from. Never where none is known (zero).
+  /// Whether bodies that part in a direction (unit, into A) still cross there, and would part sooner in another, or go
+  /// into each other: it is another place than the one that the direction is known from. Never where none is known
+  /// (zero).
   [[nodiscard]] bool is_elsewhere(const Crossing& crossing, const Vec3& direction) const noexcept {
     const Vec3 by_b = turned(crossing.normal_b);
     const Vec3 by_a = turned(-crossing.normal_a);
-    if (std::max(direction.dot(by_a), direction.dot(by_b)) > tolerances::hasty_across) return false;
+    const double agreement = std::max(direction.dot(by_a), direction.dot(by_b));
+    if (agreement > tolerances::hasty_across) return false;
+    if (agreement < -tolerances::hasty_across) return true;  // it leads into both, however little they overlap there
     const double least = std::min(crossing.overlap_along(by_a), crossing.overlap_along(by_b));
     return crossing.overlap_along(direction) + little_ > tolerances::hasty_elsewhere * (least + little_);
   }
@@ -124,6 +127,8 @@ void limit_depths(std::span<Contact> contacts, double most) noexcept {
 }  // namespace
 
 void begin_haste(const math::Pose& pose_b_in_a, Pair::Implementation& pair) noexcept {
+  if (pair.haste_has_begun) return;
+  pair.haste_has_begun = true;
   const double size = smaller_size(pair);
   pair.haste.begin(pose_b_in_a, tolerances::hasty_slack * size, tolerances::coherent_motion * size);
 }

@@ -15,23 +15,34 @@ constexpr double share_of_a_look = 0.6;
 /// deeper.
 constexpr double off_a_face = tolerances::unmeasured_depth;
 
-/// Between A's face and what of B is deepest in it.
-wide::KnownFaces::Layer layer_between(const PosedMeshes& meshes, const mesh::FlatFace& a, const mesh::FlatFace& b,
-                                      double depth, double size) noexcept {
-  const double offset_a = a.offset - a.normal.dot(meshes.origin_a()) - 0.5 * depth;
-  const Vec3 in_b = meshes.pose().rotation.transpose() * a.normal;
-  const double offset_b = offset_a - a.normal.dot(meshes.pose().translation);
+/// Between a face of one body and what of the other is deepest in it. The middle plane is the face's, moved into its
+/// own body: `side` says whose it is.
+wide::KnownFaces::Layer layer_along(std::size_t side, const PosedMeshes& meshes, const mesh::FlatFace& a,
+                                    const mesh::FlatFace& b, double depth, double size) noexcept {
+  const math::Pose& pose = meshes.pose();
+  const Vec3 in_a = side == 0 ? a.normal : Vec3(pose.rotation * b.normal);
+  const Vec3 in_b = side == 0 ? Vec3(pose.rotation.transpose() * a.normal) : b.normal;
+  const double between = in_a.dot(pose.translation);
+  const double own =
+      side == 0 ? a.offset - a.normal.dot(meshes.origin_a()) : b.offset - b.normal.dot(meshes.origin_b());
+  const double offset_a = own - 0.5 * depth + (side == 0 ? 0.0 : between);
   const auto single = [](double x) noexcept { return static_cast<float>(x); };
-  return {{{single(a.normal.x()), single(a.normal.y()), single(a.normal.z())},
-           {single(in_b.x()), single(in_b.y()), single(in_b.z())}},
-          {single(offset_a), single(offset_b)},
-          single(0.5 * depth + a.uneven + b.uneven + off_a_face * size)};
+  return {
+      {{single(in_a.x()), single(in_a.y()), single(in_a.z())}, {single(in_b.x()), single(in_b.y()), single(in_b.z())}},
+      {single(offset_a), single(offset_a - between)},
+      single(0.5 * depth + a.uneven + b.uneven + off_a_face * size)};
 }
 
+/// Of faces that lean a layer along one leaves the other: a floor of large triangles runs out of that of a crate which
+/// stands on its edge, and the crate's walls, which cross the floor there, would touch beside it.
 wide::KnownFaces known_faces(const PosedMeshes& meshes, const Pair::Implementation& pair) noexcept {
+  const double size = smaller_size(pair);
+  const double larger = std::max(pair.a->mesh().size(), pair.b->mesh().size());
   wide::KnownFaces faces;
   pair.flush.see_faces([&](const mesh::FlatFace& a, const mesh::FlatFace& b, double depth) noexcept {
-    faces.add(layer_between(meshes, a, b, depth, smaller_size(pair)));
+    faces.add(layer_along(0, meshes, a, b, depth, size));
+    const double tilt = (a.normal + meshes.pose().rotation * b.normal).norm();
+    if (tilt * larger > off_a_face * size) faces.add(layer_along(1, meshes, a, b, depth, size));
   });
   return faces;
 }
@@ -61,13 +72,14 @@ Beside look(const PosedMeshes& meshes, const Request& request, const wide::Known
 Beside look_beside(const PosedMeshes& meshes, const Request& request, Pair::Implementation& pair,
                    Spending& spending) noexcept {
   const double little = tolerances::unmeasured_depth * smaller_size(pair);
-  if (pair.nothing_beside_at &&
-      math::motion_bound(*pair.nothing_beside_at, meshes.pose(), pair.b->mesh().size()) <= little) {
+  const std::uint32_t lost = pair.flush.lost();
+  if (pair.nothing_beside && pair.nothing_beside->lost_faces == lost &&
+      math::motion_bound(pair.nothing_beside->pose, meshes.pose(), pair.b->mesh().size()) <= little) {
     return Beside::nothing;
   }
-  pair.nothing_beside_at.reset();
+  pair.nothing_beside.reset();
   const Beside seen = look(meshes, request, known_faces(meshes, pair), pair, spending);
-  if (seen == Beside::nothing) pair.nothing_beside_at = meshes.pose();
+  if (seen == Beside::nothing) pair.nothing_beside = {meshes.pose(), lost};
   return seen;
 }
 

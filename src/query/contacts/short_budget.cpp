@@ -137,6 +137,19 @@ bool answer_beside(Beside seen, const math::Pose& pose_b_in_a, const PosedMeshes
   return true;
 }
 
+/// Of what was found to meet; where flat faces explain all of it, theirs.
+void answer_guessed(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Vec3* known_normal,
+                    const Request& request, Pair::Implementation& pair, Spending& spending) noexcept {
+  ++pair.hasty_runs;
+  spending.reserve_for_contacts(pair.endings.rough);
+  if (guess_contacts(meshes, pose_b_in_a, known_normal, request, pair, spending)) {
+    pair.late->keep_guess(pair.answer.contacts, pose_b_in_a);
+    add_flush(request, pair, spending);
+  } else if (pair.flush.overlap()) {
+    write_flush(meshes, false, request, pair, spending);
+  }
+}
+
 /// Those of flat faces, or those made of earlier poses. False: neither serve.
 bool answer_carried(Beside seen, const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request,
                     Pair::Implementation& pair, Spending& spending) noexcept {
@@ -146,11 +159,12 @@ bool answer_carried(Beside seen, const PosedMeshes& meshes, const math::Pose& po
   if (is_flush) {
     write_flush(meshes, false, request, pair, spending);
     learn_from_work(meshes, pair, spending);
-  } else {
-    measure_slid(pose_b_in_a, request, pair, spending);
-    write_late(pose_b_in_a, request, pair);
-    add_flush(request, pair, spending);
+    return true;
   }
+  // What has slid over an edge is no contact any more, and may have been all there was.
+  if (!serves_late(pose_b_in_a, request, pair, spending)) return false;
+  write_late(pose_b_in_a, request, pair);
+  add_flush(request, pair, spending);
   return true;
 }
 
@@ -191,9 +205,9 @@ bool carry_late_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_
   if (!proved && (!overlap || pair.hits.empty())) return false;
   if (!(overlap && answer_beside(seen, pose_b_in_a, meshes, request, pair, spending)) &&
       !answer_carried(seen, meshes, pose_b_in_a, request, pair, spending)) {
-    pair.hits.clear();
-    pair.answer = {};
-    return false;
+    // The hit is proved: a search could only lose the time for its contacts.
+    begin_haste(pose_b_in_a, pair);
+    answer_guessed(meshes, pose_b_in_a, nullptr, request, pair, spending);
   }
   pair.answer.contacts_complete = false;
   work(pose_b_in_a, request, pair, spending);

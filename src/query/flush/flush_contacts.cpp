@@ -144,7 +144,7 @@ const FlushContacts::Entry* FlushContacts::add(std::uint32_t face_a, std::uint32
   entry.face_b = face_b;
   if (crowded_ > 0 || !place(entry, to_find)) return nullptr;
   if (count_ == entries_.size()) {
-    count_ = 0;
+    lose_all();
     crowded_ = longest_crowd;
     return nullptr;
   }

@@ -35,7 +35,7 @@ class FlushContacts {
       : faces_a_(faces_a), faces_b_(faces_b), kernels_(&kernels) {}
 
   void forget() noexcept {
-    count_ = 0;
+    lose_all();
     believe_again();
   }
 
@@ -63,6 +63,7 @@ class FlushContacts {
       if (left != i) entries_[left] = entries_[i];
       ++left;
     }
+    lost_ += count_ - left;
     count_ = left;
   }
 
@@ -95,7 +96,7 @@ class FlushContacts {
   /// The bodies are proved apart: whatever else touched does no more, and faces that overlap all the same do not lie on
   /// each other but through the bodies.
   void note_clear() noexcept {
-    if (is_certain()) count_ = 0;
+    if (is_certain()) lose_all();
     believe_again();
   }
 
@@ -119,6 +120,8 @@ class FlushContacts {
       if (entry.depth > 0.0) see(faces_a_[entry.face_a], faces_b_[entry.face_b], entry.depth);
     }
   }
+  /// How many pairs of faces were forgotten so far: what was said of the others does not hold for them. Wraps around.
+  [[nodiscard]] std::uint32_t lost() const noexcept { return static_cast<std::uint32_t>(lost_); }
   /// Whether some overlap by more than they are uneven: then the surfaces meet.
   [[nodiscard]] bool is_certain() const noexcept;
 
@@ -170,6 +173,10 @@ class FlushContacts {
     std::size_t count = 0;
   };
 
+  void lose_all() noexcept {
+    lost_ += count_;
+    count_ = 0;
+  }
   void believe_again() noexcept {
     crowded_ = 0;
     is_denied_ = false;
@@ -239,6 +246,7 @@ class FlushContacts {
   const patch::Kernels* kernels_ = nullptr;  ///< null: there are no faces
   std::array<Entry, most_entries> entries_;
   std::size_t count_ = 0;
+  std::size_t lost_ = 0;
   std::uint32_t crowded_ = 0;        ///< runs in which there are more pairs than entries
   bool is_placed_ = false;           ///< in this run
   bool measured_ = false;            ///< in this run

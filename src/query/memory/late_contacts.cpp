@@ -57,12 +57,15 @@ void LateContacts::forget() noexcept {
   too_many_ = false;
   clear_runs_ = 0;
   is_wanted_ = false;
+  is_aged_ = false;
 }
 
 void LateContacts::age(const math::Pose& pose_b_in_a, double size) noexcept {
   guesses_ = false;
-  pose_last_ = pose_now_;
+  pose_last_ = is_aged_ ? pose_now_ : pose_b_in_a;
   pose_now_ = pose_b_in_a;
+  is_aged_ = true;
+  has_room_ = is_at_work() || pool_->has_free();
   manifold_.age(pose_b_in_a, size);
   asked_ = std::min(asked_ + 1, Lateness::long_ago);
   last_asked_ = std::min(last_asked_ + 1, Lateness::long_ago);

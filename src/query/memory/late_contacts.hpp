@@ -35,7 +35,7 @@ class LateContacts {
   [[nodiscard]] LateManifold& manifold() noexcept { return manifold_; }
   /// Whether there is memory for work, and use in it: of bodies that cross in more places than are kept, a part says
   /// little.
-  [[nodiscard]] bool can_work() const noexcept { return is_at_work() || (!too_many_ && pool_->has_free()); }
+  [[nodiscard]] bool can_work() const noexcept { return is_at_work() || (!too_many_ && has_room_); }
   /// The bodies were proved apart in this run. True: for so long now that the work should be dropped.
   [[nodiscard]] bool note_clear() noexcept {
     parted_ = true;
@@ -132,6 +132,8 @@ class LateContacts {
   std::array<HeldContact, most_contacts> guess_;
   std::size_t guessed_ = 0;
   math::Pose guess_pose_;
+  bool has_room_ = false;           ///< to begin in this run: asked once, for other threads take and give it back
+  bool is_aged_ = false;            ///< there was a run before this one
   math::Pose pose_now_;             ///< of this run
   math::Pose pose_last_;            ///< of the run before
   bool guesses_ = false;            ///< in this run

@@ -39,6 +39,12 @@ namespace odds::query {
   return static_cast<std::uint32_t>(std::clamp<std::size_t>(possible, 64, most));
 }
 
+/// When a search found nothing to meet but flat faces that lie on each other.
+struct NothingBeside {
+  math::Pose pose;               ///< PosedMeshes::pose()
+  std::uint32_t lost_faces = 0;  ///< FlushContacts::lost(): what is forgotten since would have been found
+};
+
 /// What one run leaves for the next, its part in the memory that runs work in, and the last answer.
 struct Pair::Implementation {
   Implementation(std::shared_ptr<const Shape> shape_a, std::shared_ptr<const Shape> shape_b, const PairOptions& options)
@@ -80,8 +86,9 @@ struct Pair::Implementation {
   Vec3 previous_normal = Vec3::Zero();          ///< of the last run's first contact, in A's frame; zero: none
   Vec3 previous_position = Vec3::Zero();        ///< of that contact
   FlushContacts flush;                          ///< of flat faces that lie on each other
-  std::optional<math::Pose> nothing_beside_at;  ///< PosedMeshes::pose() when a search found nothing else to meet
+  std::optional<NothingBeside> nothing_beside;  ///< but those faces
   HastyMemory haste;                            ///< of contacts that are guessed
+  bool haste_has_begun = false;                 ///< in this run
   std::uint32_t hasty_runs = 0;                 ///< that guessed or might have
   Vec3 came = Vec3::Zero();  ///< how B came to where it met A since they were apart, unit, A's frame; zero: unknown
   std::optional<math::Pose> apart_at;  ///< PosedMeshes::pose() when they were apart last; none: they touched since

@@ -239,7 +239,7 @@ void forget_if_elsewhere(const PosedMeshes& meshes, Pair::Implementation& pair) 
       pair.sweep.forget();
       pair.haste.forget();
       pair.flush.forget();
-      pair.nothing_beside_at.reset();
+      pair.nothing_beside.reset();
       if (!pair.apart_last) pair.apart_at.reset();
     }
   }
@@ -304,6 +304,7 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
   answer = {};
   pair.hits.clear();
   pair.flush.begin();
+  pair.haste_has_begun = false;
   pair.front.begin_run();
   if (pair.late) pair.late->age(pose_b_in_a, smaller_size(pair));
   const PosedMeshes meshes(pair.a->mesh(), pair.b->mesh(), a.origin(), b.origin(), pose_b_in_a);
@@ -384,6 +385,7 @@ Pair& Pair::operator=(Pair&&) noexcept = default;
 void run_pair(Pair::Implementation& pair, const math::Pose& pose_b_in_a, const Request& request) noexcept {
   if (!usable(pose_b_in_a, request)) {
     pair.answer = refused();
+    pair.hits.clear();
     return;
   }
   Request possible = request;
@@ -414,7 +416,7 @@ void Pair::note_apart(const math::Pose& pose_b_in_a) noexcept {
         pair.sweep.forget();
         pair.haste.forget();
         pair.flush.forget();
-        pair.nothing_beside_at.reset();
+        pair.nothing_beside.reset();
         if (pair.late) pair.late->forget();
         pair.within_is_of_front = false;
       },
@@ -429,6 +431,7 @@ const Shape& Pair::a() const noexcept { return *implementation_->a; }
 const Shape& Pair::b() const noexcept { return *implementation_->b; }
 void Pair::reset() noexcept {
   implementation_->answer = {};
+  implementation_->hits.clear();
   implementation_->slice.reset();
   implementation_->front.reset();
   implementation_->front_worth.reset();
@@ -440,11 +443,13 @@ void Pair::reset() noexcept {
   implementation_->known_depth.forget();
   implementation_->known_direction.forget();
   implementation_->carried.forget();
+  implementation_->carried.keep_proofs({});
   implementation_->near.forget();
   implementation_->has_witness = false;
   implementation_->sweep.forget();
   implementation_->haste.forget();
   implementation_->flush.forget();
+  implementation_->nothing_beside.reset();
   implementation_->hasty_runs = 0;
   if (implementation_->late) implementation_->late->forget();
   implementation_->within = Within::neither;

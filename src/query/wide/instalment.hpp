@@ -89,8 +89,11 @@ class Instalment {
     sweep_.looked_at.note(pair);
     const std::uint32_t wanted = task_.wanted;
     task_.wanted = std::min(wanted, static_cast<std::uint32_t>(task_.hits.size()) + most_hits);
+    const bool was_empty = task_.hits.empty();
     const bool goes_on = visit_leaves<L>(task_, pair.a, pair.b);
     task_.wanted = wanted;
+    // The leaves were looked at for one hit, of which no contacts are made.
+    if (was_empty && !task_.hits.empty() && wanted > 1) task_.spending.keep_time_for_contacts();
     if (goes_on) return true;
     if (task_.result.ended == Progressed::spent || task_.hits.full(wanted)) return false;
     task_.result.ended = Progressed::finished;

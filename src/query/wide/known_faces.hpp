@@ -11,11 +11,11 @@
 
 namespace odds::query::wide {
 
-/// A few layers, each between two faces that overlap. What two surfaces have in common within one is known to touch, or
-/// is the rim of what does.
+/// A few layers, each between two faces that overlap, along one or the other. What two surfaces have in common within
+/// one is known to touch, or is the rim of what does.
 class KnownFaces {
  public:
-  static constexpr std::size_t most = 4;  ///< more are left out
+  static constexpr std::size_t most = 8;  ///< of four pairs of faces that lean; more are left out
 
   /// By its middle plane, normal . x = offset, in either tree's own frame.
   struct Layer {

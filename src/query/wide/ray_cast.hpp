@@ -70,8 +70,8 @@ class RayCast {
   RayCast& operator=(const RayCast&) = delete;
   explicit RayCast(const RayTask& task) noexcept
       : task_(task), segment_(volume::RaySegment::make(task.origin, task.direction, task.length, task.tree.reach())) {
-    // The motion across a slab may be off by 2e-6 of the way, and the way is at most a millionth of 16 margins.
     *top_++ = Open(tree::WideTree::root, 0.0F);
+    // The motion across a slab may be off by 2e-6 of the way, and the way is at most a millionth of 16 margins.
     margin_ = 4.0F * segment_.margin;
     for (int i = 0; i < 3; ++i) {
       const float across = segment_.direction[i];
