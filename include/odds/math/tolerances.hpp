@@ -134,12 +134,15 @@ inline constexpr double hasty_line = 0.1;
 /// Test: LateManifold.ASuccessorGivesWhatItsPredecessorGave.
 inline constexpr double hasty_agreement = 0.87;
 /// Cosine (75 degrees) below which the normals where two triangles cross are across a direction in which the bodies
-/// part; and how many times as far as in a direction of their own they then have to go in it, for the crossing to be
-/// another place of contact: starved gears jam without (`odds_ode_scenes --only gears --ours --counted 280 --budgets
-/// 10,20`), with 10 of them more than with 1.5 or 3.
-/// Test: GuessedContacts.OfAnotherPlaceHaveADirectionOfTheirOwn.
+/// part: it is another place of contact. Test: GuessedContacts.OfTheOppositeSideDoNotPushIntoIt.
 inline constexpr double hasty_across = 0.25;
-inline constexpr double hasty_elsewhere = 1.5;  ///< see hasty_across
+/// Cosine (45 degrees) above which they are along it; and between the two, how many times as far as in a direction of
+/// their own the triangles have to go in it to part, for the crossing to be another place: starved gears jam without
+/// (`odds_ode_scenes --only gears --ours --counted 280 --budgets 10,20`), with 10 of them more than with 1.5 or 3, and
+/// starved bolts, which slip and are thrown about where what is along it begins at 75 degrees.
+/// Test: GuessedContacts.OfAnotherPlaceHaveADirectionOfTheirOwn.
+inline constexpr double hasty_along = 0.7;
+inline constexpr double hasty_elsewhere = 1.5;  ///< see hasty_along
 /// How many times what is believed of a depth from motion, or need not be measured, a run may say that has looked at as
 /// many pairs as are kept: they may be taken for one lump, but runs at one pose must come to what they find there.
 /// Tests: BoltInItsNut.IsHeldByAsMuchAsItIsDeep, BoltInItsNut.ExactRunsForgetThePoseBefore.

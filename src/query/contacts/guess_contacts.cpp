@@ -69,15 +69,16 @@ class Judge {
     return Vote::of(-by_a, by_b, crossing.overlap_along(by_a), crossing.overlap_along(by_b),
                     (crossing.segment.end - crossing.segment.begin).norm(), little_, expected_);
   }
-  /// Whether bodies that part in a direction (unit, into A) still cross there, and would part sooner in another, or go
-  /// into each other: it is another place than the one that the direction is known from. Never where none is known
-  /// (zero).
+  /// Whether bodies that part in a direction (unit, into A) slide along both surfaces there, or go into them, or would
+  /// part sooner in another: it is another place than the one that the direction is known from. Never where none is
+  /// known (zero).
   [[nodiscard]] bool is_elsewhere(const Crossing& crossing, const Vec3& direction) const noexcept {
+    if (direction.isZero()) return false;
     const Vec3 by_b = turned(crossing.normal_b);
     const Vec3 by_a = turned(-crossing.normal_a);
     const double agreement = std::max(direction.dot(by_a), direction.dot(by_b));
-    if (agreement > tolerances::hasty_across) return false;
-    if (agreement < -tolerances::hasty_across) return true;  // it leads into both, however little they overlap there
+    if (agreement > tolerances::hasty_along) return false;
+    if (agreement < tolerances::hasty_across) return true;  // along it, or into both, however little they overlap there
     const double least = std::min(crossing.overlap_along(by_a), crossing.overlap_along(by_b));
     return crossing.overlap_along(direction) + little_ > tolerances::hasty_elsewhere * (least + little_);
   }
