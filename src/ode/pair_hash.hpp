@@ -13,6 +13,8 @@ namespace odds::ode {
   key *= 0xbf58476d1ce4e5b9U;
   return key ^ (key >> 29U);
 }
+/// Of one number: another one for each, 0 for 0.
+[[nodiscard]] inline std::uint64_t mixed(std::uint64_t number) noexcept { return hash_of_pair(number, 0); }
 [[nodiscard]] inline std::uint64_t hash_of_pair(const void* first, const void* second) noexcept {
   return hash_of_pair(reinterpret_cast<std::uintptr_t>(first), reinterpret_cast<std::uintptr_t>(second));
 }

@@ -84,7 +84,7 @@ void after_init() noexcept {
 }
 
 void after_mesh(dGeomID trimesh) noexcept {
-  if (inside || trimesh == nullptr || dGeomTriMeshGetData(trimesh) == nullptr) return;
+  if (inside || ode::is_reading_trimesh() || trimesh == nullptr || dGeomTriMeshGetData(trimesh) == nullptr) return;
   const Inside guard;
   oddsForgetGeom(trimesh);
   oddsPrepareTriMesh(trimesh, nullptr);  // what cannot be prepared is left to ODE, and counted
@@ -152,7 +152,50 @@ void dGeomSetConvex(dGeomID geom, const dReal* planes, unsigned int plane_count,
 void dGeomTriMeshDataUpdate(dTriMeshDataID data) {
   static const auto next = real<decltype(dGeomTriMeshDataUpdate)>("dGeomTriMeshDataUpdate");
   next(data);
-  odds::ode::partner_table().note_deformed(data);
+  odds::ode::note_changed(data);
+}
+
+// So does a program that builds data anew: geoms of it are other meshes then.
+void dGeomTriMeshDataBuildSingle(dTriMeshDataID data, const void* vertices, int vertex_stride, int vertex_count,
+                                 const void* indices, int index_count, int stride) {
+  static const auto next = real<decltype(dGeomTriMeshDataBuildSingle)>("dGeomTriMeshDataBuildSingle");
+  next(data, vertices, vertex_stride, vertex_count, indices, index_count, stride);
+  odds::ode::note_changed(data);
+}
+
+void dGeomTriMeshDataBuildSingle1(dTriMeshDataID data, const void* vertices, int vertex_stride, int vertex_count,
+                                  const void* indices, int index_count, int stride, const void* normals) {
+  static const auto next = real<decltype(dGeomTriMeshDataBuildSingle1)>("dGeomTriMeshDataBuildSingle1");
+  next(data, vertices, vertex_stride, vertex_count, indices, index_count, stride, normals);
+  odds::ode::note_changed(data);
+}
+
+void dGeomTriMeshDataBuildDouble(dTriMeshDataID data, const void* vertices, int vertex_stride, int vertex_count,
+                                 const void* indices, int index_count, int stride) {
+  static const auto next = real<decltype(dGeomTriMeshDataBuildDouble)>("dGeomTriMeshDataBuildDouble");
+  next(data, vertices, vertex_stride, vertex_count, indices, index_count, stride);
+  odds::ode::note_changed(data);
+}
+
+void dGeomTriMeshDataBuildDouble1(dTriMeshDataID data, const void* vertices, int vertex_stride, int vertex_count,
+                                  const void* indices, int index_count, int stride, const void* normals) {
+  static const auto next = real<decltype(dGeomTriMeshDataBuildDouble1)>("dGeomTriMeshDataBuildDouble1");
+  next(data, vertices, vertex_stride, vertex_count, indices, index_count, stride, normals);
+  odds::ode::note_changed(data);
+}
+
+void dGeomTriMeshDataBuildSimple(dTriMeshDataID data, const dReal* vertices, int vertex_count, const dTriIndex* indices,
+                                 int index_count) {
+  static const auto next = real<decltype(dGeomTriMeshDataBuildSimple)>("dGeomTriMeshDataBuildSimple");
+  next(data, vertices, vertex_count, indices, index_count);
+  odds::ode::note_changed(data);
+}
+
+void dGeomTriMeshDataBuildSimple1(dTriMeshDataID data, const dReal* vertices, int vertex_count,
+                                  const dTriIndex* indices, int index_count, const int* normals) {
+  static const auto next = real<decltype(dGeomTriMeshDataBuildSimple1)>("dGeomTriMeshDataBuildSimple1");
+  next(data, vertices, vertex_count, indices, index_count, normals);
+  odds::ode::note_changed(data);
 }
 
 void dGeomDestroy(dGeomID geom) {

@@ -1,8 +1,11 @@
 // What each effect does, by a law that can be checked by hand.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <utility>
 
 #include "haptics/on_floor.hpp"
 #include "odds/haptics/effect_registry.hpp"
@@ -304,6 +307,22 @@ TEST(Effects, EventsAloneMakeNoContactsAndTellBeginAndEnd) {
     ASSERT_EQ(tick.contacts, 0U);
   }
   EXPECT_GT(queries, 10U);
+}
+
+// ODE gives the two bodies of a pair in an order that changes as they move.
+TEST(Effects, EventsOfAPileBeginAndEndByTurns) {
+  std::string bodies;
+  for (int i = 0; i < 12; ++i) {
+    bodies += moving("ball" + std::to_string(i), "ball", 0.003 * (i % 5) - 0.005 * (i % 3), 0.03 + 0.036 * i);
+  }
+  const RunOutcome outcome = simulate(on_floor(bodies + gravity + "[effects.events]\n", 1.5))->run();
+  std::map<std::pair<std::uint32_t, std::uint32_t>, bool> touching;
+  for (const haptics::ContactEvent& event : outcome.events) {
+    bool& before = touching[std::minmax(event.a.index, event.b.index)];
+    ASSERT_NE(before, event.begins) << 1e-6 * static_cast<double>(event.t_ns) << " ms";
+    before = event.begins;
+  }
+  EXPECT_GT(outcome.events.size(), 20U);
 }
 
 TEST(Effects, ATextureIsFeltAtItsWavelengthAndGivesNoEnergy) {

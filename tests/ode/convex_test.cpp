@@ -185,6 +185,21 @@ TEST_F(ConvexTest, AnotherGeomAtTheSameAddressIsFoundOut) {
   EXPECT_EQ(stats().unsupported, 2u);
 }
 
+// ODE's box is that of its own rotation, which of a geom without a body is as rigid as the client made it.
+TEST_F(ConvexTest, ARoundedRotationIsNoOtherGeom) {
+  const dGeomID mesh = mesh_geom(box_shape(1, 1, 1), space);
+  const Arrays arrays = cuboid(Vec3(0.3, 0.3, 0.3));
+  const dGeomID convex = convex_of(arrays);
+  const dQuaternion rounded = {0.9239, 0, 0, 0.3827};
+  dGeomSetQuaternion(convex, rounded);
+  dGeomSetPosition(convex, 0.7, 0, 0);
+  EXPECT_FALSE(collide(convex, mesh).empty());
+  const dMatrix3 by_hand = {0.7071, -0.7071, 0, 0, 0.7071, 0.7071, 0, 0, 0, 0, 1, 0};
+  dGeomSetRotation(convex, by_hand);
+  EXPECT_FALSE(collide(convex, mesh).empty());
+  EXPECT_EQ(stats().changed_partners, 0u);
+}
+
 // dGeomSetConvex leaves ODE's box around the geom as it was until it moves, so that the new points seemed to be those
 // of another geom.
 TEST_F(ConvexTest, OtherPointsServeAtOnce) {

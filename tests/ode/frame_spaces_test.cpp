@@ -38,6 +38,22 @@ TEST_F(FrameSpaces, EachPairIsCalledOnceHoweverManyThingsItsSpaceMeets) {
   EXPECT_EQ(summary().pairs, 36);
 }
 
+// ODE aborts where one asks a quad tree for its members.
+TEST_F(FrameSpaces, AQuadTreeIsSearchedAndSoIsOneInAnotherSpace) {
+  const dVector3 centre = {0, 0, 0, 0};
+  const dVector3 extents = {10, 10, 10, 0};
+  const dSpaceID tree = dQuadTreeSpaceCreate(nullptr, centre, extents, 3);
+  for (int i = 0; i < 3; ++i) sphere(tree, 0.1 * i);
+  Calls calls;
+  ASSERT_EQ(oddsSpaceCollide(tree, &calls, &count_call, budget), 1) << oddsGetLastError();
+  EXPECT_EQ(calls.size(), 3U);
+  dSpaceAdd(space, reinterpret_cast<dGeomID>(tree));
+  sphere(space, 0.2);
+  calls.clear();
+  ASSERT_EQ(oddsSpaceCollide(space, &calls, &count_call, budget), 1);
+  EXPECT_EQ(calls.size(), 6U) << "those in the tree, and each with the other sphere";
+}
+
 TEST_F(FrameSpaces, ASpaceThatMeetsNothingIsSearched) {
   const dSpaceID inner = dSimpleSpaceCreate(space);
   for (int i = 0; i < 2; ++i) sphere(inner, 0.1 * i);

@@ -31,7 +31,7 @@ class Preload : public ::testing::Test {
   static ClientRun run(const std::string& variables, bool preloaded) {
     ClientRun result;
     std::ostringstream command;
-    command << "env " << variables;
+    command << "timeout 60 env " << variables;  // a deadlock is a failure
     if (preloaded) command << " LD_PRELOAD=\"" ODDS_PRELOAD "\"";
     command << " \"" ODDS_PRELOAD_CLIENT "\" 2>&1";
     FILE* pipe = popen(command.str().c_str(), "r");
@@ -88,6 +88,14 @@ TEST_F(Preload, AMeshWhoseVerticesTheProgramMovesIsOdesFromThenOn) {
   ASSERT_EQ(moved.status, 0) << moved.output;
   EXPECT_GT(changed(moved), 500) << "as often as the lower brick meets the ground\n" << moved.output;
   EXPECT_LE(changed(moved), 1000) << moved.output;
+}
+
+// The library waited for itself: what it made to read the mesh was prepared like one of the program's.
+TEST_F(Preload, AMeshThatCannotBeReadWhenItIsMadeHoldsNothingUp) {
+  const ClientRun client = run("LATE_DATA=1 ODDS_REPORT=off", true);
+  ASSERT_EQ(client.status, 0) << client.output;
+  EXPECT_NE(client.output.find("late_data "), std::string::npos) << client.output;
+  EXPECT_EQ(client.output.find("late_data 0"), std::string::npos) << client.output;
 }
 
 TEST_F(Preload, MistakesInTheEnvironmentAreToldAndHarmless) {

@@ -230,6 +230,33 @@ TEST_F(SphereTest, MoreTrianglesThanTheScratchHoldsStillGivesTheNearest) {
   EXPECT_EQ(stats().primitive_cut_off, 1u);
 }
 
+// Where the search for the nearest triangle ended early, the side of another one was taken for that of the surface.
+TEST_F(SphereTest, InACavityAnEarlyEndPushesNothingThroughTheWalls) {
+  const auto outer = box_shape(2.0, 2.0, 2.0, 24);
+  const auto inner = box_shape(1.9, 1.9, 1.9, 24);
+  std::vector<Vec3> vertices(outer->mesh().vertices().begin(), outer->mesh().vertices().end());
+  std::vector<mesh::Triangle> triangles(outer->mesh().triangles().begin(), outer->mesh().triangles().end());
+  const auto first = static_cast<std::uint32_t>(vertices.size());
+  vertices.insert(vertices.end(), inner->mesh().vertices().begin(), inner->mesh().vertices().end());
+  for (const mesh::Triangle& t : inner->mesh().triangles()) {
+    triangles.push_back({t[0] + first, t[2] + first, t[1] + first});
+  }
+  const dGeomID mesh = mesh_geom(shape_from(std::move(vertices), std::move(triangles)), space);
+  const std::array<dGeomID, 3> bodies = {dCreateSphere(space, 0.05), dCreateCapsule(space, 0.05, 0.1),
+                                         dCreateBox(space, 0.1, 0.1, 0.1)};
+  std::uniform_real_distribution<double> uniform(-0.8, 0.8);
+  for (const unsigned long units : {10UL, 20UL, 30UL, 50UL, 100UL}) {
+    ASSERT_EQ(dGeomOddsMeshSetWorkBudget(mesh, units), 1);
+    for (int i = 0; i < 3000; ++i) {
+      const Vec3 place(uniform(random), uniform(random), uniform(random));
+      for (const dGeomID body : bodies) {
+        dGeomSetPosition(body, place.x(), place.y(), place.z());
+        ASSERT_TRUE(collide(mesh, body).empty()) << units << " units, class " << dGeomGetClass(body);
+      }
+    }
+  }
+}
+
 TEST_F(SphereTest, AnExhaustedBudgetIsCountedAndSound) {
   const dGeomID mesh = mesh_geom(sphere_shape(1, 20), space);
   const dGeomID sphere = dCreateSphere(space, 0.5);

@@ -156,13 +156,32 @@ TEST_F(Takeover, AProgramThatSaysItMovedVerticesIsBelievedAtOnce) {
   dGeomSetPosition(second.geom, 0.1, 0.2, 0.9);
   take_over();
   ASSERT_EQ(oddsPreparePair(first.geom, second.geom), 1) << oddsGetLastError();
-  ode::partner_table().note_deformed(second.data);
-  ode::partner_table().note_deformed(nullptr);
+  ode::note_changed(second.data);
+  ode::note_changed(nullptr);
   static_cast<void>(collide(first.geom, second.geom));
   EXPECT_EQ(stats().fallbacks, 1u);
   ASSERT_EQ(oddsPreparePair(first.geom, second.geom), 1) << oddsGetLastError();
   EXPECT_FALSE(collide(first.geom, second.geom).empty());
   EXPECT_EQ(stats().fallbacks, 1u);
+}
+
+// Each collision used to read it again.
+TEST_F(Takeover, AMeshThatCannotBeReadIsLeftToOdeAndReadOnce) {
+  const auto shape = box_shape(1, 1, 1, 2);
+  TriMesh first(shape->mesh(), space);
+  first.vertices[1] = std::nan("");
+  const TriMesh second(shape->mesh(), space);
+  dGeomSetPosition(first.geom, 0.1, 0.2, 0.9);
+  take_over();
+  EXPECT_EQ(oddsPrepareTriMesh(first.geom, nullptr), 0);
+  EXPECT_EQ(stats().live_partners, 1u) << "that it cannot be read is known";
+  for (int i = 0; i < 3; ++i) static_cast<void>(collide(first.geom, second.geom));
+  EXPECT_EQ(stats().fallbacks, 3u);
+  EXPECT_LE(stats().lazy_partners, 1u) << "the other";
+  first.vertices[1] = second.vertices[1];
+  ASSERT_EQ(oddsPreparePair(first.geom, second.geom), 1) << oddsGetLastError();
+  EXPECT_FALSE(collide(first.geom, second.geom).empty());
+  EXPECT_EQ(stats().fallbacks, 3u);
 }
 
 TEST_F(Takeover, ARotationThatIsOffByLittleIsNoMovedCorner) {

@@ -1,5 +1,6 @@
 // Disjoint pairs in several threads at once: the same bits as one after the other. (Two pairs of ODE's own meshes in
 // two threads abort.)
+#include <atomic>
 #include <thread>
 
 #include "ode/partners_fixture.hpp"
@@ -95,6 +96,38 @@ TEST_F(Threads, PairsOfTriMeshesUnderATakeover) {
   EXPECT_EQ(stats().fallbacks, 0u);
   EXPECT_EQ(stats().busy_pairs, 0u);
   EXPECT_EQ(oddsGiveBackTriMesh(), 1);
+}
+
+// What is known of the others is freed while this thread looks for its own.
+TEST_F(Threads, OtherTriMeshesComeAndGo) {
+  const auto shape = sphere_shape(0.5, 3);
+  const dGeomID mesh = mesh_geom(shape, space);
+  std::vector<std::unique_ptr<TriMesh>> stay;
+  for (int i = 0; i < 64; ++i) {
+    stay.push_back(std::make_unique<TriMesh>(shape->mesh(), nullptr));
+    dGeomSetPosition(stay.back()->geom, 0.7, 0.1, 0.0);
+    ASSERT_EQ(oddsPreparePair(mesh, stay.back()->geom), 1) << oddsGetLastError();
+    static_cast<void>(collide(mesh, stay.back()->geom));  // and ODE's own lazy work is done
+  }
+  std::vector<dGeomID> others;
+  for (int i = 0; i < 200; ++i) others.push_back(dCreateTriMesh(nullptr, stay[0]->data, nullptr, nullptr, nullptr));
+  std::atomic<bool> stop{false};
+  std::thread other([&] {
+    dAllocateODEDataForThread(static_cast<unsigned>(dAllocateMaskAll));
+    while (!stop.load()) {
+      for (const dGeomID geom : others) oddsPrepareTriMesh(geom, nullptr);
+      for (const dGeomID geom : others) oddsForgetGeom(geom);
+    }
+  });
+  std::size_t missed = 0;
+  for (int round = 0; round < 200; ++round) {
+    for (const auto& trimesh : stay) missed += collide(mesh, trimesh->geom).empty() ? 1 : 0;
+  }
+  stop = true;
+  other.join();
+  EXPECT_EQ(missed, 0u);
+  EXPECT_EQ(stats().lazy_partners, 0u);
+  for (const dGeomID geom : others) dGeomDestroy(geom);
 }
 
 }  // namespace

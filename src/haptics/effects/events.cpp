@@ -31,8 +31,10 @@ class Events final : public Effect {
 
   std::uint32_t meet(const TickView& tick, ode::Meeting& meeting) noexcept override {
     if (meeting.verdict != query::Verdict::hit) return 1;
-    const auto known = std::find_if(now_.touching.begin(), now_.touching.end(),
-                                    [&](const Touch& t) { return t.a == meeting.a && t.b == meeting.b; });
+    // ODE gives the bodies of a pair in either order.
+    const auto known = std::find_if(now_.touching.begin(), now_.touching.end(), [&](const Touch& t) {
+      return (t.a == meeting.a && t.b == meeting.b) || (t.a == meeting.b && t.b == meeting.a);
+    });
     if (known != now_.touching.end()) {
       known->seen = true;
       return 1;

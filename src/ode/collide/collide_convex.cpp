@@ -13,25 +13,6 @@
 namespace odds::ode {
 namespace {
 
-// Whether the geom still is what was registered: ODE's box around it is that around the registered points. So a geom
-// that was destroyed, and another that was made at its address, is found out.
-bool has_bounds_of(const ConvexShape& shape, dGeomID geom) noexcept {
-  const std::optional<math::Pose> pose = world_pose(geom);
-  if (!pose) return true;  // the collision itself answers bad poses
-  dReal aabb[6];
-  dGeomGetAABB(geom, aabb);
-  const double tolerance = 1e-6 * shape.box_half_extents().norm() + 1e-12 * pose->translation.cwiseAbs().maxCoeff();
-  for (int axis = 0; axis < 3; ++axis) {
-    const Vec3 along = pose->rotation.transpose().col(axis);
-    const double lower = pose->translation[axis] - shape.reach(-along);
-    const double upper = pose->translation[axis] + shape.reach(along);
-    const bool same =
-        std::abs(aabb[2 * axis] - lower) <= tolerance && std::abs(aabb[2 * axis + 1] - upper) <= tolerance;
-    if (!same) return false;
-  }
-  return true;
-}
-
 // dGeomSetConvex leaves ODE's box around the geom as it was, until the geom moves. So it is moved to where it is; one
 // with a body by its body, for a geom's own offset would be added with a rounding.
 void renew_bounds(dGeomID geom) noexcept {
@@ -47,9 +28,9 @@ void renew_bounds(dGeomID geom) noexcept {
 }  // namespace
 
 int collide_convex(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int skip) noexcept {
-  const Partner* partner = partner_table().find(o2);
+  Partner* const partner = partner_table().find(o2);
   if (partner == nullptr || partner->convex == nullptr) return collide_unsupported(o1, o2, flags, contacts, skip);
-  if (!has_bounds_of(*partner->convex, o2)) {
+  if (!is_unchanged(*partner)) {
     count(statistics().changed_partners);
     return collide_unsupported(o1, o2, flags, contacts, skip);
   }
@@ -80,7 +61,7 @@ int oddsRegisterConvex(dGeomID convex, const dReal* points, unsigned point_count
     auto partner = std::make_unique<Partner>();
     partner->geom = convex;
     partner->convex = std::move(shape).value();
-    if (!has_bounds_of(*partner->convex, convex)) renew_bounds(convex);  // else it may be called from a callback
+    if (!is_unchanged(*partner)) renew_bounds(convex);  // else it may be called from a callback
     partner_table().put(std::move(partner));
     return 1;
   } catch (const std::exception& error) {

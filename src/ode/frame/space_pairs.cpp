@@ -23,6 +23,7 @@ void open_spaces(void* caller, dGeomID a, dGeomID b) noexcept {
 void for_each_pair(dSpaceID space, void* data, dNearCallback* callback) noexcept {
   Caller caller{data, callback};
   dSpaceCollide(space, &caller, &open_spaces);
+  if (dSpaceGetClass(space) == dQuadTreeSpaceClass) return;  // ODE aborts where one asks for its members
   const int members = dSpaceGetNumGeoms(space);
   for (int i = 0; i < members; ++i) {
     const dGeomID member = dSpaceGetGeom(space, i);

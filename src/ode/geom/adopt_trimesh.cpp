@@ -11,6 +11,7 @@
 #include "ode/geom/partners.hpp"
 #include "ode/last_error.hpp"
 #include "ode/mesh/mesh_data.hpp"
+#include "ode/vectors.hpp"
 
 namespace odds::ode {
 namespace {
@@ -19,6 +20,9 @@ struct IndexedMesh {
   std::vector<Vec3> vertices;
   std::vector<mesh::Triangle> triangles;
 };
+
+// A preload library hears of the second geom, too, and must not prepare it: that waits for this thread.
+thread_local bool is_reading = false;
 
 bool is_at_identity(dGeomID geom) noexcept {
   const dReal* position = dGeomGetPosition(geom);
@@ -38,13 +42,15 @@ bool is_at_identity(dGeomID geom) noexcept {
 // there (DART 6.12 reads a geom's pose after dGeomSetBody has given it up): a copy would take its place.
 class AtIdentity {
  public:
-  explicit AtIdentity(dGeomID trimesh)
-      : copied_(!is_at_identity(trimesh)),
-        id_(copied_ ? dCreateTriMesh(nullptr, dGeomTriMeshGetData(trimesh), nullptr, nullptr, nullptr) : trimesh) {}
+  explicit AtIdentity(dGeomID trimesh) : copied_(!is_at_identity(trimesh)), id_(trimesh) {
+    is_reading = true;
+    if (copied_) id_ = dCreateTriMesh(nullptr, dGeomTriMeshGetData(trimesh), nullptr, nullptr, nullptr);
+  }
   AtIdentity(const AtIdentity&) = delete;
   AtIdentity& operator=(const AtIdentity&) = delete;
   ~AtIdentity() {
     if (copied_) dGeomDestroy(id_);
+    is_reading = false;
   }
   [[nodiscard]] dGeomID id() const noexcept { return id_; }
 
@@ -53,7 +59,7 @@ class AtIdentity {
   dGeomID id_;
 };
 
-// Equal corners become one vertex again.
+// Equal corners become one vertex again. What is not a number is in no order, and stays what it is, to be refused.
 IndexedMesh read_triangles(dGeomID trimesh) {
   const AtIdentity source(trimesh);
   IndexedMesh result;
@@ -65,10 +71,11 @@ IndexedMesh read_triangles(dGeomID trimesh) {
     dGeomTriMeshGetTriangle(source.id(), t, &corners[0], &corners[1], &corners[2]);
     mesh::Triangle triangle;
     for (std::size_t c = 0; c < 3; ++c) {
-      const std::array<double, 3> key = {corners[c][0], corners[c][1], corners[c][2]};
-      const auto [place, added] = index_of.try_emplace(key, static_cast<std::uint32_t>(result.vertices.size()));
-      if (added) result.vertices.emplace_back(key[0], key[1], key[2]);
-      triangle[c] = place->second;
+      const Vec3 corner = vector_of(corners[c]);
+      const auto next = static_cast<std::uint32_t>(result.vertices.size());
+      triangle[c] =
+          corner.allFinite() ? index_of.try_emplace({corner.x(), corner.y(), corner.z()}, next).first->second : next;
+      if (triangle[c] == next) result.vertices.push_back(corner);
     }
     result.triangles.push_back(triangle);
   }
@@ -80,34 +87,51 @@ bool has_triangles(dGeomID geom) noexcept {
          dGeomTriMeshGetTriangleCount(geom) > 0;
 }
 
+using Known = std::map<dTriMeshDataID, std::weak_ptr<const PreparedMesh>>;
+
 // Geoms of the same data share one hierarchy. The data's address alone says little: it may be that of other data now.
-std::shared_ptr<const PreparedMesh> prepared_like_before(
-    dTriMeshDataID id, const IndexedMesh& mesh, int volume,
-    std::map<dTriMeshDataID, std::weak_ptr<const PreparedMesh>>& known) {
-  const auto found = known.find(id);
+std::shared_ptr<const PreparedMesh> prepared_like_before(dGeomID trimesh, int volume, const Known& known) {
+  const auto found = known.find(dGeomTriMeshGetData(trimesh));
   if (found == known.end()) return nullptr;
   std::shared_ptr<const PreparedMesh> prepared = found->second.lock();
   if (prepared == nullptr || static_cast<int>(prepared->shape->volume()) != volume) return nullptr;
-  const bool same = std::ranges::equal(prepared->mesh().vertices(), mesh.vertices) &&
-                    std::ranges::equal(prepared->mesh().triangles(), mesh.triangles);
-  return same ? prepared : nullptr;
+  const std::size_t count = prepared->mesh().triangles().size();
+  if (dGeomTriMeshGetTriangleCount(trimesh) != static_cast<int>(count)) return nullptr;
+  const AtIdentity source(trimesh);
+  for (std::uint32_t t = 0; t < count; ++t) {
+    std::array<dVector3, 3> now;
+    dGeomTriMeshGetTriangle(source.id(), static_cast<int>(t), &now[0], &now[1], &now[2]);
+    const std::array<Vec3, 3> before = prepared->corners(t);
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (before[c] != vector_of(now[c])) return nullptr;
+    }
+  }
+  return prepared;
 }
 
 std::shared_ptr<const PreparedMesh> prepare(dGeomID trimesh, const oddsBuildParams& params) {
   static std::mutex mutex;
-  static std::map<dTriMeshDataID, std::weak_ptr<const PreparedMesh>> known;
+  static Known known;
   const std::lock_guard lock(mutex);
   std::erase_if(known, [](const auto& entry) { return entry.second.expired(); });
-  const dTriMeshDataID id = dGeomTriMeshGetData(trimesh);
+  if (auto prepared = prepared_like_before(trimesh, params.volume, known)) return prepared;
   IndexedMesh mesh = read_triangles(trimesh);
-  if (auto prepared = prepared_like_before(id, mesh, params.volume, known)) return prepared;
   oddsMeshData data;
   if (build_mesh_data(&data, std::move(mesh.vertices), std::move(mesh.triangles), &params) == 0) return nullptr;
-  known[id] = data.prepared;
+  known[dGeomTriMeshGetData(trimesh)] = data.prepared;
   return data.prepared;
 }
 
+// So that not every collision tries to read it again.
+void note_unreadable(dGeomID trimesh, bool replace) {
+  auto partner = std::make_unique<Partner>();
+  partner->geom = trimesh;
+  static_cast<void>(replace ? partner_table().put(std::move(partner)) : partner_table().put_new(std::move(partner)));
+}
+
 }  // namespace
+
+bool is_reading_trimesh() noexcept { return is_reading; }
 
 Partner* adopt_trimesh(dGeomID trimesh, const oddsBuildParams* params, bool replace) noexcept {
   if (!has_triangles(trimesh)) {
@@ -118,10 +142,17 @@ Partner* adopt_trimesh(dGeomID trimesh, const oddsBuildParams* params, bool repl
     oddsBuildParams defaults;
     oddsBuildParamsInit(&defaults);
     defaults.name = "dTriMesh";
+    const std::atomic<std::uint64_t>& changes = changes_of(dGeomTriMeshGetData(trimesh));
+    const std::uint64_t changes_seen = changes.load(std::memory_order_relaxed);
     auto prepared = prepare(trimesh, params != nullptr ? *params : defaults);
-    if (prepared == nullptr) return nullptr;
+    if (prepared == nullptr) {
+      note_unreadable(trimesh, replace);
+      return nullptr;
+    }
     std::unique_ptr<Partner> partner = make_partner(trimesh, std::move(prepared));
     partner->trimesh_data = dGeomTriMeshGetData(trimesh);
+    partner->changes = &changes;
+    partner->changes_seen = changes_seen;
     return replace ? partner_table().put(std::move(partner)) : partner_table().put_new(std::move(partner));
   } catch (const std::exception& error) {
     set_last_error(std::string_view(error.what()));

@@ -56,7 +56,8 @@ dGeomID inside_transforms(dGeomID geom) noexcept {
 GeomData* prepared_data(dGeomID geom, dGeomID other) noexcept {
   if (dGeomGetClass(geom) == oddsGetClass()) return &own_data(geom);
   if (Partner* known = partner_table().find(geom)) {
-    if (known->mesh == nullptr || is_unchanged(*known)) return known->mesh.get();
+    if (known->convex != nullptr) return nullptr;
+    if (known->mesh != nullptr && is_unchanged(*known)) return known->mesh.get();
   }
   if (dGeomGetClass(geom) != dTriMeshClass) return nullptr;
   oddsBuildParams params;
@@ -75,16 +76,13 @@ PairTable& pair_table() noexcept {
   return only;
 }
 
-std::size_t PairTable::bucket_of(const GeomData& a, const GeomData& b) noexcept {
-  return static_cast<std::size_t>(hash_of_pair(a.number, b.number) % bucket_count);
+// Numbers count geoms: no process makes 2^32 of them.
+std::uint64_t PairTable::key_of(const GeomData& a, const GeomData& b) noexcept {
+  return mixed(a.number << 32U | (b.number & 0xffffffffU));
 }
 
 PairEntry* PairTable::find(const GeomData& x, const GeomData& y) const noexcept {
-  const GeomData& a = x.number < y.number ? x : y;
-  const GeomData& b = x.number < y.number ? y : x;
-  PairEntry* entry = buckets_[bucket_of(a, b)].load(std::memory_order_acquire);
-  while (entry != nullptr && (entry->a != &a || entry->b != &b)) entry = entry->next.load(std::memory_order_acquire);
-  return entry;
+  return x.number < y.number ? entries_.find(key_of(x, y)) : entries_.find(key_of(y, x));
 }
 
 PairTable::Made PairTable::prepare(GeomData& x, GeomData& y, bool warmed) noexcept {
@@ -100,13 +98,14 @@ PairTable::Made PairTable::prepare(GeomData& x, GeomData& y, bool warmed) noexce
     GeomData& a = x.number < y.number ? x : y;
     GeomData& b = x.number < y.number ? y : x;
     std::unique_ptr<PairEntry> entry = make_entry(a, b, warmed);
-    a.pairs.reserve(a.pairs.size() + 1);
-    b.pairs.reserve(b.pairs.size() + 1);
+    const std::uint64_t key = key_of(a, b);
+    entries_.reserve(key);
+    for (GeomData* geom : {&a, &b}) {
+      if (geom->pairs.size() == geom->pairs.capacity()) geom->pairs.reserve(2 * geom->pairs.size() + 4);
+    }
     a.pairs.push_back(entry.get());
     b.pairs.push_back(entry.get());
-    Bucket& bucket = buckets_[bucket_of(a, b)];
-    entry->next.store(bucket.load(std::memory_order_relaxed), std::memory_order_relaxed);
-    bucket.store(entry.get(), std::memory_order_release);
+    entries_.insert(key, entry.get());
     count(statistics().live_pairs);
     return {entry.release(), true};
   } catch (const std::exception& error) {
@@ -115,17 +114,6 @@ PairTable::Made PairTable::prepare(GeomData& x, GeomData& y, bool warmed) noexce
     set_last_error("preparing a pair failed");
   }
   return {};
-}
-
-void PairTable::remove_from_bucket(PairEntry& entry) noexcept {
-  Bucket* link = &buckets_[bucket_of(*entry.a, *entry.b)];
-  while (PairEntry* here = link->load(std::memory_order_relaxed)) {
-    if (here == &entry) {
-      link->store(here->next.load(std::memory_order_relaxed), std::memory_order_release);
-      return;
-    }
-    link = &here->next;
-  }
 }
 
 const PairEntry* answered_pair(dGeomID g1, dGeomID g2) noexcept {
@@ -140,7 +128,7 @@ void PairTable::forget(GeomData& geom) noexcept {
   try {
     const std::lock_guard lock(writers_);
     for (PairEntry* entry : geom.pairs) {
-      remove_from_bucket(*entry);
+      entries_.remove(key_of(*entry->a, *entry->b));
       GeomData& other = entry->a == &geom ? *entry->b : *entry->a;
       if (&other != &geom) std::erase(other.pairs, entry);
       delete entry;

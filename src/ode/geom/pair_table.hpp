@@ -1,7 +1,6 @@
 // Workspaces of pairs of geoms, found without a lock by the unordered pair of geom numbers.
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <cstdint>
 #include <mutex>
@@ -10,6 +9,7 @@
 #include "odds/query/pair.hpp"
 #include "ode/geom/geom_data.hpp"
 #include "ode/geom/held_contacts.hpp"
+#include "ode/geom/linked_table.hpp"
 
 namespace odds::ode {
 
@@ -27,12 +27,11 @@ struct PairEntry {
   math::Pose met_at;                        ///< B in A in the last decided hit
   std::atomic<std::uint64_t> asked_in{0};   ///< the last broad phase that asked; 0: none
   std::atomic<bool> busy{false};            ///< in use by a thread
-  std::atomic<PairEntry*> next{nullptr};    ///< in its bucket
 };
 
-/// A fixed number of buckets with chains. `find` runs in the loop, wait-free, also while another thread inserts.
-/// `forget` must not run while another thread collides pairs of that geom (destroying a geom in use is the caller's
-/// error in ODE too).
+/// `find` runs in the loop, wait-free, also while another thread prepares or forgets pairs of other geoms. `forget`
+/// must not run while another thread collides pairs of that geom (destroying a geom in use is the caller's error in ODE
+/// too).
 class PairTable {
  public:
   [[nodiscard]] PairEntry* find(const GeomData& x, const GeomData& y) const noexcept;
@@ -49,13 +48,9 @@ class PairTable {
   void forget(GeomData& geom) noexcept;
 
  private:
-  static constexpr std::size_t bucket_count = 8192;
-  using Bucket = std::atomic<PairEntry*>;
+  [[nodiscard]] static std::uint64_t key_of(const GeomData& a, const GeomData& b) noexcept;
 
-  [[nodiscard]] static std::size_t bucket_of(const GeomData& a, const GeomData& b) noexcept;
-  void remove_from_bucket(PairEntry& entry) noexcept;
-
-  std::array<Bucket, bucket_count> buckets_ = {};
+  LinkedTable<PairEntry, 8192> entries_;
   std::mutex writers_;
 };
 

@@ -2,12 +2,14 @@
 #include "ode/geom/partners.hpp"
 
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <utility>
 
 #include "ode/geom/pair_table.hpp"
 #include "ode/last_error.hpp"
 #include "ode/mesh/mesh_data.hpp"
+#include "ode/pair_hash.hpp"
 #include "ode/statistics.hpp"
 #include "ode/vectors.hpp"
 
@@ -33,43 +35,36 @@ PartnerTable& partner_table() noexcept {
   return only;
 }
 
-std::size_t PartnerTable::bucket_of(dGeomID geom) noexcept {
-  auto key = static_cast<std::uint64_t>(reinterpret_cast<std::uintptr_t>(geom));
-  key = (key >> 4) * 0x9e3779b97f4a7c15u;
-  return static_cast<std::size_t>((key >> 40) % bucket_count);
+std::uint64_t PartnerTable::key_of(dGeomID geom) noexcept {
+  return mixed(static_cast<std::uint64_t>(reinterpret_cast<std::uintptr_t>(geom)));
 }
 
-Partner* PartnerTable::find(dGeomID geom) const noexcept {
-  Partner* partner = buckets_[bucket_of(geom)].load(std::memory_order_acquire);
-  while (partner != nullptr && partner->geom != geom) partner = partner->next.load(std::memory_order_acquire);
-  return partner;
+Partner* PartnerTable::find(dGeomID geom) const noexcept { return partners_.find(key_of(geom)); }
+
+void PartnerTable::free(Partner* partner) noexcept {
+  if (partner == nullptr) return;
+  if (partner->mesh != nullptr) pair_table().forget(*partner->mesh);
+  delete partner;
+  statistics().live_partners.fetch_sub(1, std::memory_order_relaxed);
 }
 
 bool PartnerTable::remove(dGeomID geom) noexcept {
-  Bucket* link = &buckets_[bucket_of(geom)];
-  while (Partner* here = link->load(std::memory_order_relaxed)) {
-    if (here->geom == geom) {
-      link->store(here->next.load(std::memory_order_relaxed), std::memory_order_release);
-      if (here->mesh != nullptr) pair_table().forget(*here->mesh);
-      delete here;
-      statistics().live_partners.fetch_sub(1, std::memory_order_relaxed);
-      return true;
-    }
-    link = &here->next;
-  }
-  return false;
+  Partner* const partner = partners_.remove(key_of(geom));
+  free(partner);
+  return partner != nullptr;
 }
 
-Partner* PartnerTable::insert(std::unique_ptr<Partner> partner) noexcept {
-  Bucket& bucket = buckets_[bucket_of(partner->geom)];
-  partner->next.store(bucket.load(std::memory_order_relaxed), std::memory_order_relaxed);
-  bucket.store(partner.get(), std::memory_order_release);
+Partner* PartnerTable::insert(std::unique_ptr<Partner> partner) {
+  const std::uint64_t key = key_of(partner->geom);
+  partners_.reserve(key);
+  partners_.insert(key, partner.get());
   count(statistics().live_partners);
   return partner.release();
 }
 
 Partner* PartnerTable::put(std::unique_ptr<Partner> partner) {
   const std::lock_guard lock(writers_);
+  partners_.reserve(key_of(partner->geom));  // what is known stays if there is no memory
   remove(partner->geom);
   return insert(std::move(partner));
 }
@@ -93,20 +88,47 @@ bool PartnerTable::forget(dGeomID geom) noexcept {
 void PartnerTable::clear() noexcept {
   try {
     const std::lock_guard lock(writers_);
-    for (Bucket& bucket : buckets_) {
-      while (const Partner* first = bucket.load(std::memory_order_relaxed)) remove(first->geom);
-    }
+    partners_.remove_all(&PartnerTable::free);
   } catch (...) {
     count(statistics().caught);
   }
 }
 
-void PartnerTable::note_deformed(dTriMeshDataID data) noexcept {
-  for (const Bucket& bucket : buckets_) {
-    for (Partner* here = bucket.load(std::memory_order_acquire); here != nullptr;
-         here = here->next.load(std::memory_order_acquire)) {
-      if (here->trimesh_data == data) here->deformed.store(true, std::memory_order_relaxed);
-    }
+namespace {
+
+// One counter for each address that data ever had: a few bytes, which geoms point to.
+struct Changes {
+  LinkedTable<std::atomic<std::uint64_t>, 1024> of_data;
+  std::deque<std::atomic<std::uint64_t>> all;
+  std::mutex writers;
+};
+
+Changes& changes() noexcept {
+  static Changes only;
+  return only;
+}
+
+std::uint64_t key_of_data(dTriMeshDataID data) noexcept {
+  return mixed(static_cast<std::uint64_t>(reinterpret_cast<std::uintptr_t>(data)));
+}
+
+}  // namespace
+
+std::atomic<std::uint64_t>& changes_of(dTriMeshDataID data) {
+  Changes& known = changes();
+  const std::lock_guard lock(known.writers);
+  const std::uint64_t key = key_of_data(data);
+  if (std::atomic<std::uint64_t>* const counter = known.of_data.find(key)) return *counter;
+  known.of_data.reserve(key);
+  std::atomic<std::uint64_t>& counter = known.all.emplace_back(0);
+  known.of_data.insert(key, &counter);
+  return counter;
+}
+
+void note_changed(dTriMeshDataID data) noexcept {
+  if (data == nullptr) return;
+  if (std::atomic<std::uint64_t>* const counter = changes().of_data.find(key_of_data(data))) {
+    counter->fetch_add(1, std::memory_order_relaxed);
   }
 }
 
@@ -120,7 +142,32 @@ std::unique_ptr<Partner> make_partner(dGeomID geom, std::shared_ptr<const Prepar
   return partner;
 }
 
+namespace {
+
+// Whether a convex geom still is what was registered: ODE's box around it is that around the registered points, placed
+// by ODE's own pose, which need not be as rigid as `world_pose` makes it.
+bool has_bounds_of(const ConvexShape& shape, dGeomID geom) noexcept {
+  if (!world_pose(geom)) return true;  // the collision itself answers bad poses
+  const Vec3 place = vector_of(dGeomGetPosition(geom));
+  const Mat3 turn = matrix_of(dGeomGetRotation(geom));
+  dReal aabb[6];
+  dGeomGetAABB(geom, aabb);
+  const double tolerance = 1e-6 * shape.box_half_extents().norm() + 1e-12 * place.cwiseAbs().maxCoeff();
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 along = turn.row(axis).transpose();
+    const double lower = place[axis] - shape.reach(-along);
+    const double upper = place[axis] + shape.reach(along);
+    const bool same =
+        std::abs(aabb[2 * axis] - lower) <= tolerance && std::abs(aabb[2 * axis + 1] - upper) <= tolerance;
+    if (!same) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
 bool is_unchanged(Partner& partner) noexcept {
+  if (partner.convex != nullptr) return has_bounds_of(*partner.convex, partner.geom);
   if (partner.trimesh_data == nullptr) return true;
   const mesh::TriangleMesh& mesh = partner.mesh->mesh->mesh();
   const std::size_t triangles = mesh.triangles().size();
@@ -128,6 +175,7 @@ bool is_unchanged(Partner& partner) noexcept {
   if (dGeomTriMeshGetTriangleCount(partner.geom) != static_cast<int>(triangles)) return false;
   // A mesh with one moved corner must not answer from what it was wherever the compared triangle is another's.
   if (partner.deformed.load(std::memory_order_relaxed)) return false;
+  if (partner.changes->load(std::memory_order_relaxed) != partner.changes_seen) return false;
   if (!world_pose(partner.geom)) return true;  // the collision itself answers bad poses
   const std::uint32_t number =
       partner.next_check.fetch_add(1, std::memory_order_relaxed) % static_cast<std::uint32_t>(triangles);

@@ -1,7 +1,6 @@
 // What the library keeps about geoms of ODE's own classes: the mesh that stands in for one, or its convex shape.
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>
@@ -9,22 +8,25 @@
 
 #include "ode/geom/convex_shape.hpp"
 #include "ode/geom/geom_data.hpp"
+#include "ode/geom/linked_table.hpp"
 
 namespace odds::ode {
 
 struct Partner {
   dGeomID geom = nullptr;
-  std::unique_ptr<GeomData> mesh;             ///< stands in for the geom; null for a convex shape
-  std::shared_ptr<const ConvexShape> convex;  ///< null for a mesh
+  std::unique_ptr<GeomData> mesh;             ///< stands in for the geom
+  std::shared_ptr<const ConvexShape> convex;  ///< null for a mesh; of a dTriMesh that cannot be read both are
   dTriMeshDataID trimesh_data = nullptr;      ///< what `mesh` was read from, if it was read from the geom
-  bool placeable = true;                      ///< false: a geom without a pose (only heightfields can be)
-  std::atomic<std::uint32_t> next_check{0};   ///< triangle to compare with ODE's at the next collision
-  std::atomic<bool> deformed{false};          ///< one was found elsewhere, or the client has said so
-  std::atomic<Partner*> next{nullptr};        ///< in its bucket
+  /// How often the client has said that it changed that data, and how often it had when it was read; null: not read.
+  const std::atomic<std::uint64_t>* changes = nullptr;
+  std::uint64_t changes_seen = 0;
+  bool placeable = true;                     ///< false: a geom without a pose (only heightfields can be)
+  std::atomic<std::uint32_t> next_check{0};  ///< triangle to compare with ODE's at the next collision
+  std::atomic<bool> deformed{false};         ///< one was found elsewhere
 };
 
-/// `find` runs in the loop, wait-free, also while another thread inserts. `put` of a known geom, `forget` and `clear`
-/// must not run while another thread collides that geom.
+/// `find` runs in the loop, wait-free, also while another thread puts or forgets other geoms. `put` of a known geom,
+/// `forget` and `clear` must not run while another thread collides that geom.
 class PartnerTable {
  public:
   [[nodiscard]] Partner* find(dGeomID geom) const noexcept;
@@ -35,21 +37,21 @@ class PartnerTable {
   /// False if nothing is known about the geom.
   bool forget(dGeomID geom) noexcept;
   void clear() noexcept;
-  /// The vertices of this data were moved: no partner that was read from it answers any more until it is read again.
-  /// Not while another thread collides.
-  void note_deformed(dTriMeshDataID data) noexcept;
 
  private:
-  static constexpr std::size_t bucket_count = 4096;
-  using Bucket = std::atomic<Partner*>;
-
-  [[nodiscard]] static std::size_t bucket_of(dGeomID geom) noexcept;
+  [[nodiscard]] static std::uint64_t key_of(dGeomID geom) noexcept;
   bool remove(dGeomID geom) noexcept;
-  Partner* insert(std::unique_ptr<Partner> partner) noexcept;
+  static void free(Partner* partner) noexcept;
+  Partner* insert(std::unique_ptr<Partner> partner);
 
-  std::array<Bucket, bucket_count> buckets_ = {};
+  LinkedTable<Partner, 4096> partners_;
   std::mutex writers_;
 };
+
+/// The counter of what a client says of a dTriMeshData, for all geoms of it; made at the first call. May throw.
+[[nodiscard]] std::atomic<std::uint64_t>& changes_of(dTriMeshDataID data);
+/// The client has changed this data, or is about to build it: no geom that was read from it is what it was.
+void note_changed(dTriMeshDataID data) noexcept;
 
 [[nodiscard]] PartnerTable& partner_table() noexcept;
 
@@ -62,10 +64,13 @@ class PartnerTable {
 /// A partner with a mesh and these settings, not yet in the table. May throw std::bad_alloc.
 [[nodiscard]] std::unique_ptr<Partner> make_partner(dGeomID geom, std::shared_ptr<const PreparedMesh> mesh);
 
-/// Whether the geom is still the one that was read: the same data, as many triangles, and the next of them where it
-/// was, and every one that was compared before. A geom that was destroyed, and another that was made at its address, or
-/// a mesh that was deformed, are found out so.
+/// Whether the geom is still the one that was read: the same data, which nobody has said was changed, as many
+/// triangles, and the next of them where it was, and every one that was compared before; of a convex, the same box. A
+/// geom that was destroyed, and another that was made at its address, or a mesh that was deformed, are found out so.
 [[nodiscard]] bool is_unchanged(Partner& partner) noexcept;
+
+/// Whether this thread makes a dTriMesh of its own now, to read another one.
+[[nodiscard]] bool is_reading_trimesh() noexcept;
 
 /// Reads a dTriMesh, builds its hierarchy (or shares that of another geom of the same data), and puts it into the
 /// table, in the place of what is known about the geom, or only if nothing is. Null with the last error set if that

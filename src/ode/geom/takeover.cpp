@@ -42,8 +42,11 @@ bool can_answer(dGeomID o1, dGeomID o2) noexcept {
     return entry == nullptr || entry->pair.has_value();  // else: unlike volumes, or no memory
   }
   if (other != dConvexClass) return true;
-  const Partner* convex = partner_table().find(o2);
-  return convex != nullptr && convex->convex != nullptr;
+  Partner* const convex = partner_table().find(o2);
+  if (convex == nullptr || convex->convex == nullptr) return false;
+  if (is_unchanged(*convex)) return true;
+  count(statistics().changed_partners);
+  return false;
 }
 
 dColliderFn* our_collider(int other) noexcept { return other == dTriMeshClass ? &collide_mesh : collider_for(other); }
