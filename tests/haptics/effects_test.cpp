@@ -312,10 +312,11 @@ TEST(Effects, EventsAloneMakeNoContactsAndTellBeginAndEnd) {
 // ODE gives the two bodies of a pair in an order that changes as they move.
 TEST(Effects, EventsOfAPileBeginAndEndByTurns) {
   std::string bodies;
-  for (int i = 0; i < 12; ++i) {
-    bodies += moving("ball" + std::to_string(i), "ball", 0.003 * (i % 5) - 0.005 * (i % 3), 0.03 + 0.036 * i);
+  for (int i = 0; i < 14; ++i) {
+    bodies += moving("ball" + std::to_string(i), "ball", 0.004 * (i % 5) - 0.007 * (i % 3), 0.03 + 0.045 * i);
   }
-  const RunOutcome outcome = simulate(on_floor(bodies + gravity + "[effects.events]\n", 1.5))->run();
+  const std::string effects = "[effects.contact]\n[effects.events]\n";
+  const RunOutcome outcome = simulate(on_floor(bodies + gravity + effects, 1.0))->run();
   std::map<std::pair<std::uint32_t, std::uint32_t>, bool> touching;
   for (const haptics::ContactEvent& event : outcome.events) {
     bool& before = touching[std::minmax(event.a.index, event.b.index)];
