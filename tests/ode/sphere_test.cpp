@@ -257,6 +257,27 @@ TEST_F(SphereTest, InACavityAnEarlyEndPushesNothingThroughTheWalls) {
   }
 }
 
+// Nor is a ball whose middle is under a face pushed farther in.
+TEST_F(SphereTest, UnderAFaceAnEarlyEndPushesNothingIn) {
+  const dGeomID mesh = mesh_geom(box_shape(2.0, 2.0, 2.0, 24), space);
+  const std::array<dGeomID, 2> bodies = {dCreateSphere(space, 0.1), dCreateCapsule(space, 0.1, 0.05)};
+  std::uniform_real_distribution<double> uniform(-0.8, 0.8);
+  int found = 0;
+  for (const unsigned long units : {10UL, 20UL, 50UL, 100UL, 1000UL}) {
+    ASSERT_EQ(dGeomOddsMeshSetWorkBudget(mesh, units), 1);
+    for (int i = 0; i < 500; ++i) {
+      for (const dGeomID body : bodies) {
+        dGeomSetPosition(body, uniform(random), uniform(random), 0.97);
+        for (const dContactGeom& contact : collide(body, mesh)) {
+          ++found;
+          ASSERT_GE(contact.normal[2], -1e-9) << units << " units, class " << dGeomGetClass(body);
+        }
+      }
+    }
+  }
+  EXPECT_GT(found, 900);
+}
+
 TEST_F(SphereTest, AnExhaustedBudgetIsCountedAndSound) {
   const dGeomID mesh = mesh_geom(sphere_shape(1, 20), space);
   const dGeomID sphere = dCreateSphere(space, 0.5);

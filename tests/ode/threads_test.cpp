@@ -112,15 +112,16 @@ TEST_F(Threads, OtherTriMeshesComeAndGo) {
   std::vector<dGeomID> others;
   for (int i = 0; i < 200; ++i) others.push_back(dCreateTriMesh(nullptr, stay[0]->data, nullptr, nullptr, nullptr));
   std::atomic<bool> stop{false};
+  std::atomic<int> turns{0};
   std::thread other([&] {
     dAllocateODEDataForThread(static_cast<unsigned>(dAllocateMaskAll));
-    while (!stop.load()) {
+    for (; !stop.load(); ++turns) {
       for (const dGeomID geom : others) oddsPrepareTriMesh(geom, nullptr);
       for (const dGeomID geom : others) oddsForgetGeom(geom);
     }
   });
   std::size_t missed = 0;
-  for (int round = 0; round < 200; ++round) {
+  for (int round = 0; round < 200 || turns.load() < 3; ++round) {
     for (const auto& trimesh : stay) missed += collide(mesh, trimesh->geom).empty() ? 1 : 0;
   }
   stop = true;

@@ -151,7 +151,8 @@ void add_beside(const PreparedMesh& mesh, const Capsule& capsule, const CapsuleP
   const Vec3 probe = places.count > 0 ? places.all[0].on_axis : capsule.middle();
   if (mesh.closed && in_bounds(mesh, probe)) {
     const auto nearest = nearest_surface(mesh, probe, std::numeric_limits<double>::infinity(), limit.units);
-    if (nearest && nearest->inside) {
+    if (!nearest) return;  // the search was cut short: nobody knows on which side of the surface it is
+    if (nearest->inside) {
       add_ends_behind(capsule, nearest->point, nearest->outward, nearest->triangle, contacts);
       return;
     }

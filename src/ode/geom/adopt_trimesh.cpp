@@ -123,10 +123,11 @@ std::shared_ptr<const PreparedMesh> prepare(dGeomID trimesh, const oddsBuildPara
 }
 
 // So that not every collision tries to read it again.
-void note_unreadable(dGeomID trimesh, bool replace) {
+void note_unreadable(dGeomID trimesh) {
   auto partner = std::make_unique<Partner>();
   partner->geom = trimesh;
-  static_cast<void>(replace ? partner_table().put(std::move(partner)) : partner_table().put_new(std::move(partner)));
+  partner->trimesh_data = dGeomTriMeshGetData(trimesh);
+  partner_table().put_new(std::move(partner));
 }
 
 }  // namespace
@@ -146,7 +147,7 @@ Partner* adopt_trimesh(dGeomID trimesh, const oddsBuildParams* params, bool repl
     const std::uint64_t changes_seen = changes.load(std::memory_order_relaxed);
     auto prepared = prepare(trimesh, params != nullptr ? *params : defaults);
     if (prepared == nullptr) {
-      note_unreadable(trimesh, replace);
+      if (!replace) note_unreadable(trimesh);  // else the caller hears of it, and what is known stays
       return nullptr;
     }
     std::unique_ptr<Partner> partner = make_partner(trimesh, std::move(prepared));

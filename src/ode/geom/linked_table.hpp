@@ -10,7 +10,7 @@
 
 namespace odds::ode {
 
-/// Values by a number that is not 0, whose lower bits are as good as random. `find` is wait-free, and may run while
+/// Values by a number that is not 0, whose lower bits are as good as random. `find` takes no lock, and may run while
 /// another thread inserts or removes other values: a link that is taken out keeps its place in memory, and what it
 /// leads to, so that who stands on it comes to the end of the chain. It is used again in the same chain only, whose
 /// beginning whoever stands on it then comes to. Writers take turns by a lock of the owner's. Does not own the values.

@@ -71,8 +71,9 @@ GeomData* prepared_data(dGeomID geom, dGeomID other) noexcept {
 
 }  // namespace
 
+// Never destroyed: see partner_table.
 PairTable& pair_table() noexcept {
-  static PairTable only;
+  static PairTable& only = *new PairTable;
   return only;
 }
 

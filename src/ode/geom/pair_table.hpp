@@ -29,7 +29,7 @@ struct PairEntry {
   std::atomic<bool> busy{false};            ///< in use by a thread
 };
 
-/// `find` runs in the loop, wait-free, also while another thread prepares or forgets pairs of other geoms. `forget`
+/// `find` runs in the loop, without a lock, also while another thread prepares or forgets pairs of other geoms. `forget`
 /// must not run while another thread collides pairs of that geom (destroying a geom in use is the caller's error in ODE
 /// too).
 class PairTable {

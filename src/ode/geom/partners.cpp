@@ -30,8 +30,9 @@ Settings& partner_settings() noexcept {
   return only;
 }
 
+// Never destroyed, like the other tables: clients may destroy geoms after all that is static here would be gone.
 PartnerTable& partner_table() noexcept {
-  static PartnerTable only;
+  static PartnerTable& only = *new PartnerTable;
   return only;
 }
 
@@ -104,7 +105,7 @@ struct Changes {
 };
 
 Changes& changes() noexcept {
-  static Changes only;
+  static Changes& only = *new Changes;
   return only;
 }
 
@@ -206,7 +207,11 @@ GeomData* mesh_of_partner(dGeomID geom, volume::Kind volume) noexcept {
     partner = adopt_trimesh(geom, &params, false);
     if (partner != nullptr) count(statistics().lazy_partners);
   }
-  if (partner == nullptr || partner->mesh == nullptr) return nullptr;
+  if (partner == nullptr) return nullptr;
+  if (partner->mesh == nullptr) {  // it could not be read
+    if (partner->trimesh_data != dGeomTriMeshGetData(geom)) count(statistics().changed_partners);
+    return nullptr;
+  }
   if (is_unchanged(*partner)) return partner->mesh.get();
   count(statistics().changed_partners);
   return nullptr;

@@ -25,7 +25,7 @@ struct Partner {
   std::atomic<bool> deformed{false};         ///< one was found elsewhere
 };
 
-/// `find` runs in the loop, wait-free, also while another thread puts or forgets other geoms. `put` of a known geom,
+/// `find` runs in the loop, without a lock, also while another thread puts or forgets other geoms. `put` of a known geom,
 /// `forget` and `clear` must not run while another thread collides that geom.
 class PartnerTable {
  public:
@@ -50,7 +50,7 @@ class PartnerTable {
 
 /// The counter of what a client says of a dTriMeshData, for all geoms of it; made at the first call. May throw.
 [[nodiscard]] std::atomic<std::uint64_t>& changes_of(dTriMeshDataID data);
-/// The client has changed this data, or is about to build it: no geom that was read from it is what it was.
+/// The client has changed this data: no geom that was read from it is what it was.
 void note_changed(dTriMeshDataID data) noexcept;
 
 [[nodiscard]] PartnerTable& partner_table() noexcept;

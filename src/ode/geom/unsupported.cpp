@@ -16,7 +16,8 @@ struct Remedy {
 };
 
 Remedy remedy_for(dGeomID geom) noexcept {
-  const bool known = partner_table().find(geom) != nullptr;
+  const Partner* const partner = partner_table().find(geom);
+  const bool known = partner != nullptr && (partner->mesh != nullptr || partner->convex != nullptr);
   switch (dGeomGetClass(geom)) {
     case dConvexClass:
       return {"convex", known ? "it is not the one that was registered; call oddsForgetGeom before dGeomDestroy, and "
@@ -27,7 +28,7 @@ Remedy remedy_for(dGeomID geom) noexcept {
     case dTriMeshClass:
       return {"dTriMesh", known ? "it changed since it was read; call oddsPrepareTriMesh again, and oddsForgetGeom "
                                   "before dGeomDestroy"
-                                : oddsGetLastError()};
+                                : "it cannot be read, and oddsPrepareTriMesh says why"};
     default:
       return {"other", "use another class"};
   }

@@ -57,9 +57,10 @@ std::optional<NearestSurface> nearest_surface(const PreparedMesh& mesh, const Ve
   nearest.point = closest_point(mesh.corners(triangle), point);
   nearest.distance = (nearest.point - point).norm();
   nearest.outward = pseudo_normal(mesh, nearest.point, triangle);
+  nearest.inside = mesh.closed && nearest.outward.dot(point - nearest.point) < 0.0;
   // Where the search was cut short there may be nearer triangles, and of one that is not the nearest the side tells
   // nothing: a ball in a cavity would be pushed out through its walls.
-  nearest.inside = mesh.closed && units != 0 && nearest.outward.dot(point - nearest.point) < 0.0;
+  if (nearest.inside && units == 0) return std::nullopt;
   return nearest;
 }
 
