@@ -98,6 +98,13 @@ void after_convex(dGeomID convex, const dReal* points, unsigned point_count, con
   oddsRegisterConvex(convex, points, point_count, polygons, face_count);
 }
 
+// Calls a function of ODE that changes the data of meshes: geoms of it are other meshes then.
+template <class... Rest>
+void change(void (*next)(dTriMeshDataID, Rest...), dTriMeshDataID data, Rest... rest) {
+  next(data, rest...);
+  ode::note_changed(data);
+}
+
 }  // namespace
 }  // namespace odds::preload
 
@@ -151,51 +158,44 @@ void dGeomSetConvex(dGeomID geom, const dReal* planes, unsigned int plane_count,
 // would have to be built anew, inside the loop.
 void dGeomTriMeshDataUpdate(dTriMeshDataID data) {
   static const auto next = real<decltype(dGeomTriMeshDataUpdate)>("dGeomTriMeshDataUpdate");
-  next(data);
-  odds::ode::note_changed(data);
+  odds::preload::change(next, data);
 }
 
-// So does a program that builds data anew: geoms of it are other meshes then.
+// The same of a program that builds data anew.
 void dGeomTriMeshDataBuildSingle(dTriMeshDataID data, const void* vertices, int vertex_stride, int vertex_count,
                                  const void* indices, int index_count, int stride) {
   static const auto next = real<decltype(dGeomTriMeshDataBuildSingle)>("dGeomTriMeshDataBuildSingle");
-  next(data, vertices, vertex_stride, vertex_count, indices, index_count, stride);
-  odds::ode::note_changed(data);
+  odds::preload::change(next, data, vertices, vertex_stride, vertex_count, indices, index_count, stride);
 }
 
 void dGeomTriMeshDataBuildSingle1(dTriMeshDataID data, const void* vertices, int vertex_stride, int vertex_count,
                                   const void* indices, int index_count, int stride, const void* normals) {
   static const auto next = real<decltype(dGeomTriMeshDataBuildSingle1)>("dGeomTriMeshDataBuildSingle1");
-  next(data, vertices, vertex_stride, vertex_count, indices, index_count, stride, normals);
-  odds::ode::note_changed(data);
+  odds::preload::change(next, data, vertices, vertex_stride, vertex_count, indices, index_count, stride, normals);
 }
 
 void dGeomTriMeshDataBuildDouble(dTriMeshDataID data, const void* vertices, int vertex_stride, int vertex_count,
                                  const void* indices, int index_count, int stride) {
   static const auto next = real<decltype(dGeomTriMeshDataBuildDouble)>("dGeomTriMeshDataBuildDouble");
-  next(data, vertices, vertex_stride, vertex_count, indices, index_count, stride);
-  odds::ode::note_changed(data);
+  odds::preload::change(next, data, vertices, vertex_stride, vertex_count, indices, index_count, stride);
 }
 
 void dGeomTriMeshDataBuildDouble1(dTriMeshDataID data, const void* vertices, int vertex_stride, int vertex_count,
                                   const void* indices, int index_count, int stride, const void* normals) {
   static const auto next = real<decltype(dGeomTriMeshDataBuildDouble1)>("dGeomTriMeshDataBuildDouble1");
-  next(data, vertices, vertex_stride, vertex_count, indices, index_count, stride, normals);
-  odds::ode::note_changed(data);
+  odds::preload::change(next, data, vertices, vertex_stride, vertex_count, indices, index_count, stride, normals);
 }
 
 void dGeomTriMeshDataBuildSimple(dTriMeshDataID data, const dReal* vertices, int vertex_count, const dTriIndex* indices,
                                  int index_count) {
   static const auto next = real<decltype(dGeomTriMeshDataBuildSimple)>("dGeomTriMeshDataBuildSimple");
-  next(data, vertices, vertex_count, indices, index_count);
-  odds::ode::note_changed(data);
+  odds::preload::change(next, data, vertices, vertex_count, indices, index_count);
 }
 
 void dGeomTriMeshDataBuildSimple1(dTriMeshDataID data, const dReal* vertices, int vertex_count,
                                   const dTriIndex* indices, int index_count, const int* normals) {
   static const auto next = real<decltype(dGeomTriMeshDataBuildSimple1)>("dGeomTriMeshDataBuildSimple1");
-  next(data, vertices, vertex_count, indices, index_count, normals);
-  odds::ode::note_changed(data);
+  odds::preload::change(next, data, vertices, vertex_count, indices, index_count, normals);
 }
 
 void dGeomDestroy(dGeomID geom) {

@@ -114,6 +114,16 @@ void work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implement
   add_flush(request, pair, spending);
 }
 
+/// Contacts of what was found to meet, whatever is known of other places. False: flat faces explain all of it.
+bool guess_anew(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request,
+                Pair::Implementation& pair, Spending& spending) noexcept {
+  ++pair.hasty_runs;
+  spending.reserve_for_contacts(pair.endings.rough);
+  if (!guess_contacts(meshes, pose_b_in_a, nullptr, request, pair, spending)) return false;
+  pair.late->keep_guess(pair.answer.contacts, pose_b_in_a);
+  return true;
+}
+
 /// What touches beside flat faces that overlap has contacts of its own at once: those of what a look has found there,
 /// or, where that had no time, those found before. False: nothing is known to touch there.
 bool answer_beside(Beside seen, const math::Pose& pose_b_in_a, const PosedMeshes& meshes, const Request& request,
@@ -125,29 +135,13 @@ bool answer_beside(Beside seen, const math::Pose& pose_b_in_a, const PosedMeshes
   if (seen == Beside::unknown && !pair.flush.something_else_came()) return false;
   begin_haste(pose_b_in_a, pair);
   if (seen == Beside::something) {
-    ++pair.hasty_runs;
-    spending.reserve_for_contacts(pair.endings.rough);
-    if (!guess_contacts(meshes, pose_b_in_a, nullptr, request, pair, spending)) return false;
+    if (!guess_anew(meshes, pose_b_in_a, request, pair, spending)) return false;
     pair.flush.note_beside(true);
-    pair.late->keep_guess(pair.answer.contacts, pose_b_in_a);
   } else if (!recall_guess(pose_b_in_a, request, pair)) {
     return false;
   }
   add_flush(request, pair, spending);
   return true;
-}
-
-/// Of what was found to meet; where flat faces explain all of it, theirs.
-void answer_guessed(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Vec3* known_normal,
-                    const Request& request, Pair::Implementation& pair, Spending& spending) noexcept {
-  ++pair.hasty_runs;
-  spending.reserve_for_contacts(pair.endings.rough);
-  if (guess_contacts(meshes, pose_b_in_a, known_normal, request, pair, spending)) {
-    pair.late->keep_guess(pair.answer.contacts, pose_b_in_a);
-    add_flush(request, pair, spending);
-  } else if (pair.flush.overlap()) {
-    write_flush(meshes, false, request, pair, spending);
-  }
 }
 
 /// Those of flat faces, or those made of earlier poses. False: neither serve.
@@ -207,7 +201,11 @@ bool carry_late_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_
       !answer_carried(seen, meshes, pose_b_in_a, request, pair, spending)) {
     // The hit is proved: a search could only lose the time for its contacts.
     begin_haste(pose_b_in_a, pair);
-    answer_guessed(meshes, pose_b_in_a, nullptr, request, pair, spending);
+    if (guess_anew(meshes, pose_b_in_a, request, pair, spending)) {
+      add_flush(request, pair, spending);
+    } else if (overlap) {
+      write_flush(meshes, false, request, pair, spending);
+    }
   }
   pair.answer.contacts_complete = false;
   work(pose_b_in_a, request, pair, spending);
