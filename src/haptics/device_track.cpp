@@ -148,30 +148,35 @@ Result<DeviceState> to_state(const std::array<double, quantities>& v, std::int64
   state.angular_velocity_rad_per_s = Vec3(v[wx], v[wy], v[wz]);
   state.buttons = static_cast<std::uint32_t>(v[buttons]);
   state.fresh = true;
-  const double length = state.orientation.coeffs().stableNorm();
-  if (!(std::abs(length - 1.0) <= 1e-3)) {
-    return Error{name, place, fmt::format("the quaternion has length {:.6g}, so it is not a rotation", length),
+  if (!make_usable(state)) {  // all is finite: the quaternion
+    return Error{name, place,
+                 fmt::format("the quaternion has length {:.6g}, so it is not a rotation",
+                             state.orientation.coeffs().stableNorm()),
                  "give a unit quaternion in qw, qx, qy, qz"};
   }
-  if (std::abs(length - 1.0) > 1e-12) state.orientation.normalize();  // a written track must come back bit for bit
   return state;
 }
 
+// At a row, the mean of what leads to it and what leads on: for even times the central difference.
 void differentiate(std::vector<DeviceState>& states) {
-  const std::size_t count = states.size();
-  for (std::size_t i = 0; i < count && count > 1; ++i) {
-    const DeviceState& before = states[i > 0 ? i - 1 : 0];
-    const DeviceState& after = states[i + 1 < count ? i + 1 : i];
-    const double dt = 1e-9 * static_cast<double>(after.t_ns - before.t_ns);
-    states[i].velocity_m_per_s = (after.position_m - before.position_m) / dt;
-    Quat turned = after.orientation * before.orientation.conjugate();
-    if (turned.w() < 0.0) turned.coeffs() = -turned.coeffs();
-    const Eigen::AngleAxisd rotation(turned);
-    states[i].angular_velocity_rad_per_s = rotation.axis() * (rotation.angle() / dt);
+  const std::size_t last = states.size() - 1;
+  for (std::size_t i = 0; i <= last && last > 0; ++i) {
+    const Velocities to = velocities_between(states[i > 0 ? i - 1 : 0], states[i > 0 ? i : 1]);
+    const Velocities on = velocities_between(states[std::min(i, last - 1)], states[std::min(i + 1, last)]);
+    states[i].velocity_m_per_s = 0.5 * (to.linear_m_per_s + on.linear_m_per_s);
+    states[i].angular_velocity_rad_per_s = 0.5 * (to.angular_rad_per_s + on.angular_rad_per_s);
   }
 }
 
 }  // namespace
+
+Velocities velocities_between(const DeviceState& from, const DeviceState& to) noexcept {
+  const double dt = 1e-9 * static_cast<double>(to.t_ns - from.t_ns);
+  Quat turned = to.orientation * from.orientation.conjugate();
+  if (turned.w() < 0.0) turned.coeffs() = -turned.coeffs();
+  const Eigen::AngleAxisd rotation(turned);
+  return {(to.position_m - from.position_m) / dt, rotation.axis() * (rotation.angle() / dt)};
+}
 
 Result<DeviceTrack> parse_track(std::string_view text, const std::string& name) {
   DeviceTrack track;
@@ -210,7 +215,8 @@ Result<DeviceTrack> parse_track(std::string_view text, const std::string& name) 
     return Error{name, std::to_string(line_number), "the times span more than 292 years", "check the unit of time"};
   }
   for (DeviceState& state : track.states) state.t_ns -= start_ns;
-  if (!columns->present[vx]) differentiate(track.states);
+  track.gives_velocities = columns->present[vx];
+  if (!track.gives_velocities) differentiate(track.states);
   return track;
 }
 

@@ -9,9 +9,10 @@ RecordingDevice::RecordingDevice(std::unique_ptr<Device> inner, std::size_t capa
 bool RecordingDevice::read(std::int64_t now_ns, DeviceState& state) noexcept {
   if (!inner_->read(now_ns, state)) return false;
   const bool later = used_ == 0 || state.t_ns > states_[used_ - 1].t_ns;
-  if (!state.fresh || !later) return true;
+  DeviceState usable = state;  // what is recorded can be replayed
+  if (!state.fresh || !later || !make_usable(usable)) return true;
   if (used_ < states_.size()) {
-    states_[used_++] = state;
+    states_[used_++] = usable;
   } else {
     ++lost_;
   }

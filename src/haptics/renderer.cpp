@@ -10,11 +10,6 @@ namespace {
 
 constexpr std::uint64_t longest_gap_ns = 3'600'000'000'000;
 
-bool finite(const DeviceState& s) {
-  return s.position_m.allFinite() && s.orientation.coeffs().allFinite() && s.velocity_m_per_s.allFinite() &&
-         s.angular_velocity_rad_per_s.allFinite();
-}
-
 void copy(const Vec3& from, std::array<double, 3>& to) { to = {from.x(), from.y(), from.z()}; }
 void copy(const Quat& from, std::array<double, 4>& to) { to = {from.w(), from.x(), from.y(), from.z()}; }
 
@@ -83,7 +78,7 @@ bool Renderer::begin() noexcept {
 
 bool Renderer::begin_at_device() noexcept {
   DeviceState state;
-  if (!hand_->device->read(0, state) || !finite(state)) return false;
+  if (!hand_->device->read(0, state) || !make_usable(state)) return false;
   own_ = state;
   state = hand_->scale.in_scene(state);
   state_ = state;
@@ -134,8 +129,9 @@ void Renderer::read_device(std::int64_t now_ns) noexcept {
   DeviceState said = own_;
   const bool told = hand_->device->read(now_ns, said);
   said = sensed(said);
+  const bool usable = told && make_usable(said);
   const DeviceState state = hand_->scale.in_scene(said);
-  if (!told || !finite(state)) {
+  if (!usable || !state.position_m.allFinite() || !state.velocity_m_per_s.allFinite()) {
     ++failed_reads_;  // the last good state stays, and grows stale
     return;
   }
@@ -183,11 +179,13 @@ std::uint32_t Renderer::steps_needed() const noexcept {
   return static_cast<std::uint32_t>(std::clamp(wanted, 1.0, static_cast<double>(substeps_.most)));
 }
 
-// Effects act once in a step: forces stay on the bodies until the last part solves.
+// Effects act once in a step: forces stay on the bodies until the last part solves. But pairs meet in every part.
 void Renderer::step_part(TickView& tick) noexcept {
   if (parts_done_ == 0) {
     parts_ = {};
     effects_->before_step(tick);
+  } else {
+    effects_->go_on(tick);
   }
   last_step_ = world_->step();
   parts_.add(last_step_);
@@ -267,8 +265,8 @@ std::int64_t Renderer::trial(std::int64_t now_ns) noexcept {
   if (hand_) {
     DeviceState said = own_;
     const bool told = hand_->device->read(now_ns, said);
-    const DeviceState state = hand_->scale.in_scene(sensed(said));
-    if (told && finite(state)) state_ = state;
+    said = sensed(said);
+    if (told && make_usable(said)) state_ = hand_->scale.in_scene(said);
     world_->set_coupling(hand_->tool, {});  // no stiffness, no damping: no rows, unless an effect pulls
   }
   const realtime::Clock& clock = world_->options().clock;

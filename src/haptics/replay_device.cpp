@@ -40,8 +40,14 @@ bool ReplayDevice::read(std::int64_t now_ns, DeviceState& state) noexcept {
     const double share = static_cast<double>(now_ns - a.t_ns) / static_cast<double>(b.t_ns - a.t_ns);
     state.position_m += share * (b.position_m - a.position_m);
     state.orientation = a.orientation.slerp(share, b.orientation);
-    state.velocity_m_per_s += share * (b.velocity_m_per_s - a.velocity_m_per_s);
-    state.angular_velocity_rad_per_s += share * (b.angular_velocity_rad_per_s - a.angular_velocity_rad_per_s);
+    if (track_.gives_velocities) {
+      state.velocity_m_per_s += share * (b.velocity_m_per_s - a.velocity_m_per_s);
+      state.angular_velocity_rad_per_s += share * (b.angular_velocity_rad_per_s - a.angular_velocity_rad_per_s);
+    } else {
+      const Velocities on_the_way = velocities_between(a, b);  // those of the pose: a hand that rests has none
+      state.velocity_m_per_s = on_the_way.linear_m_per_s;
+      state.angular_velocity_rad_per_s = on_the_way.angular_rad_per_s;
+    }
   }
   return true;
 }

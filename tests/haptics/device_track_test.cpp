@@ -79,6 +79,57 @@ TEST(DeviceTrack, InterpolatesBetweenRowsAndHoldsAfterTheLast) {
   EXPECT_TRUE(state.fresh);
 }
 
+// As people write them: few rows, far apart in time.
+TEST(DeviceTrack, WithoutVelocitiesAHandThatRestsHasNoneAndOneThatMovesThoseOfItsWay) {
+  const auto track = parse_track(
+      "t_s,px_m,py_m,pz_m,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n1,0,0,0,1,0,0,0\n1.1,0.1,0,0,0,0,0,1\n2.1,0.1,0,0,0,0,0,1\n",
+      "keys.csv");
+  ASSERT_TRUE(track.ok()) << track.error().message();
+  ReplayDevice device(track.value());
+  DeviceState state;
+  for (const std::int64_t at_ms : {0, 1, 500, 999, 1101, 1500, 2000, 2100}) {
+    ASSERT_TRUE(device.read(at_ms * 1'000'000, state));
+    EXPECT_EQ(state.velocity_m_per_s.norm(), 0.0) << at_ms;
+    EXPECT_EQ(state.angular_velocity_rad_per_s.norm(), 0.0) << at_ms;
+  }
+  for (const std::int64_t at_ms : {1001, 1050, 1099}) {
+    ASSERT_TRUE(device.read(at_ms * 1'000'000, state));
+    EXPECT_NEAR(state.velocity_m_per_s.x(), 1.0, 1e-9) << at_ms;
+    EXPECT_NEAR(state.angular_velocity_rad_per_s.z(), std::numbers::pi / 0.1, 1e-6) << at_ms;
+  }
+  ASSERT_TRUE(device.read(1'000'000'000, state));  // between rest and motion
+  EXPECT_NEAR(state.velocity_m_per_s.x(), 0.5, 1e-9);
+}
+
+TEST(DeviceTrack, RecordsOnlyWhatCanBeReplayed) {
+  class Odd final : public Device {
+   public:
+    [[nodiscard]] std::optional<Error> open() override { return std::nullopt; }
+    void close() noexcept override {}
+    [[nodiscard]] const DeviceSpec& spec() const noexcept override { return spec_; }
+    [[nodiscard]] bool read(std::int64_t now_ns, DeviceState& state) noexcept override {
+      state = {};
+      state.t_ns = now_ns;
+      state.fresh = true;
+      state.orientation = now_ns == 1 ? Quat(0, 0, 0, 0) : now_ns == 2 ? Quat(1.0005, 0, 0, 0) : Quat::Identity();
+      return true;
+    }
+    bool write(const DeviceCommand&) noexcept override { return true; }
+    bool enable_forces(bool) noexcept override { return true; }
+    [[nodiscard]] std::string_view last_error() const noexcept override { return {}; }
+
+   private:
+    DeviceSpec spec_;
+  };
+  RecordingDevice recording(std::make_unique<Odd>(), 10);
+  DeviceState state;
+  for (int i = 0; i < 4; ++i) ASSERT_TRUE(recording.read(i, state));
+  const DeviceTrack track = recording.track();
+  ASSERT_EQ(track.states.size(), 3U);
+  EXPECT_EQ(track.states[1].t_ns, 2);
+  EXPECT_EQ(track.states[1].orientation.w(), 1.0);
+}
+
 struct Malformed {
   const char* name;
   std::string text;

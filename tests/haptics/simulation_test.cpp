@@ -325,6 +325,27 @@ TEST(Simulation, AStepThatTakesFourTicksMovesBodiesAsOneOfTheSameLength) {
   EXPECT_GT(contacts, 200U);
 }
 
+TEST(Simulation, EffectsSeeThePairsOfEveryPartOfAStep) {
+  const std::string plenty = "frame_work_units = 10000000";
+  std::string crates =  // beside the three, so that a part of a step serves only some
+      "[[effects.surface_velocity]]\nbody = \"floor\"\nvelocity_m_per_s = [0.2, 0, 0]\n[effects.events]\n";
+  for (int i = 0; i < 6; ++i) {
+    crates += "[[body]]\nname = \"crate" + std::to_string(i) +
+              "\"\nmesh = \"cube\"\nmotion = \"dynamic\"\nmass_kg = 0.05\nposition_m = [-0.1, " +
+              std::to_string(0.08 * i - 0.2) + ", 0.021]\n";
+  }
+  const auto whole = simulated(three_cubes("250", "", plenty) + crates);
+  const auto parts = simulated(three_cubes("1000", "ticks_per_step = 4", plenty) + crates);
+  const RunOutcome of_whole = whole->run();
+  const RunOutcome of_parts = parts->run();
+  for (std::uint32_t body = 1; body < 10; ++body) {
+    EXPECT_GT(whole->world().state({body}).velocity_m_per_s.x(), 0.1) << body;
+    const Vec3 off = whole->world().state({body}).pose.translation - parts->world().state({body}).pose.translation;
+    EXPECT_LT(off.norm(), 1e-6) << body;  // pairs come to the solver in another order
+  }
+  ASSERT_EQ(of_whole.events.size(), of_parts.events.size());
+}
+
 TEST(Simulation, AStepInPartsBeginsAnewWithTheRun) {
   const auto simulation = simulated(three_cubes("1000", "ticks_per_step = 4", "frame_work_units = 300"));
   const RunOutcome first = simulation->run();

@@ -41,6 +41,10 @@ struct DeviceState {
   bool fresh = false;         ///< false: nothing new since the last read; the rest repeats the last state
 };
 
+/// Whether a state can be used: all of it is finite, and its quaternion has length 1 to within 1e-3. That is then made
+/// a unit quaternion; one of length 1 to within 1e-12 keeps its bits. What cannot be used is left alone.
+[[nodiscard]] bool make_usable(DeviceState& state) noexcept;
+
 /// How a device stands to the scene, as in CHAI3D: a small device explores a large scene, or a strong one a weak scene.
 /// A stiffness k of the scene is k * force * workspace at the device (stiffness()), a damping likewise. Angles are not
 /// scaled, so an angular stiffness is multiplied by `force` alone.
@@ -81,7 +85,8 @@ class Device {
   [[nodiscard]] virtual const DeviceSpec& spec() const noexcept = 0;
   /// The latest state. `now_ns` is the loop's time since its start: a device without hardware is a function of it, so
   /// that its path does not depend on how punctual the loop was; a real one only translates its own stamps to it.
-  /// Returns false, and leaves `state` alone, if there is none (last_error() says why).
+  /// Returns false, and leaves `state` alone, if there is none (last_error() says why). A state that make_usable()
+  /// refuses counts as none.
   [[nodiscard]] virtual bool read(std::int64_t now_ns, DeviceState& state) noexcept = 0;
   /// Hands over force and torque. Returns false if the device did not take them.
   virtual bool write(const DeviceCommand& command) noexcept = 0;

@@ -52,6 +52,8 @@ class EffectSet {
 
   // Within the tick, in this order; noexcept, no allocation.
   void before_step(TickView& tick) noexcept;
+  /// In place of before_step(), in a tick that goes on with a step which another has begun.
+  void go_on(const TickView& tick) noexcept { tick_ = &tick; }
   void after_step(const TickView& tick) noexcept;
   [[nodiscard]] ode::Wrench on_hand(const TickView& tick) noexcept;
 

@@ -23,7 +23,7 @@ class RecordingDevice final : public Device {
   bool enable_forces(bool on) noexcept override { return inner_->enable_forces(on); }
   [[nodiscard]] std::string_view last_error() const noexcept override { return inner_->last_error(); }
 
-  /// What was read so far: the fresh states, one per time of the loop. Not while the loop runs.
+  /// What was read so far: the fresh states that can be used, one per time of the loop. Not while the loop runs.
   [[nodiscard]] DeviceTrack track() const;
   [[nodiscard]] std::size_t lost() const noexcept { return lost_; }
 

@@ -1,0 +1,19 @@
+// What of a device's words can be used.
+#include <cmath>
+
+#include "odds/haptics/device.hpp"
+
+namespace odds::haptics {
+
+bool make_usable(DeviceState& state) noexcept {
+  const double length = state.orientation.coeffs().stableNorm();
+  if (!(std::abs(length - 1.0) <= 1e-3)) return false;  // nor is NaN
+  if (!state.position_m.allFinite() || !state.velocity_m_per_s.allFinite() ||
+      !state.angular_velocity_rad_per_s.allFinite()) {
+    return false;
+  }
+  if (std::abs(length - 1.0) > 1e-12) state.orientation.normalize();  // a written track must come back bit for bit
+  return true;
+}
+
+}  // namespace odds::haptics
