@@ -171,9 +171,7 @@ Result<Explanation> explain(const Scene& asked, std::uint64_t samples,
   explanation.ticks = totals.ticks;
   explanation.step_us = percentile(whole, 0.5);
   explanation.warnings = simulation.warnings();
-  for (std::string& warning : std::array{simulation.workspace_warning(), simulation.solver_warning()}) {
-    if (!warning.empty()) explanation.warnings.push_back(std::move(warning));
-  }
+  for (std::string& warning : simulation.run_warnings()) explanation.warnings.push_back(std::move(warning));
   explanation.device = device_line(scene);
   explanation.effects = lines_of(simulation, differences, evaluations, totals);
   return explanation;

@@ -193,6 +193,21 @@ std::string Simulation::solver_warning() const {
       count);
 }
 
+std::vector<std::string> Simulation::run_warnings() const {
+  std::vector<std::string> all;
+  for (std::string warning : {workspace_warning(), solver_warning(), device_complaint_}) {
+    if (!warning.empty()) all.push_back(std::move(warning));
+  }
+  return all;
+}
+
+void Simulation::note_device(bool well, std::string_view what) {
+  if (well || !device_complaint_.empty()) return;
+  const std::string_view why = device_->last_error();
+  device_complaint_ = fmt::format("the device '{}' {}{}{}: see that it is connected and switched on",
+                                  device_->spec().name, what, why.empty() ? "" : ": ", why);
+}
+
 PoseTrack Simulation::make_pose_track() const {
   const double stride = std::round(1.0 / (pose_rate_hz * scene_.loop.period_s()));
   std::vector<ode::BodyId> moving;
@@ -220,8 +235,11 @@ void Simulation::run_loop(const std::stop_token& stop, RunOutcome& outcome) {
     outcome.thread = realtime::set_up_this_thread(request);
     time = realtime::real_time();
   }
-  renderer_->warm_up(warm_up_ticks);
-  if (device_) device_->enable_forces(true);
+  const bool found = renderer_->warm_up(warm_up_ticks);
+  if (device_) {
+    note_device(found, "gave no pose to begin with");
+    note_device(device_->enable_forces(true), "did not switch its forces on");
+  }
   const realtime::LoopPlan plan{scene_.loop.period_ns, ticks_};
   auto next = options_.served.begin();
   const auto pass_what_is_not_served = [&](std::uint64_t tick) noexcept {

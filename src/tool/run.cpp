@@ -123,8 +123,7 @@ int run(const RunArguments& arguments) {
     outcome = simulation.run(stop.get_token());
   }
   info.warnings = simulation.warnings();
-  for (const std::string& warning : {simulation.workspace_warning(), simulation.solver_warning()}) {
-    if (warning.empty()) continue;
+  for (const std::string& warning : simulation.run_warnings()) {
     warn(warning);
     info.warnings.push_back(warning);
   }

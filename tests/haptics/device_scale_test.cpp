@@ -32,9 +32,10 @@ class Puppet final : public Device {
     told = command;
     return true;
   }
-  bool enable_forces(bool) noexcept override { return true; }
-  [[nodiscard]] std::string_view last_error() const noexcept override { return {}; }
+  bool enable_forces(bool on) noexcept override { return !on || takes_forces; }
+  [[nodiscard]] std::string_view last_error() const noexcept override { return takes_forces ? "" : "motor off"; }
 
+  bool takes_forces = true;
   DeviceState says;
   DeviceCommand told;
 
@@ -177,6 +178,37 @@ TEST(DeviceLimits, ADeviceIsToldOnlyWhatItCanExert) {
   EXPECT_EQ(torques.puppet->told.force_n.norm(), 0.0);
   EXPECT_GT(torques.puppet->told.torque_nm.norm(), 1e-3);
   EXPECT_EQ(forces.simulation->warnings().size(), 2U) << "the passivity rule, and that there is no torque";
+}
+
+TEST(DeviceLimits, AQuaternionThatIsNoRotationIsAFailedReadAndOneNearlySoIsMadeOne) {
+  Stage stage("");
+  ASSERT_TRUE(stage.simulation->renderer().begin());
+  const auto read = [&](const Quat& orientation) {
+    stage.puppet->says.orientation = orientation;
+    return stage.tick(ms);
+  };
+  const auto failed = [&] { return stage.simulation->renderer().failed_reads(); };
+  read(Quat(0.6, 0.8, 0.0, 0.0));
+  EXPECT_EQ(failed(), 0U);
+  for (const Quat& odd : {Quat(1.5, 0.5, 0, 0), Quat(0, 0, 0, 0), Quat(NAN, 0, 0, 0)}) {
+    const std::uint64_t before = failed();
+    const TickRecord record = read(odd);
+    EXPECT_EQ(failed(), before + 1);
+    EXPECT_EQ(record.device_orientation_wxyz[1], 0.8);  // the last good one
+  }
+  const TickRecord record = read(Quat(0.6003, 0.8004, 0.0, 0.0));
+  EXPECT_EQ(failed(), 3U);
+  EXPECT_NEAR(record.device_orientation_wxyz[0], 0.6, 1e-12);
+}
+
+TEST(DeviceLimits, ADeviceThatRefusesForcesIsHeard) {
+  Stage stage("");
+  EXPECT_TRUE(stage.simulation->run_warnings().empty());
+  stage.puppet->takes_forces = false;
+  (void)stage.simulation->run();
+  const std::vector<std::string> warnings = stage.simulation->run_warnings();
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("did not switch its forces on: motor off"), std::string::npos) << warnings[0];
 }
 
 TEST(DeviceLimits, WhoLeavesTheWorkspaceIsWarnedOf) {

@@ -247,6 +247,19 @@ TEST(Effects, AMagnetDrawsMostAtItsRangeOverRootThreeAndKeepsTheEnergy) {
   EXPECT_LT(energy_high - energy_low, 0.002);  // of a well that is 0.077 J deep
 }
 
+TEST(Effects, AMagnetThatIsFixedDrawsToItsMiddleWhereverTheOriginOfItsMeshIs) {
+  const auto simulation =
+      simulate(on_floor(moving("ball", "ball", 0.3, 0.5) +
+                        "[[mesh]]\nname = \"block\"\nfile = \"made:terrain:side=0.1,height=0.01,depth=0.4,cells=4\"\n"
+                        "[[body]]\nname = \"magnet\"\nmesh = \"block\"\nposition_m = [0, 0, 0.5]\n"
+                        "[effects.attraction]\nbody = \"ball\"\nto = \"magnet\"\nmax_force_n = 0.5\nrange_m = 0.1\n"));
+  const mesh::TriangleMesh& block = simulation->world().shape({2})->mesh();  // from -0.4 m to about 0
+  const Vec3 towards = 0.5 * (block.lower() + block.upper()) - Vec3(0.3, 0.0, 0.0);
+  run_ticks(*simulation, 1, [](int, const haptics::TickRecord&) {});
+  const Vec3 drawn = simulation->world().state({1}).velocity_m_per_s.normalized();
+  EXPECT_LT((drawn - towards.normalized()).norm(), 1e-6) << drawn.transpose();
+}
+
 TEST(Effects, ASnapHoldsUntilItIsPulledTooHardAndCatchesAgain) {
   // Held by 3 N at most: a weight of 0.2 kg hangs, one of 0.4 kg tears off.
   const std::string snap =

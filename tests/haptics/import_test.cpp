@@ -47,6 +47,24 @@ TEST_F(Import, LinksOnFixedJointsAreOneBodyAndOthersAreHeldAtZero) {
   EXPECT_LT((scene.bodies[1].pose.rotation * Vec3::UnitX() - Vec3::UnitY()).norm(), 1e-12);
 }
 
+// A floating joint holds nothing: it says where its child begins.
+TEST_F(Import, WhatHangsOnAFloatingJointMovesOnItsOwn) {
+  const std::string inertial = "<inertial><mass value=\"2.5\"/></inertial>";
+  const ImportedScene imported = good(
+      "r.urdf",
+      urdf(link("world", "") + link("base", inertial + box_of("1 1 1")) + link("lid", inertial + box_of("1 1 1")) +
+           R"(<joint name="f" type="floating"><parent link="world"/><child link="base"/><origin xyz="0 0 3"/></joint>
+         <joint name="g" type="floating"><parent link="base"/><child link="lid"/><origin xyz="0 0 2"/></joint>)"));
+  EXPECT_FALSE(assumes(imported, "held at zero"));
+  const Scene scene = scene_of(imported);
+  ASSERT_EQ(scene.bodies.size(), 2U);
+  for (const Body& body : scene.bodies) {
+    EXPECT_TRUE(body.dynamic) << body.name;
+    EXPECT_EQ(body.mass.mass_kg, 2.5) << body.name;
+  }
+  EXPECT_LT((scene.bodies[1].pose.translation - Vec3(0, 0, 5)).norm(), 1e-12);
+}
+
 TEST_F(Import, ARobotThatStandsOnNothingMovesAsOneWithItsMass) {
   const std::string inertial = "<inertial><mass value=\"2.5\"/></inertial>";
   const ImportedScene imported =

@@ -435,6 +435,7 @@ TEST(World, HoldsBodiesToTheGreatestSpeed) {
   world.apply(body, {Vec3(1e6, 0, 0), Vec3::Zero()});
   EXPECT_EQ(world.step().bodies_slowed, 1U);
   EXPECT_NEAR(world.state(body).velocity_m_per_s.norm(), 3.0, 1e-12);
+  EXPECT_NEAR(world.state(body).pose.translation.norm(), 3.0 * options.step_s, 1e-12);
 }
 
 TEST(World, RefusesUnlikeBoundingVolumesWithTheirNames) {

@@ -49,7 +49,7 @@ class Renderer {
 
   /// Runs some ticks at time 0 and then puts every body back, so that the loop's first ticks find code and data in
   /// place. Call it in the loop's thread while the device's forces are off. False as begin().
-  bool warm_up(int ticks);
+  [[nodiscard]] bool warm_up(int ticks);
 
   /// `now_ns`: the tick's planned time since the start of the loop. Where it is more than a period after the last one,
   /// ticks were missed: the device held its command meanwhile, the world goes on by one period all the same, and the

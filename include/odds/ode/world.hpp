@@ -79,7 +79,7 @@ struct WorldOptions {
   /// frame.
   std::uint32_t parts = 1;
   std::uint32_t max_contacts_per_step = 64;  ///< of the whole world, 1 .. 1024; further ones are left out and counted
-  double max_speed_m_per_s = 20.0;           ///< bodies are held to it: a tool never flies away
+  double max_speed_m_per_s = 20.0;           ///< bodies are held to it, and to its way in a step: no tool flies away
   double max_spin_rad_per_s = 200.0;
   bool contact_velocity = false;  ///< whether ContactPoint::velocity_m_per_s is wanted; friction computes it anyway
   bool angular_friction = false;  ///< whether to take memory for rows of rolling and spinning friction

@@ -91,6 +91,8 @@ class Simulation {
   [[nodiscard]] std::string workspace_warning() const;
   /// After a run: a sentence if ODE's solver complained; "" if it did not.
   [[nodiscard]] std::string solver_warning() const;
+  /// After a run: both, and a sentence if the device gave no pose at the start or did not switch its forces on.
+  [[nodiscard]] std::vector<std::string> run_warnings() const;
   /// The budget that the queries really have.
   [[nodiscard]] const query::Budget& budget() const noexcept;
   [[nodiscard]] ode::World& world() noexcept { return *world_; }
@@ -108,6 +110,7 @@ class Simulation {
   std::optional<Error> add_hand();
   void warn_of_effects();
   void report(std::string_view what, double share) const;
+  void note_device(bool well, std::string_view what);
   [[nodiscard]] PoseTrack make_pose_track() const;
   void run_loop(const std::stop_token& stop, RunOutcome& outcome);
 
@@ -116,6 +119,7 @@ class Simulation {
   std::vector<LoadedMesh> meshes_;
   std::vector<std::shared_ptr<const query::Shape>> shapes_;
   std::vector<std::string> warnings_;
+  std::string device_complaint_;  // the first
   std::unique_ptr<haptics::EffectSet> effects_;
   std::optional<ode::World> world_;
   std::vector<ode::BodyId> bodies_;

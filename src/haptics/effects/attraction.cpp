@@ -1,4 +1,6 @@
 // A magnet: two bodies draw each other, most at a certain distance, not at all far away.
+#include <array>
+
 #include "haptics/effects/body_key.hpp"
 #include "haptics/effects/list.hpp"
 
@@ -27,12 +29,14 @@ class Attraction final : public Effect {
     for (const ode::BodyId body : {magnet_.body, magnet_.to}) {
       if (world.is_dynamic(body)) inverse_mass += 1.0 / world.mass(body).mass_kg;
     }
+    centers_ = {center_of(world, magnet_.body), center_of(world, magnet_.to)};
     const double step_s = world.options().step_s;
     softening_ = 1.0 + step_s * step_s * steepest * magnet_.max_force_n / magnet_.range_m * inverse_mass;
     return std::nullopt;
   }
   std::uint32_t before_step(const TickView& tick) noexcept override {
-    const Vec3 away = center(*tick.world, magnet_.to) - center(*tick.world, magnet_.body);
+    const Vec3 away =
+        tick.world->state(magnet_.to).pose * centers_[1] - tick.world->state(magnet_.body).pose * centers_[0];
     const Vec3 x = away / magnet_.range_m;
     const double fade = 1.0 + x.squaredNorm();
     const Vec3 force = steepest * magnet_.max_force_n / (fade * fade * softening_) * x;
@@ -44,11 +48,13 @@ class Attraction final : public Effect {
  private:
   static constexpr double steepest =
       3.0792014356780042;  // 16 / (3 sqrt(3)): the greatest value of x / (1 + x^2)^2, inverted
-  static Vec3 center(const ode::World& world, ode::BodyId body) noexcept {
-    const math::Pose pose = world.state(body).pose;
-    return world.is_dynamic(body) ? pose * world.mass(body).center_m : pose.translation;
+  // In the mesh's frame. A fixed body has no mass: the middle of its bounding box.
+  static Vec3 center_of(const ode::World& world, ode::BodyId body) noexcept {
+    const mesh::TriangleMesh& mesh = world.shape(body)->mesh();
+    return world.is_dynamic(body) ? world.mass(body).center_m : Vec3(0.5 * (mesh.lower() + mesh.upper()));
   }
   Magnet magnet_;
+  std::array<Vec3, 2> centers_ = {Vec3::Zero(), Vec3::Zero()};  // of the body and of what draws it
   double softening_ = 1.0;
 };
 

@@ -248,13 +248,16 @@ void World::Implementation::hold_to_limits(Body& body) {
     ++summary.bodies_recovered;
     return;
   }
-  body.last_good = state;
   const double speed = v.norm();
   if (speed > options.max_speed_m_per_s) {
     const Vec3 slower = v * (options.max_speed_m_per_s / speed);
     dBodySetLinearVel(body.body, slower.x(), slower.y(), slower.z());
+    // ODE has moved it with the speed that it shall not have.
+    const Vec3 center = body.last_good.pose * body.mass.center_m + options.step_s * slower;
+    dBodySetPosition(body.body, center.x(), center.y(), center.z());
     ++summary.bodies_slowed;
   }
+  body.last_good = state_of(body);
 }
 
 World::World(std::unique_ptr<Implementation> implementation) : implementation_(std::move(implementation)) {}

@@ -58,10 +58,11 @@ class Assembly {
     Groups rigid(model.links.size());
     Groups connected(model.links.size());
     for (const Joint& joint : model.joints) {
+      if (joint.type == "floating") continue;  // it only says where its child begins
       connected.join(joint.parent, joint.child);
       if (joint.is_fixed()) {
         rigid.join(joint.parent, joint.child);
-      } else if (joint.type != "floating") {
+      } else {
         ++held_;
         if (held_name_.empty()) held_name_ = fmt::format("'{}', {}", joint.name, joint.type);
       }
