@@ -104,6 +104,32 @@ TEST(DirectionAboutATouch, IsThatOfTheTriangles) {
 }
 
 /// What comes from below a sheet is pushed back, not through it.
+// A rim of one piece spans no area: what rounding leaves of one points anywhere.
+TEST(DirectionAboutAnything, OfTwoTrianglesStaysWhileTheyHardlyMove) {
+  const auto sphere = made("bumpy_sphere");
+  const auto shape = shape_of(sphere);
+  auto pair = std::move(Pair::make(shape, shape)).value();
+  Request request;
+  request.method = Method::incremental;
+  math::Pose pose;
+  pose.rotation = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  Contact before;
+  int of_the_same = 0;
+  for (int i = 0; i < 400; ++i) {
+    const double way = 1e-5 * sphere->size() * (i % 200 < 100 ? i % 200 : 200 - i % 200);
+    pose.translation = Vec3(0.3 * sphere->size() + way, 0.3 * way, 0.1 * way);
+    const Answer& answer = pair.run(pose, request);
+    ASSERT_EQ(answer.contacts.size(), 1U);
+    const Contact contact = answer.contacts.front();
+    if (contact.triangle_a == before.triangle_a && contact.triangle_b == before.triangle_b) {
+      ++of_the_same;
+      EXPECT_LT(degrees_between(contact.normal, before.normal), 25.0) << i;
+    }
+    before = contact;
+  }
+  EXPECT_GT(of_the_same, 300);
+}
+
 TEST(DirectionAboutASheet, StaysOnTheSideThatTheTrianglesSay) {
   const auto sheet = shape_of(made("terrain"));
   ASSERT_FALSE(sheet->is_solid());

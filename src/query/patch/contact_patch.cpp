@@ -263,19 +263,22 @@ std::size_t PatchBuilder::Scratch::probe(const PatchInput& input, const Vec3& ce
 Patch PatchBuilder::Scratch::make_patch(const PatchInput& input, const patch::RimSums& sums, Indices indices,
                                         const Effort& effort, Watch& watch) noexcept {
   const patch::PatchView view{input, *kernels, rim, sums, indices, effort.sample};
-  return shorter_way_out(patch_along(patch::patch_normal(view, watch), input, sums, indices, effort, watch), view,
-                         effort, watch);
+  const patch::PatchNormal normal = patch::patch_normal(view, watch);
+  const Patch made = patch_along(normal.into_a, input, sums, indices, effort, watch);
+  return shorter_way_out(made, normal.shortest_way, view, effort, watch);
 }
 
-/// The patch, or another way out of it that is shorter.
-Patch PatchBuilder::Scratch::shorter_way_out(const Patch& made, const patch::PatchView& view, const Effort& effort,
-                                             Watch& watch) noexcept {
+/// The patch, or another way out of it that is shorter. `known`: the shortest, or zero.
+Patch PatchBuilder::Scratch::shorter_way_out(const Patch& made, const Vec3& known, const patch::PatchView& view,
+                                             const Effort& effort, Watch& watch) noexcept {
   const patch::RimSums& sums = view.sums;
   // A lump at the corner of two faces that nearly coincide has an area of its own, along which the bodies overlap from
   // end to end. Where pieces of a rim are missing, what is left of it may be such a lump whatever its size.
   const double wide = (patch::is_part_of_a_rim(view) ? 1.0 : tolerances::lump_depth) * sums.diagonal();
   if (!(made.depth > wide) || sums.length == 0.0 || watch.late()) return made;
-  const Patch other = patch_along(patch::shortest_way_out(view, watch), view.input, sums, view.pieces, effort, watch);
+  const Vec3 way = known == Vec3::Zero() ? patch::shortest_way_out(view, watch) : known;
+  if (way == made.normal) return made;
+  const Patch other = patch_along(way, view.input, sums, view.pieces, effort, watch);
   return other.depth < made.depth ? other : made;
 }
 

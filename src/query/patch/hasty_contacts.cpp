@@ -25,10 +25,12 @@ void PatchBuilder::Scratch::make_hasty_contacts(const PatchInput& input, const D
   sums.loose_ends = 1;
   const Indices indices{by_patch.data(), count};
   const patch::PatchView view{blind, *kernels, rim, sums, indices, patch::hasty.sample};
-  const Vec3 normal = input.known_normal != nullptr ? *input.known_normal : patch::patch_normal(view, watch);
-  patch::Patch made = patch_along(normal, blind, sums, indices, patch::hasty, watch);
-  if (input.known_normal == nullptr) made = shorter_way_out(made, view, patch::hasty, watch);
-  if (watch.late()) return write_pieces(normal, sums, indices);
+  const bool known = input.known_normal != nullptr;
+  const patch::PatchNormal normal =
+      known ? patch::PatchNormal{*input.known_normal, Vec3::Zero()} : patch_normal(view, watch);
+  patch::Patch made = patch_along(normal.into_a, blind, sums, indices, patch::hasty, watch);
+  if (!known) made = shorter_way_out(made, normal.shortest_way, view, patch::hasty, watch);
+  if (watch.late()) return write_pieces(normal.into_a, sums, indices);
   patches[patch_count++] = made;
   write(input);
 }

@@ -160,6 +160,7 @@ Vec3 snap_to_face(const PatchView& view, const Vec3& normal, Watch& watch) noexc
   if (watch.late()) return normal;
   mean = unit_or_zero(mean);
   const double snap = smooth_step(tolerances::snap_from, tolerances::snap_to, share / view.sums.length);
+  if (snap == 0.0) return normal;  // to the last bit
   const Vec3 snapped = unit_or_zero((1.0 - snap) * normal + snap * mean);
   return snapped == Vec3::Zero() ? normal : snapped;
 }
@@ -354,6 +355,14 @@ Directions ways_along_walls(const PatchView& view, Watch& watch) noexcept {
   return ways;
 }
 
+/// The vector area of the rim; zero where that is rounding.
+Vec3 noticeable_area(const PatchView& view) noexcept {
+  const RimSums& sums = view.sums;
+  const Vec3 area = sums.vector_area(view.rim.origin);
+  const double reach = view.rim.origin.cwiseAbs().maxCoeff() + sums.diagonal();
+  return area.norm() > tolerances::rim_noise * reach * sums.length ? area : Vec3::Zero();
+}
+
 /// The candidates: the faces' normals, the area, the mean of the normals, the last run's normal.
 Vec3 least_overlap(const PatchView& view, const Vec3& area, Watch& watch) noexcept {
   LeastOverlap search(view, watch);
@@ -392,14 +401,14 @@ Vec3 least_overlap(const PatchView& view, const Vec3& area, Watch& watch) noexce
 
 }  // namespace
 
-Vec3 patch_normal(const PatchView& view, Watch& watch) noexcept {
+PatchNormal patch_normal(const PatchView& view, Watch& watch) noexcept {
   const RimSums& sums = view.sums;
-  const Vec3 area = sums.vector_area(view.rim.origin);
-  const double reach = view.rim.origin.cwiseAbs().maxCoeff() + sums.diagonal();
-  const bool noticeable = area.norm() > tolerances::rim_noise * reach * sums.length;
+  const Vec3 area = noticeable_area(view);
+  const bool noticeable = area != Vec3::Zero();
   // The isoperimetric quotient: 1 for a circle, 0.8 for a square, 0 for a line.
   const double roundness = sums.length > 0.0 ? 4.0 * std::numbers::pi * area.norm() / (sums.length * sums.length) : 0.0;
-  Vec3 normal = Vec3::Zero();
+  PatchNormal made{Vec3::Zero(), Vec3::Zero()};
+  Vec3& normal = made.into_a;
   // Above 1 more is missing of a rim than is there: what its pieces seem to span is where they lie.
   const bool round = roundness > (sums.closed() ? tolerances::round_closed_rim : tolerances::round_open_rim) &&
                      !(roundness > 1.0 && is_part_of_a_rim(view));
@@ -408,14 +417,18 @@ Vec3 patch_normal(const PatchView& view, Watch& watch) noexcept {
     if (normal.dot(side_of_bodies(view)) < 0.0) normal = -normal;
     if (is_hole_alone(view, normal)) normal = -normal;
   } else {
-    normal = least_overlap(view, noticeable ? area : Vec3::Zero(), watch);
+    made.shortest_way = normal = least_overlap(view, area, watch);
   }
-  if (normal == Vec3::Zero()) return Vec3::UnitZ();  // two points on one another: no direction is better than another
-  return sums.length > 0.0 ? snap_to_face(view, normal, watch) : normal;
+  if (normal == Vec3::Zero()) {
+    normal = Vec3::UnitZ();  // two points on one another: no direction is better than another
+  } else if (sums.length > 0.0) {
+    normal = snap_to_face(view, normal, watch);
+  }
+  return made;
 }
 
 Vec3 shortest_way_out(const PatchView& view, Watch& watch) noexcept {
-  return least_overlap(view, view.sums.vector_area(view.rim.origin), watch);
+  return least_overlap(view, noticeable_area(view), watch);
 }
 
 bool is_of_direction(const PatchView& view, const Vec3& direction, double depth, Watch& watch) noexcept {

@@ -23,9 +23,13 @@ struct PatchView {
   return view.input.solid_a && view.input.solid_b && !view.sums.closed();
 }
 
-/// Unit normal into A. When the time is up, what is known by then. See PatchBuilder for the rule. Always finite and of
-/// unit length.
-[[nodiscard]] Vec3 patch_normal(const PatchView& view, Watch& watch) noexcept;
+struct PatchNormal {
+  Vec3 into_a;        ///< unit
+  Vec3 shortest_way;  ///< what shortest_way_out would find, if that was looked for; else zero
+};
+
+/// When the time is up, what is known by then. See PatchBuilder for the rule. Always finite and of unit length.
+[[nodiscard]] PatchNormal patch_normal(const PatchView& view, Watch& watch) noexcept;
 
 /// The direction of least overlap among the normals of the patch's faces and its vector area, measured right through
 /// the bodies. Unit.

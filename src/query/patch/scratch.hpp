@@ -76,8 +76,8 @@ struct PatchBuilder::Scratch {
   void make_hasty_contacts(const PatchInput& input, const Deadline& last) noexcept;
   patch::Patch make_patch(const PatchInput& input, const patch::RimSums& sums, Indices indices,
                           const patch::Effort& effort, patch::Watch& watch) noexcept;
-  patch::Patch shorter_way_out(const patch::Patch& made, const patch::PatchView& view, const patch::Effort& effort,
-                               patch::Watch& watch) noexcept;
+  patch::Patch shorter_way_out(const patch::Patch& made, const Vec3& known, const patch::PatchView& view,
+                               const patch::Effort& effort, patch::Watch& watch) noexcept;
   patch::Patch patch_along(const Vec3& normal, const PatchInput& input, const patch::RimSums& sums, Indices indices,
                            const patch::Effort& effort, patch::Watch& watch) noexcept;
   void find_witnesses(Indices indices, const patch::Frame& frame, patch::Watch& watch) noexcept;
