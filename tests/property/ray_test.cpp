@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
 #include <random>
 
 #include "odds/math/random.hpp"
+#include "odds/mesh/made/by_name.hpp"
 #include "odds/primitive/ray_triangle.hpp"
 #include "query/counted_ray.hpp"
 #include "support/all_kinds.hpp"
@@ -36,7 +39,50 @@ std::optional<double> brute_force(const mesh::TriangleMesh& mesh, const Vec3& or
   return nearest;
 }
 
+/// A point that the ray is at when it is said to meet the mesh, from the nearest triangle's plane and outline; metres.
+double off_the_box(const Vec3& point, const Mat3& turn, const Vec3& center) {
+  const Vec3 local = turn.transpose() * (point - center);
+  return (local.cwiseAbs() - Vec3::Constant(0.5)).maxCoeff();
+}
+
 class Rays : public ::testing::TestWithParam<volume::Kind> {};
+
+// In the plane of a face, askew to the axes, and past the box: there determinants are nothing but rounding.
+TEST_P(Rays, InThePlaneOfAFaceMeetNothingBesideIt) {
+  math::Random random(11);
+  const auto box = mesh::made::make_shape("made:box:x=1,y=1,z=1").value();
+  for (int turn = 0; turn < 30; ++turn) {
+    const Mat3 rotation = random.rotation().toRotationMatrix();
+    const Vec3 center(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    const auto shape = Shape::build(testing::changed(box, 1.0, {rotation, center}, 0), {.volume = GetParam()}).value();
+    for (int i = 0; i < 300; ++i) {
+      const double beside = random.uniform(0.05, 0.5);
+      const double angle = random.uniform(-0.5, 0.5);
+      // Past the corner (0.5, 0.5), by `beside` at the nearest.
+      const Vec3 along(-std::sin(std::numbers::pi / 4 + angle), std::cos(std::numbers::pi / 4 + angle), 0.0);
+      const Vec3 out(along.y(), -along.x(), 0.0);
+      const Vec3 past = Vec3(0.5, 0.5, i % 2 == 0 ? 0.5 : -0.5) + beside * out - random.uniform(1, 5) * along;
+      const auto hit = cast_ray(*shape, rotation * past + center, (rotation * along).normalized(), 20.0);
+      ASSERT_FALSE(hit) << "beside by " << beside << ", met at " << hit->distance << ", off by "
+                        << off_the_box(rotation * (past + hit->distance * along) + center, rotation, center);
+    }
+  }
+}
+
+TEST(RayTriangle, MeetsSlivers) {
+  math::Random random(5);
+  int met = 0;
+  constexpr int rays = 20000;
+  for (int i = 0; i < rays; ++i) {
+    const Mat3 turn = random.rotation().toRotationMatrix();
+    const double thin = std::pow(10.0, random.uniform(-12, 0));
+    const Vec3 corners[3] = {Vec3::Zero(), turn * Vec3(1, 0, 0), turn * Vec3(0.5, thin, 0)};
+    const Vec3 direction = random.direction();
+    const Vec3 on = random.uniform(0, 0.5) * corners[1] + random.uniform(0, 0.5) * corners[2];
+    met += primitive::distance_along_ray(corners, on - random.uniform(0, 3) * direction, direction) >= 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(met, rays * 999 / 1000);
+}
 
 TEST_P(Rays, MeetWhatBruteForceMeets) {
   const auto mesh = testing::wavy_sphere(16);

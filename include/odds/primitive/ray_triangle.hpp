@@ -1,6 +1,9 @@
 // Where a ray crosses a triangle.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "odds/math/types.hpp"
 
 namespace odds::primitive {
@@ -8,7 +11,9 @@ namespace odds::primitive {
 /// Distance along origin + t * direction to the triangle with these corners, in units of `direction`'s length; a
 /// negative number where it is not crossed, or lies along the triangle's plane, or the triangle has no area. Moeller
 /// and Trumbore 1997, with closed edges: they are widened by 1e-12 of their length, for a crossing counted twice does
-/// no harm to the nearest one, and a gap would. Thread-safe.
+/// no harm to the nearest one, and a gap would. Where the determinant may be nothing but rounding, as in a plane that
+/// is askew to the axes, a crossing counts if the points that it is on the ray and on the triangle are one.
+/// Thread-safe.
 [[nodiscard]] inline double distance_along_ray(const Vec3 corners[3], const Vec3& origin,
                                                const Vec3& direction) noexcept {
   constexpr double none = -1.0;
@@ -24,7 +29,17 @@ namespace odds::primitive {
   const Vec3 q = from_corner.cross(edge1);
   const double v = direction.dot(q) / determinant;
   if (!(v >= -slack && u + v <= 1.0 + slack)) return none;
-  return edge2.dot(q) / determinant;
+  const double distance = edge2.dot(q) / determinant;
+  constexpr double rounding = 16.0 * 0x1p-53;  // of the two products that the determinant is made of, and more
+  constexpr double one_point = 1e-2;           // of the longer edge: noise is off by as much as edges are long
+  const double longer = std::max(edge1.squaredNorm(), edge2.squaredNorm());
+  const double product =
+      std::max(edge1.squaredNorm(), from_corner.squaredNorm()) * edge2.squaredNorm() * direction.squaredNorm();
+  if (determinant * determinant <= rounding * rounding * product) {
+    const Vec3 apart = from_corner + distance * direction - u * edge1 - v * edge2;
+    if (!(apart.squaredNorm() <= one_point * one_point * longer)) return none;
+  }
+  return distance;
 }
 
 }  // namespace odds::primitive
