@@ -59,6 +59,13 @@ bool has_size_of_binary_stl(Input& input, std::uint64_t largest_size) {
   return implied <= largest_size && implied == input.size();
 }
 
+/// Editors write one at the beginning of UTF-8 text.
+void skip_byte_order_mark(Input& input, std::uint64_t largest_size) {
+  constexpr std::string_view mark = "\xEF\xBB\xBF";
+  if (!input.fill(mark.size()) || std::string_view(input.cursor(), mark.size()) != mark) return;
+  if (!has_size_of_binary_stl(input, largest_size)) input.move_to(input.cursor() + mark.size());
+}
+
 Format choose_format(Input& input, std::uint64_t largest_size) {
   input.fill(Input::largest_fill);
   const std::string_view head(input.cursor(), input.available());
@@ -105,6 +112,7 @@ TriangleMesh read_stored(const StoredBytes& stored, std::optional<Format> format
   const std::unique_ptr<ByteSource> source = stream(stored, name, options.max_unpacked_bytes);
   Input input(*source, name);
   const std::uint64_t largest_size = source->packed() ? options.max_unpacked_bytes : options.max_file_bytes;
+  skip_byte_order_mark(input, largest_size);
   if (!format) format = choose_format(input, largest_size);
   return parse(*format, input, MeshBuilder(input, options, stored.size()), largest_size);
 }

@@ -128,8 +128,9 @@ bool TextScanner::next_line() {
   for (;;) {
     const char* at = input_.cursor();
     const char* const limit = input_.limit();
-    while (at != limit && kind(*at) != Kind::line_end) ++at;
-    if (at != input_.cursor()) last = *(at - 1);
+    for (; at != limit && kind(*at) != Kind::line_end; last = *at++) {
+      if (*at == '#' && style_.hash_comments && kind(last) == Kind::blank) in_comment_ = true;
+    }
     input_.move_to(at);
     if (at == limit) {
       if (!input_.fill(1)) return false;

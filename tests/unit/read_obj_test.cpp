@@ -47,6 +47,13 @@ TEST(ReadObj, AllowsFacesBeforeTheirVertices) {
   EXPECT_EQ(read_obj("f 1 2 3\n" + corner).triangles()[0], (Triangle{0, 1, 2}));
 }
 
+TEST(ReadObj, ACommentBehindAnIgnoredStatementEndsWithItsLine) {
+  const TriangleMesh mesh =
+      read_obj("o part # in C:\\tmp\\\n" + corner + "usemtl a # from C:\\x\\\nf 1 2 4\ng b#1 \\\n c\nf 1 2 3\n");
+  EXPECT_EQ(mesh.vertices().size(), 4U);
+  EXPECT_EQ(mesh.triangles().size(), 2U);
+}
+
 TEST(ReadObj, JoinsContinuedLines) {
   const TriangleMesh mesh =
       read_obj("v 0 \\\n0 0\nv 1 0 0\\\r\n\nv 0 1 0\n# no continuation \\\nf 1 2\\\n 3\ng a \\\nb\nf 3 2 1");

@@ -48,6 +48,24 @@ TEST(Read, ChoosesTheFormatByContentThenByName) {
   EXPECT_FALSE(read_content("group of words\n" + obj, "m").ok());
 }
 
+TEST(Read, PassesOverAByteOrderMark) {
+  const std::string mark = "\xEF\xBB\xBF";
+  const std::string with_unused = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n";
+  for (const std::string name : {"m.obj", "m"}) {
+    const auto mesh = read_content(mark + with_unused, name);
+    ASSERT_TRUE(mesh.ok()) << mesh.error().message();
+    EXPECT_EQ(mesh.value().vertices().size(), 4U) << name;
+    EXPECT_EQ(mesh.value().vertices()[1], Vec3(1, 0, 0)) << name;
+  }
+  const TriangleMesh mesh = triangle();
+  EXPECT_TRUE(read_content(mark + test::off_file(mesh), "m.off").ok());
+  EXPECT_TRUE(read_content(mark + test::stl_ascii_file(mesh), "m.stl").ok());
+  EXPECT_TRUE(read_content(mark + test::ply_file(mesh, test::PlyEncoding::ascii), "m.ply").ok());
+  std::string binary = test::stl_binary_file(mesh);
+  binary.replace(0, mark.size(), mark);  // there the header is free text
+  EXPECT_TRUE(read_content(binary, "m.stl").ok());
+}
+
 TEST(Read, TakesTheFormatThatItIsTold) {
   const std::string text = "words\n" + obj;
   EXPECT_TRUE(mesh::read_from_memory(std::as_bytes(std::span(text)), mesh::Format::obj, "m.stl").ok());
