@@ -2,6 +2,7 @@
 #include "mesh/output_file.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -73,13 +74,21 @@ Result<OutputFile> OutputFile::open(const std::filesystem::path& path) {
 }
 
 Result<OutputFile> OutputFile::open_beside(const std::filesystem::path& path, const std::filesystem::path& target) {
+  struct stat replaced {};
+  const bool replaces = ::stat(target.c_str(), &replaced) == 0;
+  if (!replaces && errno == ENAMETOOLONG) {
+    return Error{path.string(), "", "cannot be written: " + reason(errno), "give it a shorter name"};
+  }
   static std::atomic<unsigned> number{0};  // two threads may write to one path
   constexpr int most_trials = 100;         // a process of this number may have died here before
   for (int trial = 0; trial < most_trials; ++trial) {
-    const std::string temporary =
-        target.string() + ".part" + std::to_string(getpid()) + "-" + std::to_string(number.fetch_add(1));
-    const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    // Not the target's name and more: that may be as long as names can be.
+    const std::filesystem::path temporary = target.parent_path() / ("odds-" + std::to_string(getpid()) + "-" +
+                                                                    std::to_string(number.fetch_add(1)) + ".part");
+    // At no moment more open than what it replaces.
+    const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, replaces ? 0600U : 0666U);
     if (descriptor < 0 && errno == EEXIST) continue;
+    if (descriptor >= 0 && replaces) static_cast<void>(fchmod(descriptor, replaced.st_mode & 07777U));
     std::FILE* stream = descriptor < 0 ? nullptr : fdopen(descriptor, "w");
     if (stream == nullptr) break;
     return OutputFile(target, temporary, stream);

@@ -1,5 +1,6 @@
 #include "odds/mesh/repair.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -142,7 +143,8 @@ class Bench {
     for (const Component& component : components_) log_.unorientable_components += component.orientable ? 0 : 1;
   }
 
-  /// Marks closed components that face inwards, except cavities.
+  /// Marks closed components that face inwards, except cavities, and what lies in those: of a hollow body that is
+  /// inside out its cavity, too.
   void judge_volumes(const std::vector<bool>& turn) {
     for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
       Component& own = components_[component_of_[i]];
@@ -159,25 +161,35 @@ class Bench {
       const double sixfold = a.dot((vertices_[t[1]] - middle).cross(vertices_[t[2]] - middle));
       own.six_volumes += turn[i] ? -sixfold : sixfold;
     }
+    const auto faces_inwards = [](const Component& c) { return c.closed && c.orientable && c.six_volumes < 0.0; };
     for (Component& component : components_) {
-      if (!component.closed || !component.orientable || component.six_volumes >= 0.0) continue;
-      if (lies_in_another(component)) {
+      component.inside_out =
+          faces_inwards(component) && !lies_in_another(component, [](const Component& outer) { return outer.closed; });
+      log_.turned_components += component.inside_out ? 1 : 0;
+    }
+    const std::vector<Component> judged = components_;
+    for (std::size_t i = 0; i < components_.size(); ++i) {
+      Component& inner = components_[i];
+      if (!inner.closed || !inner.orientable || inner.inside_out) continue;
+      const auto is_turned = [&](const Component& outer) {
+        return judged[static_cast<std::size_t>(&outer - components_.data())].inside_out;
+      };
+      if (lies_in_another(inner, is_turned)) {
+        inner.inside_out = true;
+        ++log_.turned_inner_components;
+      } else if (faces_inwards(inner)) {
         ++log_.cavities_kept;
-      } else {
-        component.inside_out = true;
-        ++log_.turned_components;
       }
     }
   }
 
-  /// By boxes: a closed component that encloses this one's box may be the wall of its cavity.
-  [[nodiscard]] bool lies_in_another(const Component& inner) const {
-    for (const Component& outer : components_) {
-      if (!outer.closed || &outer == &inner) continue;
-      if ((outer.lower.array() < inner.lower.array()).all() && (outer.upper.array() > inner.upper.array()).all())
-        return true;
-    }
-    return false;
+  /// By boxes: a component of that kind that encloses this one's box; it may be the wall of its cavity.
+  template <class IsOfKind>
+  [[nodiscard]] bool lies_in_another(const Component& inner, IsOfKind is_of_kind) const {
+    return std::any_of(components_.begin(), components_.end(), [&](const Component& outer) {
+      return &outer != &inner && is_of_kind(outer) && (outer.lower.array() < inner.lower.array()).all() &&
+             (outer.upper.array() > inner.upper.array()).all();
+    });
   }
 
   std::vector<Vec3> vertices_;
@@ -200,6 +212,7 @@ std::vector<std::string> RepairLog::lines() const {
   add(dropped_duplicates, "duplicate triangles dropped");
   add(turned_triangles, "triangles turned over to agree with their neighbours or to face outwards");
   add(turned_components, "closed components were inside out and now face outwards");
+  add(turned_inner_components, "closed components within one of those were turned over with it");
   add(cavities_kept, "closed components face inwards inside another one and were left so, as cavities");
   add(unorientable_components, "components cannot be oriented and were left as they are");
   add(dropped_vertices, "unused vertices dropped");

@@ -196,6 +196,18 @@ TEST(Repair, TurnsASolidThatIsInsideOutButKeepsCavities) {
   EXPECT_FALSE(kept.log.changed());
 }
 
+TEST(Repair, OfAHollowBodyThatIsInsideOutTurnsTheCavityToo) {
+  const TriangleMesh hollow = made::make_shape("nested_shells:frequency=4").value();
+  std::vector<Triangle> over(hollow.triangles().begin(), hollow.triangles().end());
+  for (Triangle& t : over) std::swap(t[0], t[1]);
+  const auto turned = repair(mesh_of({hollow.vertices().begin(), hollow.vertices().end()}, over)).value();
+  EXPECT_EQ(turned.log.turned_components, 1u);
+  EXPECT_EQ(turned.log.turned_inner_components, 1u);
+  EXPECT_EQ(turned.log.cavities_kept, 0u);
+  const double volume = find_faults(hollow).volume.value();
+  EXPECT_NEAR(find_faults(turned.mesh).volume.value(), volume, 1e-12 * volume);
+}
+
 TEST(Repair, SaysSoWhenThereIsNothingToDo) {
   const auto repaired = repair(made::make_shape("gear").value()).value();
   EXPECT_FALSE(repaired.log.changed());

@@ -40,6 +40,28 @@ TEST(OutputFiles, AreThereWhenTheyAreCommittedAndNotBefore) {
   EXPECT_EQ(entries(folder), 1U);
 }
 
+TEST(OutputFiles, HaveThePermissionsOfWhatTheyReplace) {
+  const TemporaryFolder folder;
+  folder.write("a", "old");
+  for (const mode_t mode : {0600U, 0640U, 0755U, 0400U}) {
+    ASSERT_EQ(chmod((folder / "a").c_str(), mode), 0);
+    EXPECT_FALSE(write_file(folder / "a", "new"));
+    struct stat after {};
+    ASSERT_EQ(stat((folder / "a").c_str(), &after), 0);
+    EXPECT_EQ(after.st_mode & 07777U, mode);
+  }
+}
+
+TEST(OutputFiles, HaveNamesAsLongAsTheSystemAllows) {
+  const TemporaryFolder folder;
+  const std::string longest(255, 'n');
+  EXPECT_FALSE(write_file(folder / longest, "new"));
+  EXPECT_EQ(contents_of(folder / longest), "new");
+  const auto refused = OutputFile::open(folder / (longest + "n"));
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().remedy, "give it a shorter name");
+}
+
 TEST(OutputFiles, GoThroughLinks) {
   const TemporaryFolder folder;
   folder.write("target", "old");
@@ -89,7 +111,7 @@ TEST(OutputFiles, LeftoversOfADeadProcessAreNoObstacle) {
   const TemporaryFolder folder;
   constexpr std::size_t left = 60;
   for (std::size_t i = 0; i < left; ++i) {
-    folder.write("a.part" + std::to_string(getpid()) + "-" + std::to_string(i), "left");
+    folder.write("odds-" + std::to_string(getpid()) + "-" + std::to_string(i) + ".part", "left");
   }
   EXPECT_FALSE(write_file(folder / "a", "new"));
   EXPECT_EQ(contents_of(folder / "a"), "new");

@@ -25,6 +25,7 @@ struct RepairLog {
   std::size_t dropped_duplicates = 0;
   std::size_t turned_triangles = 0;         ///< to agree with their neighbours or to face outwards
   std::size_t turned_components = 0;        ///< closed and inside out
+  std::size_t turned_inner_components = 0;  ///< closed, within one of those: turned over with it
   std::size_t cavities_kept = 0;            ///< closed components that face inwards inside another closed one: left so
   std::size_t unorientable_components = 0;  ///< left as they were (as a Moebius strip)
   std::size_t dropped_vertices = 0;

@@ -111,7 +111,7 @@ std::shared_ptr<const PreparedMesh> prepared_like_before(dGeomID trimesh, int vo
 
 std::shared_ptr<const PreparedMesh> prepare(dGeomID trimesh, const oddsBuildParams& params) {
   static std::mutex mutex;
-  static Known known;
+  static Known& known = *new Known;  // outlives what is static: that may still make geoms, or look at them
   const std::lock_guard lock(mutex);
   std::erase_if(known, [](const auto& entry) { return entry.second.expired(); });
   if (auto prepared = prepared_like_before(trimesh, params.volume, known)) return prepared;
