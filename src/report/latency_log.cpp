@@ -30,6 +30,9 @@ Hlog latency_log(const RunInfo& info, std::span<const haptics::TickRecord> ticks
       if (t.queries > 0 && std::isfinite(t.query_gross_us))
         query.histogram.record(std::llround(t.query_gross_us * 1e3));
     }
+    if (end == ticks.size()) {
+      for (const std::int64_t wait_ns : waits_at_the_end(info, ticks)) tick.histogram.record(wait_ns);
+    }
     for (HlogInterval* interval : {&tick, &wake, &query}) log.intervals.push_back(std::move(*interval));
     begin = end;
   }

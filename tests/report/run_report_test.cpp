@@ -14,6 +14,7 @@
 #include "odds/report/hgrm.hpp"
 #include "odds/report/hlog.hpp"
 #include "report/made_recording.hpp"
+#include "report/run_files.hpp"
 #include "report/text.hpp"
 
 namespace odds::report {
@@ -223,6 +224,47 @@ TEST(RunSummary, skipped_periods_count_with_the_time_until_the_next_force) {
     EXPECT_EQ(summary.tick.counters()[summary.tick.counter_of(waited_ns)], 1u) << waited_ns;
   }
   EXPECT_EQ(summary.longest_miss_run, 3u);
+}
+
+TEST(RunSummary, periods_skipped_at_the_end_count_with_the_time_until_the_run_ended) {
+  MadeRecording made;
+  made.info.loop = {2, 5, false};
+  haptics::TickRecord first;
+  first.planned_ns = 0;
+  first.done_ns = 100'000;
+  haptics::TickRecord second;
+  second.tick = 2;
+  second.planned_ns = 2'000'000;
+  second.done_ns = 7'200'000;
+  second.skipped_before = 1;
+  made.ticks = {first, second};
+  const RunSummary summary = summarize(made.info, made.ticks);
+  const auto holds_each_once = [](const Histogram& latencies) {
+    EXPECT_EQ(latencies.count(), 7u);
+    for (const std::int64_t waited_ns : {100'000, 5'200'000, 6'200'000, 4'200'000, 3'200'000, 2'200'000, 1'200'000}) {
+      EXPECT_EQ(latencies.counters()[latencies.counter_of(waited_ns)], 1u) << waited_ns;
+    }
+  };
+  holds_each_once(summary.tick);
+  EXPECT_EQ(summary.longest_miss_run, 6u) << "one before the late tick, the tick, and four that never came";
+  const Hlog log = latency_log(made.info, made.ticks);
+  ASSERT_FALSE(log.intervals.empty());
+  holds_each_once(log.intervals.front().histogram);
+}
+
+TEST(RunSummary, periods_skipped_after_a_tick_that_was_in_time_waited_a_period_at_least) {
+  MadeRecording made;
+  made.info.loop = {1, 2, true};  // stopped while something else than the tick took the time
+  haptics::TickRecord only;
+  only.done_ns = 100'000;
+  made.ticks = {only};
+  const RunSummary summary = summarize(made.info, made.ticks);
+  EXPECT_EQ(summary.tick.count(), 3u);
+  EXPECT_EQ(summary.tick.max(), 2'000'000);
+  EXPECT_EQ(summary.longest_miss_run, 2u);
+  made.ticks.front().tick = 2;  // the records of the two before it were lost, so that nobody knows what was skipped
+  made.info.loop = {3, 0, false};
+  EXPECT_EQ(summarize(made.info, made.ticks).tick.count(), 1u);
 }
 
 TEST(RunSummary, percentiles_are_those_of_the_sorted_records) {
