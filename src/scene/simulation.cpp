@@ -24,17 +24,6 @@ constexpr int warm_up_ticks = 32;
 // A day at 1 kHz: beyond it the records of one run would not fit into memory.
 constexpr double most_ticks = 86.4e6;
 
-// Turns microseconds into work units, so that nothing depends on the clock.
-query::Budget repeatable(const query::Budget& asked) {
-  query::Budget budget = query::Budget::unlimited();
-  if (asked.work_units != query::Budget{}.work_units) {
-    budget.work_units = asked.work_units;
-  } else if (std::isfinite(asked.microseconds)) {
-    budget.work_units = static_cast<std::uint64_t>(std::max(1.0, std::round(asked.microseconds * work_units_per_us)));
-  }
-  return budget;
-}
-
 void note_usage(const realtime::ThreadUsage& used, TickRecord& record) {
   record.minor_faults = static_cast<std::uint32_t>(used.minor_faults);
   record.major_faults = static_cast<std::uint32_t>(used.major_faults);
@@ -44,6 +33,14 @@ void note_usage(const realtime::ThreadUsage& used, TickRecord& record) {
 }
 
 }  // namespace
+
+query::Budget in_work_units(const query::Budget& limit) noexcept {
+  query::Budget budget = query::Budget::work(limit.work_units);
+  const double units = std::max(1.0, std::round(limit.microseconds * work_units_per_us));
+  // More cannot be counted, and is no limit.
+  if (units < 0x1p64) budget.work_units = std::min(budget.work_units, static_cast<std::uint64_t>(units));
+  return budget;
+}
 
 Simulation::Simulation(Scene scene, const SimulationOptions& options) : scene_(std::move(scene)), options_(options) {}
 
@@ -75,8 +72,8 @@ std::optional<Error> Simulation::load() {
   }
   ticks_ = static_cast<std::uint64_t>(wanted);
   if (options_.simulated_time) {
-    scene_.query.budget = repeatable(scene_.query.budget);
-    scene_.frame = repeatable(scene_.frame);
+    scene_.query.budget = in_work_units(scene_.query.budget);
+    scene_.frame = in_work_units(scene_.frame);
   }
   for (const Mesh& mesh : scene_.meshes) {
     const std::string what = fmt::format("mesh '{}'", mesh.name);

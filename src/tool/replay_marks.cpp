@@ -1,9 +1,6 @@
 // Queries after the run.
 #include "tool/replay_marks.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 namespace odds::tool {
 namespace {
 
@@ -12,13 +9,7 @@ constexpr std::size_t most_marks = 64;
 
 query::Request request_of(const scene::Simulation& simulation) {
   query::Request request = simulation.scene().query;
-  const query::Budget& asked = simulation.budget();
-  request.budget = query::Budget::unlimited();
-  request.budget.work_units = asked.work_units;
-  if (std::isfinite(asked.microseconds)) {
-    const auto units = static_cast<std::uint64_t>(std::max(1.0, asked.microseconds * scene::work_units_per_us));
-    request.budget.work_units = std::min(request.budget.work_units, units);
-  }
+  request.budget = scene::in_work_units(simulation.budget());
   return request;
 }
 

@@ -253,6 +253,21 @@ TEST(Simulation, ASlowToolTakesOneStepATick) {
   }
 }
 
+TEST(Simulation, OfMicrosecondsAndWorkUnitsTheSmallerLimitsARepeatableRun) {
+  const auto with = [](const std::string& limits) {
+    std::string text = world + scripted + effects;
+    return simulated(text.replace(text.find("budget_us = 60"), 14, limits));
+  };
+  EXPECT_EQ(with("budget_us = 1\nwork_units = 100000")->budget().work_units, 20U);
+  EXPECT_EQ(with("budget_us = 1000\nwork_units = 50")->budget().work_units, 50U);
+  EXPECT_EQ(with("budget_us = 1e-9")->budget().work_units, 1U);
+  EXPECT_EQ(with("frame_us = 2\nframe_work_units = 100000")->scene().frame.work_units, 40U);
+  for (const double beyond : {1e18, 1e300}) {
+    EXPECT_FALSE(in_work_units(query::Budget::time(beyond)).is_limited()) << "more than can be counted";
+  }
+  EXPECT_EQ(in_work_units(query::Budget::time(1e15)).work_units, 20'000'000'000'000'000U);
+}
+
 TEST(Simulation, AFrameOfFewMicrosecondsIsRepeatableAndDropsNobody) {
   std::string text = R"(
 [loop]

@@ -24,6 +24,9 @@ namespace odds::scene {
 /// Work units that stand for one microsecond where a scene gives microseconds and the run is to be repeatable.
 inline constexpr double work_units_per_us = 20.0;
 
+/// The limit without the clock: the smaller of its work units and those that its microseconds stand for, at least 1.
+[[nodiscard]] query::Budget in_work_units(const query::Budget& limit) noexcept;
+
 struct SimulationOptions {
   /// Time passes only in the loop's sleep, budgets are work units instead of microseconds: as fast as the machine can,
   /// and the same forces bit for bit on every run.
