@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "odds/report/force_comparison.hpp"
 #include "report/page_assets.hpp"
@@ -123,6 +124,9 @@ std::string page(const Comparison& comparison) {
   html += fmt::format(
       "<header>\n<h1>One scene, several budgets</h1>\n<p class=\"sub\">{}, {:.0f} Hz; odds {}</p>\n</header>\n<main>\n",
       html_escaped(comparison.scene), comparison.rate_hz, html_escaped(comparison.version));
+  if (const std::string sentence = kept_frame(comparison); !sentence.empty()) {
+    html += fmt::format("<p class=\"note\">{}</p>\n", sentence);
+  }
   html += at_same_poses(comparison);
   html += fmt::format(
       "<h2>Each on its own</h2>\n<p>Every run follows the same hand in simulated time, and differs only in the work "
@@ -132,9 +136,9 @@ std::string page(const Comparison& comparison) {
       "contact, mean force {:.3g} N. After its first other contact a run goes its own way: how fast a scene parts from "
       "itself is shown by the run without a limit in which everything but the tool stands 1 nm aside. Where that "
       "one is far off, so is every other.</p>\n<table>\n<thead><tr><th>run</th><th>proved"
-      "</th><th>units a query</th><th>force error p50 / p95</th><th>direction p50 / p95</th><th>noise 50-500 Hz</th>"
+      "</th><th>units a query</th><th>force error p50 / p95</th><th>direction p50 / p95</th><th>noise {}</th>"
       "<th>thereof added</th><th>onset p99, ticks</th><th>where nothing touches</th></tr></thead>\n<tbody>\n",
-      grouped(exact.ticks), exact.mean_force_n);
+      grouped(exact.ticks), exact.mean_force_n, noise_band(comparison.rate_hz));
   for (const ComparedRun& run : comparison.runs) html += row(run, &run == &comparison.runs.front());
   html += "</tbody>\n</table>\n";
   for (const ComparedRun& run : comparison.runs) {
@@ -167,6 +171,14 @@ std::string csv(const Comparison& comparison) {
 }
 
 }  // namespace
+
+std::string kept_frame(const Comparison& comparison) {
+  if (comparison.frame_work_units == std::numeric_limits<std::uint64_t>::max()) return "";
+  return fmt::format(
+      "The runs with a budget also keep the frame of the scene, {} for all queries of a step; those without a limit "
+      "have none.",
+      limit_text(std::numeric_limits<double>::infinity(), comparison.frame_work_units));
+}
 
 std::optional<Error> write_comparison(const std::filesystem::path& folder, const Comparison& comparison) {
   if (comparison.runs.empty()) return Error{folder.string(), "", "there is no run to compare", "give a budget"};

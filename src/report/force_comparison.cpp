@@ -1,6 +1,8 @@
 // Figures of two runs of one scene.
 #include "odds/report/force_comparison.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +13,7 @@ namespace odds::report {
 namespace {
 
 constexpr double noise_from_hz = 50.0;
+constexpr double highest_share_of_rate = 0.49;  // of the filter's frequency; at half the rate nothing would pass
 constexpr std::size_t quiet_ticks = 5;
 constexpr std::ptrdiff_t onset_within = 20;
 
@@ -26,7 +29,7 @@ double percentile(std::vector<double> values, double share) {
 class HighPass {
  public:
   HighPass(double frequency_hz, double rate_hz) {
-    const double k = std::tan(std::numbers::pi * std::min(frequency_hz / rate_hz, 0.49));
+    const double k = std::tan(std::numbers::pi * std::min(frequency_hz / rate_hz, highest_share_of_rate));
     const double norm = 1.0 / (1.0 + std::numbers::sqrt2 * k + k * k);
     gain_ = norm;
     a1_ = 2.0 * (k * k - 1.0) * norm;
@@ -101,6 +104,10 @@ void compare_onsets(std::span<const ForceSample> exact, std::span<const ForceSam
 }
 
 }  // namespace
+
+std::string noise_band(double rate_hz) {
+  return fmt::format("{:.3g}-{:.4g} Hz", std::min(noise_from_hz, highest_share_of_rate * rate_hz), 0.5 * rate_hz);
+}
 
 std::vector<ForceSample> force_samples(std::span<const haptics::TickRecord> ticks, std::int64_t period_ns) {
   std::vector<ForceSample> samples;

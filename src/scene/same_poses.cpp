@@ -82,6 +82,7 @@ Result<std::unique_ptr<SamePoses>> SamePoses::make(const Scene& scene, const std
   };
   Scene exact = scene;
   exact.query.carry_motion = 0.0;
+  exact.frame = query::Budget::unlimited();
   Result<Run> leader = make_run(std::move(exact), query::Budget::unlimited(), leads);
   if (!leader) return leader.error();
   all->leader_ = std::move(leader).value();

@@ -113,15 +113,15 @@ std::string errors(const report::ForceDifference& d) {
 void print(const report::Comparison& comparison) {
   fmt::print("{}: force of contacts on the tool, in each tick at the pose of the run without a limit\n",
              comparison.scene);
+  if (const std::string sentence = report::kept_frame(comparison); !sentence.empty()) fmt::print("{}\n", sentence);
   for (const report::ComparedRun& run : comparison.runs) {
     if (!run.at_same_poses) continue;
     const report::ForceDifference& d = *run.at_same_poses;
     fmt::print("  {:>20}: {}, {}, {} ticks missed in a row\n", run.name, errors(d), onset(d), d.missed_in_row);
   }
   const report::ForceDifference& exact = comparison.runs.front().difference;
-  fmt::print(
-      "force on the hand, each run on its own: {} ticks in contact, mean {:.3g} N, own noise {:.3f} % (50-500 Hz)\n",
-      exact.ticks, exact.mean_force_n, 100.0 * exact.noise_share);
+  fmt::print("force on the hand, each run on its own: {} ticks in contact, mean {:.3g} N, own noise {:.3f} % ({})\n",
+             exact.ticks, exact.mean_force_n, 100.0 * exact.noise_share, report::noise_band(comparison.rate_hz));
   for (const report::ComparedRun& run : comparison.runs) {
     const report::ForceDifference& d = run.difference;
     fmt::print("  {:>20}: {:5.1f} % of ticks proved, {}, {:.3f} % added noise, {}\n", run.name,
@@ -140,6 +140,7 @@ std::optional<Error> run_all(const scene::Scene& scene, const CompareArguments& 
   };
   scene::Scene exact = scene;
   exact.query.carry_motion = 0.0;
+  exact.frame = query::Budget::unlimited();
   if (auto error = add("no limit", exact, query::Budget::unlimited())) return error;
   if (auto error = add("1 nm aside", nudged(exact), query::Budget::unlimited())) return error;
   const std::size_t ticks = comparison.runs.front().samples.size();
@@ -166,6 +167,7 @@ int compare(const CompareArguments& arguments) {
   comparison.version = ODDS_VERSION;
   comparison.rate_hz = 1.0 / scene.value().loop.period_s();
   comparison.touching_n = arguments.touching_n;
+  comparison.frame_work_units = scene::in_work_units(scene.value().frame).work_units;
   if (const auto error = run_all(scene.value(), arguments, comparison)) return fail(*error);
   for (report::ComparedRun& run : comparison.runs) {
     run.difference =

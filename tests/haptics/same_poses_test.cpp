@@ -107,6 +107,16 @@ TEST(SamePoses, ALimitThatFindsHardlyAnythingIsSeenAndDoesNotTouchTheLeader) {
   }
 }
 
+TEST(SamePoses, TheLeaderHasNoFrameEitherAndTheLimitedRunsKeepThatOfTheScene) {
+  Scene framed = scene();
+  framed.frame = query::Budget::work(1);
+  const Runs free = run(scene(), query::Budget::unlimited());
+  const Runs runs = run(framed, query::Budget::unlimited());
+  EXPECT_EQ(runs.exact_n, free.exact_n);
+  EXPECT_EQ(runs.contacts, free.contacts);
+  EXPECT_GT(runs.apart_n, 0.1 * runs.exact_n) << "a frame of one unit finds hardly anything";
+}
+
 TEST(SamePoses, TheForceOfContactsAtRestBalancesTheHand) {
   auto made = SamePoses::make(scene(), {query::Budget::unlimited()}, {});
   ASSERT_TRUE(made.ok());

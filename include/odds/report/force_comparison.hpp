@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -32,7 +33,7 @@ struct ForceDifference {
   double error_p95 = 0.0;
   double angle_p50_deg = 0.0;  ///< between the forces
   double angle_p95_deg = 0.0;
-  double noise_share = 0.0;         ///< RMS of the force from 50 to 500 Hz in these ticks, share of the mean force
+  double noise_share = 0.0;         ///< RMS of the force in the noise_band() in these ticks, share of the mean force
   double added_noise_share = 0.0;   ///< what of it the exact run has not: root of the difference of the squares, >= 0
   std::uint64_t onsets = 0;         ///< of contact in the exact run, after at least five ticks without
   std::uint64_t onsets_missed = 0;  ///< without one in this run within 20 ticks
@@ -63,8 +64,16 @@ struct Comparison {
   std::string version;
   double rate_hz = 1000.0;
   double touching_n = 0.05;
+  /// Of the scene's frame, for all queries of a step: the runs with a budget keep it, those without a limit have none.
+  std::uint64_t frame_work_units = std::numeric_limits<std::uint64_t>::max();
   std::vector<ComparedRun> runs;  ///< the exact one first
 };
+
+/// From where the filter begins to half the rate, as "50-500 Hz".
+[[nodiscard]] std::string noise_band(double rate_hz);
+
+/// What the runs with a budget keep of the scene's own limits, a sentence; empty if there is nothing.
+[[nodiscard]] std::string kept_frame(const Comparison& comparison);
 
 /// Writes DIR/comparison.html and DIR/comparison.csv. DIR is there.
 [[nodiscard]] std::optional<Error> write_comparison(const std::filesystem::path& folder, const Comparison& comparison);

@@ -1,0 +1,96 @@
+// The command `odds compare`, run as a user runs it.
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "support/run_tool.hpp"
+
+namespace odds {
+namespace {
+
+using testing::contents_of;
+using testing::Ran;
+using testing::run_tool;
+using testing::TemporaryFolder;
+
+/// A ball that a hand presses onto a terrain; `query` and `loop` are keys of these sections.
+std::string scene(const std::string& query, const std::string& loop = "") {
+  return "format = \"odds.scene/1\"\n[loop]\nseconds = 0.3\n" + loop + "[query]\n" + query + R"(
+[[mesh]]
+name = "terrain"
+file = "made:terrain:side=0.3,height=0.01,depth=0.03,cells=48"
+[[mesh]]
+name = "ball"
+file = "made:icosphere:radius=0.01"
+[[body]]
+name = "terrain"
+mesh = "terrain"
+[[body]]
+name = "ball"
+mesh = "ball"
+motion = "dynamic"
+mass_kg = 0.05
+device = "hand"
+[device.hand]
+type = "scripted"
+position_m = [-0.03, 0, 0.03]
+[[device.hand.motion]]
+kind = "slide"
+duration_s = 0.2
+by_m = [0, 0, -0.03]
+[effects.contact]
+[effects.virtual_coupling]
+)";
+}
+
+/// The line of a table that begins so.
+std::string line_of(const std::string& table, const std::string& begin) {
+  std::istringstream lines(table);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with(begin)) return line;
+  }
+  return "";
+}
+
+TEST(Compare, RunsWithoutALimitHaveNoFrameEither) {
+  const TemporaryFolder folder;
+  folder.write("framed.toml", scene("frame_work_units = 2"));
+  folder.write("free.toml", scene(""));
+  const Ran framed = run_tool(folder, "compare framed.toml --budgets-us 1000 --out framed");
+  ASSERT_EQ(framed.status, 0) << framed.errors;
+  const Ran free = run_tool(folder, "compare free.toml --budgets-us 1000 --out free");
+  ASSERT_EQ(free.status, 0) << free.errors;
+  const std::string with_frame = contents_of(folder / "framed/comparison.csv");
+  const std::string without = contents_of(folder / "free/comparison.csv");
+  for (const char* run : {"no limit,own", "1 nm aside,own"}) {
+    EXPECT_NE(line_of(without, run), "");
+    EXPECT_EQ(line_of(with_frame, run), line_of(without, run));
+  }
+  EXPECT_NE(line_of(with_frame, "1000 us,own"), line_of(without, "1000 us,own")) << "these keep the scene's frame";
+  const std::string sentence = "2 work units for all queries of a step";
+  EXPECT_NE(contents_of(folder / "framed/comparison.html").find(sentence), std::string::npos);
+  EXPECT_NE(framed.output.find(sentence), std::string::npos) << framed.output;
+  EXPECT_EQ(contents_of(folder / "free/comparison.html").find("for all queries of a step"), std::string::npos);
+}
+
+TEST(Compare, ABudgetOfMoreThanCanBeCountedIsNone) {
+  const TemporaryFolder folder;
+  folder.write("scene.toml", scene(""));
+  const Ran ran = run_tool(folder, "compare scene.toml --budgets-us 1e300 --out out");
+  ASSERT_EQ(ran.status, 0) << ran.errors;
+  EXPECT_NE(ran.output.find("1e+300 us: force off by 0.00 % (p95 0.00 %)"), std::string::npos) << ran.output;
+}
+
+TEST(Compare, NamesTheBandOfNoiseThatItsRateHas) {
+  const TemporaryFolder folder;
+  for (const auto& [rate, band] : {std::pair{"500", "50-250 Hz"}, {"1000", "50-500 Hz"}, {"80", "39.2-40 Hz"}}) {
+    folder.write("scene.toml", scene("", std::string("rate_hz = ") + rate + "\n"));
+    const Ran ran = run_tool(folder, "compare scene.toml --budgets-us 20 --out out");
+    ASSERT_EQ(ran.status, 0) << ran.errors;
+    EXPECT_NE(ran.output.find(band), std::string::npos) << ran.output;
+    EXPECT_NE(contents_of(folder / "out/comparison.html").find(std::string("noise ") + band), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace odds
