@@ -182,6 +182,7 @@ Result<DeviceTrack> parse_track(std::string_view text, const std::string& name) 
   DeviceTrack track;
   std::optional<Columns> columns;
   std::size_t line_number = 0;
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte-order mark
   while (!text.empty()) {
     const std::size_t end = text.find('\n');
     const std::string_view line = trimmed(text.substr(0, end));

@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include "mesh/csv_field.hpp"
 #include "mesh/output_file.hpp"
 
 namespace odds::scene {
@@ -27,12 +28,14 @@ std::optional<Error> PoseTrack::write(const std::filesystem::path& path) const {
   Result<mesh::OutputFile> opened = mesh::OutputFile::open(path);
   if (!opened) return opened.error();
   mesh::OutputFile& file = opened.value();
+  std::vector<std::string> fields;
+  for (const std::string& name : names_) fields.push_back(mesh::csv_field(name));
   file.write("tick,t_ns,body,px_m,py_m,pz_m,qw,qx,qy,qz\n");
   for (std::size_t i = 0; i < used_; ++i) {
     const Row& row = rows_[i];
     const Vec3& p = row.position_m;
     const Quat& q = row.orientation;
-    file.write(fmt::format("{},{},{},{},{},{},{},{},{},{}\n", row.tick, row.t_ns, names_[row.body], p.x(), p.y(), p.z(),
+    file.write(fmt::format("{},{},{},{},{},{},{},{},{},{}\n", row.tick, row.t_ns, fields[row.body], p.x(), p.y(), p.z(),
                            q.w(), q.x(), q.y(), q.z()));
   }
   return file.commit();

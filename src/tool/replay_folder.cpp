@@ -6,6 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "mesh/csv_field.hpp"
 #include "mesh/output_file.hpp"
 #include "odds/haptics/device_track.hpp"
 
@@ -56,9 +57,18 @@ std::optional<Error> write_events(const std::filesystem::path& path, const scene
   std::string text = "t_ns,event,a,b,approach_m_per_s\n";
   for (const haptics::ContactEvent& event : outcome.events) {
     text += fmt::format("{},{},{},{},{}\n", event.t_ns, event.begins ? "begin" : "end",
-                        scene.bodies[event.a.index].name, scene.bodies[event.b.index].name, event.approach_m_per_s);
+                        mesh::csv_field(scene.bodies[event.a.index].name),
+                        mesh::csv_field(scene.bodies[event.b.index].name), event.approach_m_per_s);
   }
   return mesh::write_file(path, text);
+}
+
+/// Takes away what an earlier scene left: it would pass for this one's.
+std::optional<Error> remove_old(const std::filesystem::path& path) {
+  std::error_code code;
+  std::filesystem::remove(path, code);
+  if (code) return Error{path.string(), "", "of an earlier run cannot be removed: " + code.message(), "remove it"};
+  return std::nullopt;
 }
 
 }  // namespace
@@ -69,13 +79,16 @@ std::optional<Error> write_replay_folder(const std::filesystem::path& folder, co
   std::error_code code;
   std::filesystem::create_directories(folder, code);
   if (code) return Error{folder.string(), "", "cannot be made: " + code.message(), "give another --out"};
+  const std::filesystem::path device = folder / "device.csv";
   if (!outcome.device_track.states.empty()) {
-    if (auto error = haptics::write_track(folder / "device.csv", outcome.device_track)) return error;
+    if (auto error = haptics::write_track(device, outcome.device_track)) return error;
+  } else if (!simulation.scene().device) {  // else it may be the track of a replay that ended before its first tick
+    if (auto error = remove_old(device)) return error;
   }
   if (auto error = outcome.poses.write(folder / "poses.csv")) return error;
-  if (simulation.scene().find_effect("events") != nullptr) {
-    if (auto error = write_events(folder / "events.csv", simulation.scene(), outcome)) return error;
-  }
+  const bool has_events = simulation.scene().find_effect("events") != nullptr;
+  const std::filesystem::path events = folder / "events.csv";
+  if (auto error = has_events ? write_events(events, simulation.scene(), outcome) : remove_old(events)) return error;
   const std::string side_car =
       describe(simulation, info).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
   if (auto error = mesh::write_file(folder / "replay.json", side_car)) return error;

@@ -18,7 +18,8 @@ Result<std::vector<std::uint64_t>> read_served_ticks(const std::string& path) {
   std::vector<std::uint64_t> ticks;
   char line[longest_line];
   for (std::size_t number = 1; file.getline(line, longest_line) || file.gcount() > 0; ++number) {
-    const std::string_view text(line);
+    std::string_view text(line);
+    if (number == 1 && text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte-order mark
     const auto fault = [&](const std::string& what) { return Error{path, std::to_string(number), what, remedy}; };
     if (file.fail()) return fault("the line is too long");
     if (number == 1) {

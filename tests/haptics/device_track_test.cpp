@@ -24,6 +24,14 @@ bool same_bits(const DeviceState& a, const DeviceState& b) {
          a.buttons == b.buttons;
 }
 
+TEST(DeviceTrack, AByteOrderMarkAtItsBeginningIsPassedOver) {
+  const std::string row = "0,0.1,0.2,0.3,1,0,0,0\n";
+  const auto track = parse_track("\xEF\xBB\xBF" + header + row, "marked.csv");
+  ASSERT_TRUE(track.ok()) << track.error().message();
+  EXPECT_EQ(track.value().states.size(), 1U);
+  EXPECT_FALSE(parse_track("\n\xEF\xBB\xBF" + header + row, "marked.csv").ok()) << "elsewhere it is no mark";
+}
+
 TEST(DeviceTrack, RecordedWrittenReadAndReplayedGivesTheSameBits) {
   Motion spiral;
   spiral.kind = MotionKind::spiral;

@@ -181,6 +181,60 @@ TEST(Run, SkipsTheTicksThatAnotherRunSkipped) {
   EXPECT_EQ(ticks, "tick 0 1 2 40 41 250 ");
 }
 
+TEST(Run, TicksMayBeginWithAByteOrderMark) {
+  const TemporaryFolder folder;
+  folder.write("scene.toml", scene);
+  folder.write("served.csv", "\xEF\xBB\xBFtick,more\n0,\n7,\n");
+  const Ran ran = run_tool(folder, "run scene.toml --fast --ticks-of served.csv --out out");
+  ASSERT_EQ(ran.status, 0) << ran.errors;
+  EXPECT_NE(ran.output.find("2 of 300 ran"), std::string::npos) << ran.output;
+}
+
+/// A block that falls on another, with events, and no hand.
+std::string dropped(const std::string& lower_name, const std::string& upper_name) {
+  const auto body = [](const std::string& name, const std::string& more) {
+    return "[[body]]\nname = " + name + "\nmesh = \"block\"\n" + more;
+  };
+  return "format = \"odds.scene/1\"\n[loop]\nseconds = 0.1\n[[mesh]]\nname = \"block\"\nfile = \"made:box\"\n" +
+         body(lower_name, "") + body(upper_name, "motion = \"dynamic\"\nmass_kg = 1\nposition_m = [0, 0, 0.101]\n") +
+         "[effects.contact]\n[effects.gravity]\n[effects.events]\n";
+}
+
+TEST(Run, NamesOfBodiesAreQuotedInTablesWhereTheyMustBe) {
+  const TemporaryFolder folder;
+  folder.write("scene.toml", dropped("\"the \\\"floor\\\", below\"", "\"two\\nlines, \\\"1\\\"\""));
+  const Ran ran = run_tool(folder, "run scene.toml --fast --out out");
+  ASSERT_EQ(ran.status, 0) << ran.errors;
+  const std::string upper = "\"two\nlines, \"\"1\"\"\"";
+  const std::string poses = contents_of(folder / "out/replay/poses.csv");
+  EXPECT_EQ(poses.find("tick,t_ns,body,px_m,py_m,pz_m,qw,qx,qy,qz\n0,0," + upper + ",0,0,0.1"), 0U) << poses;
+  const std::string events = contents_of(folder / "out/replay/events.csv");
+  EXPECT_NE(events.find(",begin," + upper + ",\"the \"\"floor\"\", below\","), std::string::npos) << events;
+  folder.write("plain.toml", dropped("\"the floor\"", "\"it's\""));
+  ASSERT_EQ(run_tool(folder, "run plain.toml --fast --out plain").status, 0);
+  const std::string plain = contents_of(folder / "plain/replay/events.csv");
+  EXPECT_NE(plain.find(",begin,it's,the floor,"), std::string::npos) << plain;
+}
+
+TEST(Run, ReplacesWhatAnEarlierSceneLeftInTheReplay) {
+  const TemporaryFolder folder;
+  folder.write("hand.toml", scene);
+  folder.write("events.toml", dropped("\"a\"", "\"b\""));
+  const auto there = [&](const char* file) {
+    return std::filesystem::exists(folder / ("out/replay/" + std::string(file)));
+  };
+  ASSERT_EQ(run_tool(folder, "run hand.toml --fast --out out").status, 0);
+  EXPECT_TRUE(there("device.csv"));
+  folder.write("out/replay/mine.txt", "kept");
+  ASSERT_EQ(run_tool(folder, "run events.toml --fast --out out").status, 0);
+  EXPECT_FALSE(there("device.csv")) << "this scene has no device";
+  EXPECT_TRUE(there("events.csv"));
+  ASSERT_EQ(run_tool(folder, "run hand.toml --fast --out out").status, 0);
+  EXPECT_FALSE(there("events.csv")) << "this scene asks for no events";
+  EXPECT_TRUE(there("device.csv"));
+  EXPECT_TRUE(there("mine.txt"));
+}
+
 TEST(Run, RefusesTicksThatAreNone) {
   const TemporaryFolder folder;
   folder.write("scene.toml", scene);
