@@ -222,12 +222,14 @@ void add_limits(CLI::App& command, AccuracyOptions& options) {
   command.add_option("--work", options.work, "work units for one query, a list: repeatable bit for bit; none for none")
       ->capture_default_str()
       ->check(number_list(1e9, true, true));
-  command.add_option("--p-min", options.p_min, "probabilities that stop a query, a list, (0, 1]; 1: never")
-      ->capture_default_str()
-      ->check(number_list(1.0, false, false));
+  CLI::Option* const p_min =
+      command.add_option("--p-min", options.p_min, "probabilities that stop a query, a list, (0, 1]; 1: never")
+          ->capture_default_str()
+          ->check(number_list(1.0, false, false));
   command.add_option("--k-min", options.k_min, "pairs of nodes with such a probability that stop a query, >= 1")
       ->capture_default_str()
-      ->check(whole_number(1, std::numeric_limits<std::uint32_t>::max()));
+      ->check(whole_number(1, std::numeric_limits<std::uint32_t>::max()))
+      ->needs(p_min);
   add_calibration_option(command, options.calibration_poses);
   command.add_option("--contacts", options.contacts, "most contacts of an answer, 0 .. 8")
       ->capture_default_str()

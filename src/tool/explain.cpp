@@ -8,6 +8,7 @@
 #include "odds/scene/explain.hpp"
 #include "tool/build_progress.hpp"
 #include "tool/command.hpp"
+#include "tool/shared_options.hpp"
 
 namespace odds::tool {
 namespace {
@@ -57,7 +58,7 @@ void add_explain(CLI::App& app, Action& action) {
       app.add_subcommand("explain", "Show which effects a scene has on, which line asked, what each costs per tick");
   command->add_option("scene", arguments->scene, "the scene, a TOML file")->required();
   command->add_option("--samples", arguments->samples, "ticks at which the costs are measured")
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000}))
+      ->check(whole_number(1, 1'000'000))
       ->capture_default_str();
   command->callback([&action, arguments] { action = [arguments] { return explain(*arguments); }; });
 }

@@ -112,12 +112,13 @@ void add_query(CLI::App& app, Action& action) {
                                                                   {"kinematic", query::EstimatorKind::kinematic}};
   add_choice(*command, "--estimator", options->request.estimator, estimators, "cells or kinematic (default)");
   add_shape_options(*command, options->run.pair.shape);
-  command
-      ->add_option("--p-min", options->request.p_min,
-                   "probability from which on a pair of nodes counts, (0, 1]; 1: never")
-      ->check(share_of_one());
+  CLI::Option* const p_min = command
+                                 ->add_option("--p-min", options->request.p_min,
+                                              "probability from which on a pair of nodes counts, (0, 1]; 1: never")
+                                 ->check(share_of_one());
   command->add_option("--k-min", options->request.k_min, "such pairs that end the query with an estimated hit, >= 1")
-      ->check(whole_number(1, std::numeric_limits<std::uint32_t>::max()));
+      ->check(whole_number(1, std::numeric_limits<std::uint32_t>::max()))
+      ->needs(p_min);
   command->add_option("--contacts", options->request.max_contacts, "most contacts, 0 .. 8")->check(whole_number(0, 8));
   add_calibration_option(*command, options->run.pair.options.calibration_poses);
   command->add_flag("--polygon-free", options->request.polygon_free,

@@ -48,6 +48,10 @@ CLI::Validator whole_number(std::uint64_t least, std::uint64_t greatest) {
   return CLI::Validator(
       [=](const std::string& text) {
         const std::optional<std::uint64_t> value = number_in<std::uint64_t>(text);
+        // CLI11 takes it for a number in base eight.
+        if (value && text.size() > 1 && text.front() == '0') {
+          return text + " begins with 0; write " + std::to_string(*value);
+        }
         if (value && *value >= least && *value <= greatest) return std::string();
         return text + " is not a whole number from " + std::to_string(least) + " to " + std::to_string(greatest);
       },

@@ -17,7 +17,7 @@ void add_calibration_option(CLI::App& command, std::uint32_t& poses);
 CLI::Validator positive_and_finite();
 /// Accepts numbers in (0, 1].
 CLI::Validator share_of_one();
-/// Accepts plain digits of a number in [least, greatest]; CLI11 itself would wrap "-3" around.
+/// Accepts plain digits of a number in [least, greatest]; CLI11 itself would wrap "-3" around, and read "010" as 8.
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t greatest);
 
 /// An option whose value is one of the names; an unknown one is wrong usage and all names are listed.

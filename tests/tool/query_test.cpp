@@ -210,6 +210,44 @@ TEST(Query, OutputThatCannotBeWrittenIsAnError) {
   }
 }
 
+TEST(Query, AWholeNumberThatBeginsWithZeroIsRefused) {
+  // CLI11 would read it in base eight.
+  const TemporaryFolder folder;
+  folder.write("poses.csv", header + "5,0,0,1,0,0,0\n");
+  folder.write("scene.toml", "");
+  for (const std::string option : {"--work", "--repeat", "--contacts", "--calibrate", "--p-min 0.9 --k-min"}) {
+    const std::string query = "query made:box made:box --poses poses.csv --out answers.csv " + option;
+    const Ran ran = run_tool(folder, query + " 07");
+    EXPECT_EQ(ran.status, 2) << option;
+    EXPECT_NE(ran.errors.find("07 begins with 0; write 7"), std::string::npos) << ran.errors;
+    EXPECT_EQ(run_tool(folder, query + " 7").status, 0) << option;
+  }
+  const std::string study = "accuracy made:box made:box --work 64 --budgets-us none --out out --poses ";
+  EXPECT_NE(run_tool(folder, study + "010").errors.find("010 begins with 0; write 10"), std::string::npos);
+  EXPECT_NE(run_tool(folder, study + "1 --seed 00").errors.find("00 begins with 0; write 0"), std::string::npos);
+  EXPECT_EQ(run_tool(folder, study + "1 --seed 0").status, 0);
+  for (const auto& [samples, says] : {std::pair{"010", "010 begins with 0; write 10"},
+                                      {"0x10", "is not a whole number from 1 to 1000000"},
+                                      {"-3", "is not a whole number from 1 to 1000000"},
+                                      {"0", "is not a whole number from 1 to 1000000"}}) {
+    const Ran ran = run_tool(folder, std::string("explain scene.toml --samples ") + samples);
+    EXPECT_EQ(ran.status, 2) << samples;
+    EXPECT_NE(ran.errors.find(says), std::string::npos) << ran.errors;
+  }
+}
+
+TEST(Query, CountsOfPairsAreRefusedWhereNoProbabilityCounts) {
+  const TemporaryFolder folder;
+  folder.write("poses.csv", header + "5,0,0,1,0,0,0\n");
+  for (const std::string command : {"query made:box made:box --poses poses.csv --out answers.csv",
+                                    "accuracy made:box made:box --work 64 --budgets-us none --poses 1 --out out"}) {
+    const Ran ran = run_tool(folder, command + " --k-min 3");
+    EXPECT_EQ(ran.status, 2) << command;
+    EXPECT_NE(ran.errors.find("--k-min requires --p-min"), std::string::npos) << ran.errors;
+    EXPECT_EQ(run_tool(folder, command + " --k-min 3 --p-min 0.9").status, 0) << command;
+  }
+}
+
 TEST(Query, WrongUsageIsStatusTwo) {
   const TemporaryFolder folder;
   folder.write("poses.csv", header + "0,0,0,1,0,0,0\n");
