@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
 #include "odds/report/accuracy/report.hpp"
 
 namespace odds::tool {
@@ -10,15 +14,20 @@ namespace {
 using report::AccuracyRow;
 using report::Trial;
 
+/// In the order of the bands, each once; those of a group stand side by side.
+std::vector<std::string_view> groups_of(const report::StudySettings& s) {
+  std::vector<std::string_view> groups;
+  for (const report::PoseBand& band : report::pose_bands(s.procedure)) {
+    if (groups.empty() || groups.back() != band.group) groups.push_back(band.group);
+  }
+  return groups;
+}
+
 std::string head(const report::StudySettings& s) {
   std::string text =
       fmt::format("{:<22}{:>8}{:>8}{:>16}{:>7}{:>7}{:>7}{:>7}{:>8}{:>8}{:>8}", "limit", "proved", "wrong",
                   "95 % interval", "f.hit", "f.miss", "P said", "hits", "p50 us", "p99 us", "over");
-  std::string_view last;
-  for (const report::PoseBand& band : report::pose_bands(s.procedure)) {
-    if (band.group != last) text += fmt::format("{:>9}", band.group);
-    last = band.group;
-  }
+  for (const std::string_view group : groups_of(s)) text += fmt::format("{:>9}", group);
   return text + "\n";
 }
 
@@ -35,6 +44,18 @@ std::string line(const Trial& trial, const AccuracyRow& r) {
   text += fmt::format("{:>8.1f}{:>8.1f}", r.wall_us.p50, r.wall_us.p99);
   return text + (trial.kind == Trial::Kind::time ? fmt::format("{:>8.2f}", r.net_overshoot_us.p99)
                                                  : fmt::format("{:>8}", "-"));
+}
+
+/// A shard may have no pose of a group.
+std::string shares_by_group(const report::StudySettings& s, const std::vector<AccuracyRow>& rows, std::size_t trial) {
+  std::string text;
+  for (const std::string_view group : groups_of(s)) {
+    const auto row = std::find_if(rows.begin(), rows.end(), [&](const AccuracyRow& r) {
+      return r.trial == trial && r.scope == "group" && r.band == group;
+    });
+    text += row != rows.end() ? fmt::format("{:>8.2f}%", 100.0 * row->share_wrong()) : fmt::format("{:>9}", "-");
+  }
+  return text;
 }
 
 /// Where contacts were said to be, of the proved and the unproved answers, in the band that forces are judged by.
@@ -70,10 +91,7 @@ std::string accuracy_table(const report::Study& study, const std::vector<Accurac
                   s.mesh_b, s.triangles_b, study.poses.size(), name(s.procedure), s.bounding_volume, s.estimator);
   text += report::headline(study, rows) + "\n\n" + head(s);
   for (const AccuracyRow& row : rows) {
-    if (row.scope == "all") text += line(s.trials[row.trial], row);
-    if (row.scope == "group") text += fmt::format("{:>8.2f}%", 100.0 * row.share_wrong());
-    const bool last = &row == &rows.back() || (&row + 1)->scope == "all" || (&row + 1)->trial != row.trial;
-    if (last) text += "\n";
+    if (row.scope == "all") text += line(s.trials[row.trial], row) + shares_by_group(s, rows, row.trial) + "\n";
   }
   text += places(study, rows);
   text +=

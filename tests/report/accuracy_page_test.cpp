@@ -83,6 +83,22 @@ TEST(AccuracyPage, WhatIsWrittenIsReadBack) {
   }
 }
 
+TEST(AccuracyPage, SaysHowThePosesOfItsProcedureWereMade) {
+  Study study = made_study("a.obj");
+  for (const auto& [procedure, says] :
+       {std::pair{Procedure::distance, "B comes towards A with a random rotation"},
+        {Procedure::tumbling, "B is turned about z at random and comes along x"},
+        {Procedure::nested, "B stands inside A, both centres in one place, turned by up to 0.2 degrees"}}) {
+    study.settings.procedure = procedure;
+    const testing::TemporaryFolder folder;
+    study.poses.clear();
+    study.samples.assign(study.settings.trials.size(), {});
+    const auto files = write_accuracy_report(folder.path(), study, accuracy_rows(study));
+    ASSERT_TRUE(files.ok()) << files.error().message();
+    EXPECT_NE(testing::contents_of(files.value().page.string()).find(says), std::string::npos) << name(procedure);
+  }
+}
+
 TEST(AccuracyPage, TheReplayCommandQuotesNamesForTheShell) {
   StudySettings settings;
   settings.mesh_a = "it's a mesh.obj";
@@ -92,6 +108,9 @@ TEST(AccuracyPage, TheReplayCommandQuotesNamesForTheShell) {
   const std::string command = replay_command(settings, {Trial::Kind::work, 64, 0.9}, "worst/01.csv");
   EXPECT_NE(command.find("'it'\\''s a mesh.obj' plain.obj"), std::string::npos) << command;
   EXPECT_NE(command.find("--work 64 --p-min 0.9 --k-min 10"), std::string::npos) << command;
+  settings.mesh_b = "-x.obj";
+  const std::string dashed = replay_command(settings, {Trial::Kind::work, 64, 1.0}, "-out/worst/01.csv");
+  EXPECT_NE(dashed.find(" ./-x.obj --poses ./-out/worst/01.csv "), std::string::npos) << dashed << ": no options";
 }
 
 TEST(AccuracyPage, ABrowserDrawsAllChartsWithoutAnError) {

@@ -146,13 +146,14 @@ std::string bands_table(const Study& study, const std::vector<AccuracyRow>& rows
   return html + "</table></div>\n";
 }
 
-std::string worst_table(const Study& study) {
+std::string worst_table(const Study& study, const std::filesystem::path& directory) {
   const auto worst = worst_poses(study, most_worst_poses);
   if (worst.empty()) return "<p>No pose was answered other than by a correct proof.</p>\n";
   std::string html =
-      "<p>Each stands in a file of its own, which says in its first lines how to answer it again; run that in the "
-      "folder "
-      "of this page. Ranked by the squared error of the probability, added over all limits.</p>\n<div class=\"wide\">"
+      "<p>Each stands in a file of its own, which says in its first lines how to answer it again; run that where the "
+      "study was run, "
+      "with its files still there. Ranked by the squared error of the probability, added over all limits.</p>\n<div "
+      "class=\"wide\">"
       "<table class=\"figures\"><tr><th>file</th><th>pose</th><th>distance</th><th>truth</th><th>worst limit</th><th>"
       "answer</th><th>P</th></tr>\n";
   std::size_t place = 0;
@@ -166,7 +167,8 @@ std::string worst_table(const Study& study) {
         truth.hit ? "hit" : "clear", label(study.settings.trials[w.trial]), name(sample.verdict), sample.probability);
   }
   html += "</table></div>\n<p>For example: <code>" +
-          html_escaped(replay_command(study.settings, study.settings.trials[worst.front().trial], "worst/01.csv")) +
+          html_escaped(replay_command(study.settings, study.settings.trials[worst.front().trial],
+                                      worst_file(directory, 1).string())) +
           "</code></p>\n";
   return html;
 }
@@ -193,21 +195,32 @@ std::string charts_of_error(const Study& study) {
   return html + "</div>\n";
 }
 
+const char* how_posed(Procedure procedure) {
+  switch (procedure) {
+    case Procedure::distance:
+      return "B comes towards A with a random rotation from a random direction until they touch (found with the exact "
+             "search), then stands off until the surfaces are the stated distance apart, or moves on by the stated "
+             "way.";
+    case Procedure::tumbling:
+      return "A stands still, B is turned about z at random and comes along x; distances are ways from the first "
+             "contact.";
+    case Procedure::nested:
+      break;
+  }
+  return "B stands inside A, both centres in one place, turned by up to 0.2 degrees, and moves out in a random "
+         "direction until they touch (found with the exact search); then it stands off until the surfaces are the "
+         "stated distance apart, or moves on by the stated way.";
+}
+
 std::string study_section(const Study& study) {
   const StudySettings& s = study.settings;
-  const char* how =
-      s.procedure == Procedure::distance
-          ? "B comes towards A with a random rotation from a random direction until they touch (found with the exact "
-            "search), then stands off until the surfaces are the stated distance apart, or moves on by the stated way."
-          : "A stands still, B is turned about z at random and comes along x; distances are ways from the first "
-            "contact.";
   return fmt::format(
       "<h2 id=\"study\">This study</h2>\n<p>{} Distances are parts of the smaller body's size ({:.6g} m, diagonal of "
       "its bounding box). What is true in a pose was proved by the exact search of the wide engine without a limit. "
       "Procedure {}, seed {}, {} poses for each distance; bounding volume {}, estimator {}, k_min {}, up to {} "
       "contact{}. Each query stands alone: nothing is remembered of the one before.</p>\n",
-      how, s.size_m, name(s.procedure), s.seed, grouped(s.poses_per_band), s.bounding_volume, s.estimator, s.k_min,
-      s.contacts, s.contacts == 1 ? "" : "s");
+      how_posed(s.procedure), s.size_m, name(s.procedure), s.seed, grouped(s.poses_per_band), s.bounding_volume,
+      s.estimator, s.k_min, s.contacts, s.contacts == 1 ? "" : "s");
 }
 
 std::string cards(const Study& study, const std::vector<AccuracyRow>& rows) {
@@ -277,7 +290,8 @@ std::string footer(const Study& study, bool charts) {
 
 }  // namespace
 
-std::string accuracy_page(const Study& study, const std::vector<AccuracyRow>& rows) {
+std::string accuracy_page(const Study& study, const std::vector<AccuracyRow>& rows,
+                          const std::filesystem::path& directory) {
   const bool charts = !chart_library_version().empty();
   const std::string title = study.settings.mesh_a + " and " + study.settings.mesh_b + " · odds accuracy";
   std::string html = page_begin(title, accuracy_script()) + top(study, rows) + cards(study, rows) +
@@ -291,7 +305,8 @@ std::string accuracy_page(const Study& study, const std::vector<AccuracyRow>& ro
   html += verdicts_table(study, rows) + odds_section(study, rows, charts) + time_section(study, rows, charts);
   html += contacts_section(charts);
   html += "<h2 id=\"bands\">Wrong verdicts by distance</h2>\n" + bands_table(study, rows);
-  html += "<h2 id=\"worst\">The worst poses</h2>\n" + worst_table(study) + study_section(study) + footer(study, charts);
+  html += "<h2 id=\"worst\">The worst poses</h2>\n" + worst_table(study, directory) + study_section(study) +
+          footer(study, charts);
   return html + page_end(charts ? accuracy_page_data(study, rows) : "", accuracy_script());
 }
 

@@ -16,8 +16,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// As a shell reads it back.
-std::string quoted(const std::string& word) {
+/// A file as a shell reads it back; one like -x.obj as ./-x.obj, which no command takes for an option.
+std::string quoted(const std::string& file) {
+  const std::string word = file.starts_with('-') ? "./" + file : file;
   const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
     return std::isalnum(c) != 0 || std::string_view("_-./:=,+").find(static_cast<char>(c)) != std::string_view::npos;
   });
@@ -39,14 +40,12 @@ std::string worst_text(const Study& study, const WorstPose& worst, const std::st
   const Sample& sample = study.samples[worst.trial][worst.pose];
   return fmt::format(
              "# pose {}, {}; truth: {}; squared error of the probability, added over all limits: {:.4g}\n"
-             "# at {}: {} with P = {}\n# {}\n",
+             "# at {}: {} with P = {}\n# to answer it again, where the study was run:\n# {}\n",
              truth.pose.index, pose_bands(study.settings.procedure)[truth.pose.band].name, truth.hit ? "hit" : "clear",
              worst.error, trial.label(), name(sample.verdict), sample.probability,
              replay_command(study.settings, trial, file)) +
          one_pose_csv(study, worst.pose);
 }
-
-std::string worst_name(std::size_t place) { return fmt::format("{:02}.csv", place); }
 
 std::optional<Error> write_worst(const fs::path& directory, const Study& study, AccuracyFiles& files) {
   std::error_code code;
@@ -54,11 +53,11 @@ std::optional<Error> write_worst(const fs::path& directory, const Study& study, 
   if (code) return Error{(directory / "worst").string(), "", "cannot be made: " + code.message(), "give another --out"};
   std::size_t place = 0;
   for (const WorstPose& worst : worst_poses(study, most_worst_poses)) {
-    const std::string name = worst_name(++place);
-    files.worst.push_back(directory / "worst" / name);
-    if (auto error = write_file(files.worst.back(), worst_text(study, worst, "worst/" + name))) return error;
+    files.worst.push_back(worst_file(directory, ++place));
+    const std::string name = files.worst.back().string();
+    if (auto error = write_file(files.worst.back(), worst_text(study, worst, name))) return error;
   }
-  while (++place <= most_worst_poses) fs::remove(directory / "worst" / worst_name(place), code);  // of an earlier study
+  while (++place <= most_worst_poses) fs::remove(worst_file(directory, place), code);  // of an earlier study
   return std::nullopt;
 }
 
@@ -73,9 +72,14 @@ Result<std::string> text_of(const fs::path& path) {
 
 }  // namespace
 
+fs::path worst_file(const fs::path& directory, std::size_t place) {
+  return directory / "worst" / fmt::format("{:02}.csv", place);
+}
+
 std::string replay_command(const StudySettings& s, const Trial& trial, const std::string& file) {
-  std::string text = fmt::format("odds query {} {} --poses {} --out - --bv {} --estimator {} --contacts {}",
-                                 quoted(s.mesh_a), quoted(s.mesh_b), file, s.bounding_volume, s.estimator, s.contacts);
+  std::string text =
+      fmt::format("odds query {} {} --poses {} --out - --bv {} --estimator {} --contacts {}", quoted(s.mesh_a),
+                  quoted(s.mesh_b), quoted(file), s.bounding_volume, s.estimator, s.contacts);
   if (s.tau != query::ShapeOptions{}.tau) text += fmt::format(" --tau {}", s.tau);
   if (s.scale_a != 1.0) text += fmt::format(" --scale-a {}", s.scale_a);
   if (s.scale_b != 1.0) text += fmt::format(" --scale-b {}", s.scale_b);
@@ -98,7 +102,7 @@ Result<AccuracyFiles> write_accuracy_report(const fs::path& directory, const Stu
   if (auto error = write_file(files.rows, rows_csv(study, rows))) return *error;
   if (auto error = write_worst(directory, study, files)) return *error;
   if (auto error = write_file(files.summary, study_json(study, rows))) return *error;
-  if (auto error = write_file(files.page, accuracy_page(study, rows))) return *error;
+  if (auto error = write_file(files.page, accuracy_page(study, rows, directory))) return *error;
   return files;
 }
 

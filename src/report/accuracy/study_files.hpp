@@ -1,6 +1,8 @@
 // The contents of a study's files, as text.
 #pragma once
 
+#include <cstddef>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -23,8 +25,12 @@ namespace odds::report {
 /// Settings, shard and machine from what study_json wrote; poses and samples are left empty.
 [[nodiscard]] Result<Study> read_study_json(const std::string& file, const std::string& text);
 
-/// The page for people.
-[[nodiscard]] std::string accuracy_page(const Study& study, const std::vector<AccuracyRow>& rows);
+/// Where the pose of a place stands, 1 for the worst: DIRECTORY/worst/01.csv.
+[[nodiscard]] std::filesystem::path worst_file(const std::filesystem::path& directory, std::size_t place);
+
+/// The page for people. `directory`: as it was given, for the commands on the page.
+[[nodiscard]] std::string accuracy_page(const Study& study, const std::vector<AccuracyRow>& rows,
+                                        const std::filesystem::path& directory);
 /// The numbers behind its charts, as JSON that is safe inside a script element.
 [[nodiscard]] std::string accuracy_page_data(const Study& study, const std::vector<AccuracyRow>& rows);
 
