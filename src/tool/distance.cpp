@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "odds/realtime/clock.hpp"
+#include "tool/answer_table.hpp"
 #include "tool/command.hpp"
 #include "tool/pose_run.hpp"
 #include "tool/progress_line.hpp"
@@ -36,11 +37,8 @@ std::string line_of(std::size_t row, const query::DistanceAnswer& answer, double
 
 void print_summary(std::vector<double> times, std::size_t proved, std::size_t found) {
   std::sort(times.begin(), times.end());
-  const auto at = [&times](double share) {
-    return times[std::min(times.size() - 1, static_cast<std::size_t>(share * static_cast<double>(times.size())))];
-  };
   fmt::print(stderr, "{} poses: {} proved, {} with nearest points; p50 {:.2f}, p99 {:.2f}, max {:.2f} us\n",
-             times.size(), proved, found, at(0.5), at(0.99), times.back());
+             times.size(), proved, found, percentile(times, 0.5), percentile(times, 0.99), times.back());
 }
 
 int run(const DistanceOptions& options) {

@@ -1,6 +1,10 @@
 // The command `odds distance`, run as a user runs it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <sstream>
+#include <vector>
+
 #include "support/run_tool.hpp"
 
 namespace odds {
@@ -30,6 +34,30 @@ TEST(DistanceCommand, LeavesOutWhatIsBeyondTheMargin) {
   const Ran ran = run_tool(folder, "distance made:box made:box --poses poses.csv --out - --within 0.125");
   ASSERT_EQ(ran.status, 0) << ran.errors;
   EXPECT_NE(ran.output.find("\n0,0.125,,1,,,,,,,,,"), std::string::npos) << ran.output;
+}
+
+TEST(DistanceCommand, ThePercentilesAreThoseOfTheRowsByNearestRank) {
+  const testing::TemporaryFolder folder;
+  std::string poses = "x,y,z,qw,qx,qy,qz\n";
+  for (int i = 0; i < 100; ++i) poses += std::to_string(0.5 + 0.01 * i) + ",0,0,1,0,0,0\n";
+  folder.write("poses.csv", poses);
+  const Ran ran = run_tool(folder, "distance made:torus_knot made:gear --poses poses.csv --out distances.csv");
+  ASSERT_EQ(ran.status, 0) << ran.errors;
+  std::istringstream lines(testing::contents_of(folder / "distances.csv"));
+  std::string line;
+  std::getline(lines, line);
+  std::vector<std::string> times;
+  while (std::getline(lines, line)) times.push_back(line.substr(line.rfind(',') + 1));
+  ASSERT_EQ(times.size(), 100U);
+  std::sort(times.begin(), times.end(),
+            [](const std::string& a, const std::string& b) { return std::stod(a) < std::stod(b); });
+  const auto said = [&](const std::string& name) {
+    const std::size_t at = ran.errors.find(name + " ") + name.size() + 1;
+    return std::stod(ran.errors.substr(at));
+  };
+  EXPECT_NEAR(said("p50"), std::stod(times[49]), 0.0051);
+  EXPECT_NEAR(said("p99"), std::stod(times[98]), 0.0051) << "the 99th of 100, not the longest";
+  EXPECT_NEAR(said("max"), std::stod(times[99]), 0.0051);
 }
 
 TEST(DistanceCommand, RefusesNonsense) {
