@@ -10,6 +10,7 @@
 #include "odds/scene/scene.hpp"
 #include "tool/command.hpp"
 #include "tool/one_line.hpp"
+#include "tool/output_folder.hpp"
 
 namespace odds::tool {
 namespace {
@@ -36,6 +37,7 @@ int import_scene(const ImportArguments& arguments) {
   const Result<scene::ImportedScene> imported = scene::import_description(arguments.description, options);
   if (!imported) return fail(imported.error());
   const scene::ImportedScene& made = imported.value();
+  if (const auto error = prepare_folder(arguments.out, {})) return fail(*error);
   if (const auto error = scene::write_imported(made, arguments.out)) return fail(*error);
   const std::filesystem::path file = std::filesystem::path(arguments.out) / "scene.toml";
   const Result<scene::Scene> scene = scene::read_scene(file);

@@ -68,6 +68,11 @@ TEST_F(HostileUse, AnEmptyNameOfAnOutputIsRefusedAndLeavesNothing) {
   const std::size_t before = files();
   expect_one_line_with(query("--poses poses.csv --out ''"), "empty");
   EXPECT_EQ(files(), before);
+  folder.write("r.urdf",
+               "<robot name=\"r\"><link name=\"l\"><collision><geometry><sphere radius=\"1\"/></geometry>"
+               "</collision></link></robot>");
+  expect_one_line_with(run_tool(folder, "import r.urdf --out ''"), "the name of the output folder is empty");
+  EXPECT_EQ(files(), before + 1);
 }
 
 TEST_F(HostileUse, AMistypedCommandOrOptionIsNamedWithTheNearest) {
