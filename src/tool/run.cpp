@@ -36,33 +36,42 @@ struct RunArguments {
   std::string ticks_of;
 };
 
-// Ends the run early, but with its reports, on Ctrl-C; shows the time that has passed. SIGINT must be blocked before
-// any other thread starts.
+// While it lives, Ctrl-C ends the loop, which still gets its reports, and a second one the program; before and after,
+// one is enough. Shows the time that has passed. To be made before the loop's threads, so that they leave SIGINT to it.
 class Watcher {
  public:
-  Watcher(double seconds, std::stop_source& stop)
-      : thread_([seconds, &stop](const std::stop_token& ended) {
-          sigset_t interrupt;
-          sigemptyset(&interrupt);
-          sigaddset(&interrupt, SIGINT);
-          const auto start = std::chrono::steady_clock::now();
-          ProgressLine line("loop");
-          while (!ended.stop_requested()) {
-            constexpr timespec look_every{0, 200'000'000};
-            if (sigtimedwait(&interrupt, nullptr, &look_every) == SIGINT) stop.request_stop();
-            const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
-            line.show(std::min(1.0, passed.count() / seconds));
-          }
-        }) {}
-
-  static void block_interrupt() {
-    sigset_t interrupt;
-    sigemptyset(&interrupt);
-    sigaddset(&interrupt, SIGINT);
-    pthread_sigmask(SIG_BLOCK, &interrupt, nullptr);
+  Watcher(double seconds, std::stop_source& stop) {
+    sigemptyset(&interrupt_);
+    sigaddset(&interrupt_, SIGINT);
+    pthread_sigmask(SIG_BLOCK, &interrupt_, nullptr);
+    thread_ = std::jthread([this, seconds, &stop](const std::stop_token& ended) { watch(seconds, stop, ended); });
   }
+  ~Watcher() {
+    thread_.request_stop();
+    thread_.join();
+    constexpr timespec at_once{0, 0};
+    (void)sigtimedwait(&interrupt_, nullptr, &at_once);  // one that nobody saw was meant for the loop
+    pthread_sigmask(SIG_UNBLOCK, &interrupt_, nullptr);
+  }
+  Watcher(const Watcher&) = delete;
+  Watcher& operator=(const Watcher&) = delete;
 
  private:
+  void watch(double seconds, std::stop_source& stop, const std::stop_token& ended) const {
+    const auto start = std::chrono::steady_clock::now();
+    ProgressLine line("loop");
+    while (!ended.stop_requested()) {
+      constexpr timespec look_every{0, 200'000'000};
+      if (sigtimedwait(&interrupt_, nullptr, &look_every) == SIGINT && !stop.request_stop()) {
+        pthread_sigmask(SIG_UNBLOCK, &interrupt_, nullptr);
+        (void)raise(SIGINT);
+      }
+      const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
+      line.show(std::min(1.0, passed.count() / seconds));
+    }
+  }
+
+  sigset_t interrupt_{};
   std::jthread thread_;
 };
 
@@ -105,7 +114,6 @@ int run(const RunArguments& arguments) {
   if (allocations_are_counted()) options.allocations = &allocations_of_this_thread;
   BuildProgress progress;
   options.progress = [&](std::string_view what, double share) { progress.show(what, share); };
-  Watcher::block_interrupt();
   auto made = scene::Simulation::make(std::move(scene).value(), options);
   progress.done();
   if (!made) return fail(made.error());
