@@ -137,6 +137,8 @@ TEST(MadeShapes, TheListByNameHoldsEveryHeader) {
 
 TEST(MadeShapes, ErrorsSuggestTheNearestName) {
   EXPECT_NE(make_shape("made:toruss").error().message().find("did you mean \"torus\"?"), std::string::npos);
+  EXPECT_NE(make_shape("icosphere:radius=1,radius=2").error().message().find("\"radius\" is given twice"),
+            std::string::npos);
   EXPECT_NE(make_shape("torus:rin=1").error().message().find("did you mean \"ring\"?"), std::string::npos);
   EXPECT_EQ(make_shape("torus:ring=-1").error().message(),
             "made:torus: ring = -1 is out of range; give a value from 1e-06 to 10000");

@@ -94,9 +94,16 @@ std::optional<Error> set_field(Shape& shape, std::string_view setting) {
 template <class Shape>
 Result<TriangleMesh> make_from(std::string_view settings) {
   Shape shape;
+  std::vector<std::string_view> given;
   while (!settings.empty()) {
     const std::size_t comma = settings.find(',');
-    if (auto error = set_field(shape, settings.substr(0, comma))) return *std::move(error);
+    const std::string_view setting = settings.substr(0, comma);
+    if (auto error = set_field(shape, setting)) return *std::move(error);
+    const std::string_view key = setting.substr(0, setting.find('='));
+    if (std::find(given.begin(), given.end(), key) != given.end()) {
+      return refuse(shape, "\"" + std::string(key) + "\" is given twice", "keep one of the two values");
+    }
+    given.push_back(key);
     settings = comma == std::string_view::npos ? std::string_view{} : settings.substr(comma + 1);
   }
   return make(shape);
