@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "support/run_tool.hpp"
+#include "support/sanitizer.hpp"
 
 namespace odds {
 namespace {
@@ -195,6 +196,20 @@ TEST_F(HostileUse, ScenesOfAbsurdSizesAreRefusedWhereOdeWouldEndTheProgram) {
     folder.write("scene.toml", text);
     expect_one_line_with(run_tool(folder, "run --fast --seconds 0.05 scene.toml --out out"), "scene.toml:");
   }
+}
+
+TEST_F(HostileUse, ASceneWithMorePairsThanMemoryHoldsAsksForMemory) {
+  if (support::under_sanitizer) GTEST_SKIP() << "a sanitizer needs all addresses";
+  std::string crowd = "format = \"odds.scene/1\"\n[[mesh]]\nname = \"box\"\nfile = \"made:box\"\n";
+  for (int i = 0; i < 1000; ++i) {  // half a million pairs, each of more than a kilobyte
+    crowd += "[[body]]\nname = \"" + std::to_string(i) + "\"\nmesh = \"box\"\nmotion = \"dynamic\"\nmass_kg = 1\n" +
+             "position_m = [" + std::to_string(i) + ", 0, 0]\n";
+  }
+  folder.write("scene.toml", crowd);
+  const Ran ran = run_tool(folder, std::string("--help >/dev/null && (ulimit -v 180000; '") + ODDS_TOOL +
+                                       "' run scene.toml --fast --seconds 0.01 --out out)");
+  expect_one_line_with(ran, "cannot be collided");
+  EXPECT_NE(ran.errors.find("; free memory, or use fewer bodies\n"), std::string::npos) << ran.errors;
 }
 
 TEST_F(HostileUse, ASceneWithKeysNestedWithoutEndIsRefused) {

@@ -123,9 +123,10 @@ std::optional<Error> World::Implementation::prepare_pairs() {
     for (std::size_t j = i + 1; j < bodies.size(); ++j) {
       if (bodies[i]->body == nullptr && bodies[j]->body == nullptr) continue;
       if (oddsPreparePair(bodies[i]->geom.id(), bodies[j]->geom.id()) == 0) {
+        const bool one_volume = bodies[i]->shape->volume() == bodies[j]->shape->volume();
         return Error{
             "", "", "'" + bodies[i]->name + "' and '" + bodies[j]->name + "' cannot be collided: " + oddsGetLastError(),
-            "use one bounding volume for all bodies"};
+            one_volume ? "free memory, or use fewer bodies" : "use one bounding volume for all bodies"};
       }
     }
   }
