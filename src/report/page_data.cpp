@@ -113,6 +113,7 @@ std::vector<Stretch> time_line(const RunInfo& info, std::span<const TickRecord> 
     }
     add(line.back(), tick, info.period_ns);
   }
+  line.back().skipped += skipped_at_the_end(info, ticks);
   return line;
 }
 

@@ -250,6 +250,8 @@ TEST(RunSummary, periods_skipped_at_the_end_count_with_the_time_until_the_run_en
   const Hlog log = latency_log(made.info, made.ticks);
   ASSERT_FALSE(log.intervals.empty());
   holds_each_once(log.intervals.front().histogram);
+  const auto data = nlohmann::json::parse(page_data(made.info, summary, made.ticks));
+  EXPECT_EQ(data["time"]["skipped"], nlohmann::json({0, 5}));
 }
 
 TEST(RunSummary, periods_skipped_after_a_tick_that_was_in_time_waited_a_period_at_least) {

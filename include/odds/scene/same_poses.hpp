@@ -16,10 +16,11 @@ struct ToolContact {
   std::uint32_t contacts = 0;
 };
 
-/// The leader runs without a limit. Before each tick every follower is put where the leader is, with its velocities and
-/// with what the hand says, and then takes the same tick within its own limit: the two differ by the answers of that
-/// tick's queries, not by what became of earlier differences. A follower's queries remember their own earlier answers,
-/// and its effects their own past, as in a run with that limit.
+/// The leader runs without a limit, of a query or of a frame; the followers keep the scene's frame. Before each tick
+/// every follower is put where the leader is, with its velocities and with what the hand says, and then takes the same
+/// tick within its own limit: the two differ by the answers of that tick's queries, not by what became of earlier
+/// differences. A follower's queries remember their own earlier answers, and its effects their own past, as in a run
+/// with that limit.
 class SamePoses {
  public:
   /// In simulated time, so that limits are work units and the run repeats. An error if no body follows a device.
