@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 /// A file as a shell reads it back; one like -x.obj as ./-x.obj, which no command takes for an option.
 std::string quoted(const std::string& file) {
-  const std::string word = file.starts_with('-') ? "./" + file : file;
+  std::string word = file.starts_with('-') ? "./" + file : file;
   const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
     return std::isalnum(c) != 0 || std::string_view("_-./:=,+").find(static_cast<char>(c)) != std::string_view::npos;
   });
