@@ -1,4 +1,4 @@
-// One query, three ways: without a limit, within 20 microseconds, and within a repeatable amount of work.
+// One query, three ways: without a limit, within 3 microseconds, and within a repeatable amount of work.
 #include <odds/mesh/made/by_name.hpp>
 #include <odds/query/pair.hpp>
 

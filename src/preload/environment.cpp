@@ -2,8 +2,10 @@
 #include "preload/environment.hpp"
 
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <string_view>
+#include <type_traits>
 
 namespace odds::preload {
 namespace {
@@ -30,11 +32,19 @@ void read_number(const char* name, double least, double most, Number& value, std
   if (text == nullptr || *text == '\0') return;
   char* end = nullptr;
   const double number = std::strtod(text, &end);
-  if (*end == '\0' && number >= least && number <= most) {
+  const bool whole = std::is_floating_point_v<Number> || number == std::floor(number);
+  if (*end == '\0' && number >= least && number <= most && whole) {
     value = static_cast<Number>(number);
     return;
   }
-  mistakes.push_back(std::string(name) + "=" + text + " is not a number in range; the default is used");
+  mistakes.push_back(std::string(name) + "=" + text + " is not a" + (std::is_floating_point_v<Number> ? "" : " whole") +
+                     " number in range; the default is used");
+}
+
+std::string_view trimmed(std::string_view word) {
+  while (word.starts_with(' ')) word.remove_prefix(1);
+  while (word.ends_with(' ')) word.remove_suffix(1);
+  return word;
 }
 
 unsigned read_partners(const char* text, std::vector<std::string>& mistakes) {
@@ -42,7 +52,7 @@ unsigned read_partners(const char* text, std::vector<std::string>& mistakes) {
   std::string_view rest = text;
   while (!rest.empty()) {
     const std::size_t comma = rest.find(',');
-    const std::string_view word = rest.substr(0, comma);
+    const std::string_view word = trimmed(rest.substr(0, comma));
     rest = comma == std::string_view::npos ? std::string_view() : rest.substr(comma + 1);
     unsigned found = 0;
     for (const PartnerName& partner : partner_names) found |= partner.name == word ? partner.bit : 0u;
@@ -53,7 +63,9 @@ unsigned read_partners(const char* text, std::vector<std::string>& mistakes) {
     }
     bits |= found;
   }
-  return bits != 0 ? bits : static_cast<unsigned>(ODDS_TAKE_ALL);
+  if (bits != 0) return bits;
+  if (*text != '\0') mistakes.emplace_back("ODDS_PARTNERS: no known partner is left; all are taken over");
+  return ODDS_TAKE_ALL;
 }
 
 }  // namespace

@@ -164,6 +164,7 @@ TEST_F(ConvexTest, WhatIsNoConvexSolidIsRefused) {
   for (unsigned i = 0; i < 8; ++i) flat.points[3 * i + 2] = 0;
   EXPECT_NE(refused(flat, 8, 6), "");
   EXPECT_NE(refused(arrays, 3, 6), "");
+  EXPECT_NE(refused(arrays, -1U, 6).find("oddsRegisterConvex: more than 4096 points"), std::string::npos);
   EXPECT_EQ(oddsRegisterConvex(nullptr, arrays.points.data(), 8, arrays.polygons.data(), 6), 0);
   EXPECT_EQ(oddsRegisterConvex(dCreateSphere(space, 1), arrays.points.data(), 8, arrays.polygons.data(), 6), 0);
 }

@@ -168,6 +168,8 @@ TEST_F(FrameBudget, RefusesWhatMakesNoSense) {
   EXPECT_EQ(oddsFrameBudgetSetAttention(budget, nullptr, 0.0), 1);
   EXPECT_EQ(oddsSpaceCollide(nullptr, nullptr, callback, budget), 0);
   EXPECT_EQ(oddsSpaceCollide(space, nullptr, nullptr, budget), 0);
+  EXPECT_EQ(oddsSpaceCollide(reinterpret_cast<dSpaceID>(dCreateSphere(space, 1)), nullptr, callback, budget), 0)
+      << "no space";
   EXPECT_EQ(oddsSpaceCollide(space, nullptr, callback, nullptr), 0);
   EXPECT_EQ(oddsFrameBudgetGetSummary(budget, nullptr), 0);
   EXPECT_NE(std::string(oddsGetLastError()), "");

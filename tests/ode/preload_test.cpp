@@ -108,5 +108,17 @@ TEST_F(Preload, MistakesInTheEnvironmentAreToldAndHarmless) {
   EXPECT_EQ(with.sideways, 0);
 }
 
+TEST_F(Preload, FractionsOfWholeNumbersAndListsWithoutAPartnerAreMistakes) {
+  const ClientRun with =
+      run("ODDS_WORK_UNITS=0.5 ODDS_MAX_CONTACTS=1.5 ODDS_PARTNERS=none ODDS_REPORT=off ODDS_BUDGET_US=99.5", true);
+  ASSERT_EQ(with.status, 0) << with.output;
+  EXPECT_NE(with.output.find("ODDS_WORK_UNITS=0.5 is not a whole number in range"), std::string::npos) << with.output;
+  EXPECT_NE(with.output.find("ODDS_MAX_CONTACTS=1.5 is not a whole number"), std::string::npos) << with.output;
+  EXPECT_NE(with.output.find("no known partner is left"), std::string::npos) << with.output;
+  EXPECT_EQ(with.output.find("ODDS_BUDGET_US"), std::string::npos) << with.output;
+  const ClientRun spaced = run("ODDS_PARTNERS=' sphere, ray' ODDS_REPORT=-", true);
+  EXPECT_EQ(spaced.output.find("unknown"), std::string::npos) << spaced.output;
+}
+
 }  // namespace
 }  // namespace odds::test

@@ -214,6 +214,7 @@ TEST(InnerSpheres, RefusesWhatHasNoInside) {
   EXPECT_NE(terrain.error().message().find("has no inside"), std::string::npos) << terrain.error().message();
   EXPECT_NE(terrain.error().message().find("odds inspect"), std::string::npos);
   EXPECT_FALSE(InnerSpheres::pack(made("gear")->without_polygons()).ok());
+  EXPECT_FALSE(InnerSpheres::pack(nullptr).ok());
   EXPECT_FALSE(InnerSpheres::pack(made("gear"), 7).ok());
   EXPECT_FALSE(InnerSpheres::pack(made("gear"), 513).ok());
 }

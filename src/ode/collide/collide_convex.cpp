@@ -47,6 +47,10 @@ int oddsRegisterConvex(dGeomID convex, const dReal* points, unsigned point_count
         "oddsRegisterConvex: the library is not initialised, or not a geom made by dCreateConvex, or no points");
     return 0;
   }
+  if (point_count > ConvexShape::most_points) {
+    set_last_error("oddsRegisterConvex: more than 4096 points; give the arrays of dCreateConvex, or a mesh");
+    return 0;
+  }
   try {
     std::vector<odds::Vec3> corners(point_count);
     for (odds::Vec3& corner : corners) {

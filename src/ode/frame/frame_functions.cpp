@@ -89,7 +89,8 @@ int oddsFrameBudgetGetSummary(oddsFrameBudgetID budget, oddsFrameSummary* summar
 }
 
 int oddsSpaceCollide(dSpaceID space, void* data, dNearCallback* callback, oddsFrameBudgetID budget) noexcept {
-  if (space == nullptr || callback == nullptr || budget == nullptr) {
+  if (space == nullptr || dGeomIsSpace(reinterpret_cast<dGeomID>(space)) == 0 || callback == nullptr ||
+      budget == nullptr) {
     return refuse("oddsSpaceCollide: needs a space, a callback and a frame budget");
   }
   if (odds::ode::current_share != nullptr) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <iterator>
 
 #include "query/answer_odds/answer_odds.hpp"
 
@@ -17,7 +18,7 @@ namespace odds::query {
 }
 
 /// By odds_index.
-inline constexpr std::array<AnswerOdds, odds_tables> answer_odds = {{
+inline constexpr AnswerOdds answer_odds[] = {
     // aabb, cells, exact and incremental
     {{1.5070F,  -1.1197F, 0.0336F,  -0.0178F, -0.0600F, -0.0269F, -1.6828F, 0.0064F,  0.4430F, -0.0224F,
       -0.4733F, -0.0116F, -0.0036F, 0.0077F,  -0.0862F, -0.0102F, -0.0554F, -0.1134F, 0.0736F, 0.0512F,
@@ -258,6 +259,7 @@ inline constexpr std::array<AnswerOdds, odds_tables> answer_odds = {{
       0.5038F, 0.5344F, 0.6093F, 0.7005F, 0.8163F, 0.8952F, 0.9441F, 0.9593F, 0.9593F, 0.9593F},
      {0.1698F, 0.1698F, 0.1698F, 0.1698F, 0.1698F, 0.1924F, 0.2499F, 0.3069F, 0.3495F, 0.3988F, 0.5384F,
       0.5864F, 0.6314F, 0.7174F, 0.8186F, 0.8733F, 0.8733F, 0.8733F, 0.8733F, 0.8733F, 0.8733F}},
-}};
+};
+static_assert(std::size(answer_odds) == odds_tables, "a bounding volume lacks its four tables");
 
 }  // namespace odds::query

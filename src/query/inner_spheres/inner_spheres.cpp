@@ -215,6 +215,7 @@ std::array<double, InnerSpheres::corners> shares_of_corners(const Vec3& point, c
 }  // namespace
 
 Result<InnerSpheres> InnerSpheres::pack(const std::shared_ptr<const Shape>& shape, std::uint32_t count) {
+  if (!shape) return Error{"", "", "inner spheres need a shape", "build the shape first"};
   const std::string& name = shape->mesh().name();
   if (!shape->has_polygons()) return Error{name, "", "a shape without polygons has no inside", "keep its polygons"};
   if (!shape->is_solid()) {

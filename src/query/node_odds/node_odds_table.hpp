@@ -19,6 +19,7 @@ inline constexpr std::array<NodeWeights, 7> node_weights = {{
     {2.1670F, 0.3118F, 0.3803F, 0.7706F, -0.2379F, 0.0761F, -1.1457F, -0.1992F, -0.3518F, 0.0395F, -1.4097F,
      -0.0976F},  // hull
 }};
+static_assert(node_weights.size() + 1 == volume::kind_names.size(), "a bounding volume but wide, the last, lacks its row");
 
 /// What orders a search of hulls. The odds that know which surfaces face the same way are truer, and prove less.
 inline constexpr NodeWeights hull_order = {1.7432F, 0.4108F, 0.8007F, 0.2896F, -0.1292F, 0.7450F, -0.1518F};
