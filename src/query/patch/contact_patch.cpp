@@ -23,6 +23,36 @@ using patch::thorough;
 using patch::Watch;
 using patch::Witness;
 
+/// Of more patches than contacts are wanted, puts first, behind the deepest, those that are far from each other in
+/// place or in direction, the deeper ones rather: a body on many feet must not be held by those of one side.
+void spread_out(std::span<Patch*> order, std::size_t wanted) noexcept {
+  Vec3 lower = order[0]->centre;
+  Vec3 upper = lower;
+  for (const Patch* p : order) {
+    lower = lower.cwiseMin(p->centre);
+    upper = upper.cwiseMax(p->centre);
+  }
+  const double lever = 0.5 * (upper - lower).norm();
+  const double deepest = order[0]->depth;
+  std::array<double, patch::Components::most> nearest;  // of those that are taken
+  nearest.fill(std::numeric_limits<double>::infinity());
+  for (std::size_t taken = 1; taken < wanted; ++taken) {
+    const Patch& last = *order[taken - 1];
+    std::size_t best = taken;
+    double most = -1.0;
+    for (std::size_t i = taken; i < order.size(); ++i) {
+      const Patch& p = *order[i];
+      nearest[i] = std::min(nearest[i], (p.centre - last.centre).norm() + lever * (p.normal - last.normal).norm());
+      const double worth = (deepest > 0.0 ? 0.5 + 0.5 * p.depth / deepest : 1.0) * nearest[i];
+      if (!(worth > most)) continue;
+      most = worth;
+      best = i;
+    }
+    std::swap(order[taken], order[best]);
+    std::swap(nearest[taken], nearest[best]);
+  }
+}
+
 /// Centroid of the surface that the rim spans, which unlike the mean of the rim does not care how finely it is cut.
 Vec3 span_centre(const patch::Rim& rim, std::span<const std::uint32_t> indices, const Vec3& middle, const Vec3& normal,
                  Watch& watch) noexcept {
@@ -327,7 +357,12 @@ Patch PatchBuilder::Scratch::patch_along(const Vec3& normal, const PatchInput& i
     made.low = std::min(made.low, height);
     made.high = std::max(made.high, height);
   }
-  made.low = std::min(made.low, made.high - made.depth);
+  // What it reaches through is often not at its rim: that of a body that has come right through a plate is at one face.
+  for (std::size_t i = 0; i < made.chosen.count; ++i) {
+    const Witness& w = made.chosen.witnesses[i];
+    made.low = std::min(made.low, made.normal.dot(w.on_a - rim.origin));
+    made.high = std::max(made.high, made.normal.dot(w.on_b - rim.origin));
+  }
   return made;
 }
 
@@ -385,6 +420,7 @@ void PatchBuilder::Scratch::write(const PatchInput& input) noexcept {
   std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count),
             [&rank](const Patch* p, const Patch* q) { return rank(p) != rank(q) ? rank(p) > rank(q) : p < q; });
   const std::size_t wanted = most_wanted;
+  if (count > wanted) spread_out({order.data(), count}, wanted);
   if (count >= wanted) {
     count = wanted;  // one contact a patch: at its middle, so that it bears without tipping
     for (std::size_t i = 0; i < count; ++i) {

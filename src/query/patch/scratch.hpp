@@ -40,7 +40,7 @@ struct Patch {
   Vec3 lower = Vec3::Zero();  ///< box of the rim
   Vec3 upper = Vec3::Zero();
   Vec3 centre = Vec3::Zero();  ///< of the surface that the rim spans
-  double low = 0.0;            ///< of the rim, and depth below it, along `normal`
+  double low = 0.0;            ///< of the rim, and of what its contacts reach through, along `normal`
   double high = 0.0;
   double depth = 0.0;
   double length = 0.0;  ///< of the rim

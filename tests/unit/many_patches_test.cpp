@@ -1,0 +1,112 @@
+// Bodies that touch in more places than there may be contacts, or right through each other.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <vector>
+
+#include "odds/math/random.hpp"
+#include "odds/mesh/made/by_name.hpp"
+#include "odds/query/pair.hpp"
+
+namespace odds::query {
+namespace {
+
+using Soup = std::pair<std::vector<Vec3>, std::vector<mesh::Triangle>>;
+
+Soup made(const std::string& name) {
+  const auto mesh = mesh::made::make_shape("made:" + name).value();
+  return {{mesh.vertices().begin(), mesh.vertices().end()}, {mesh.triangles().begin(), mesh.triangles().end()}};
+}
+
+void add(Soup& soup, const Soup& more, const Vec3& at) {
+  const auto first = static_cast<std::uint32_t>(soup.first.size());
+  for (const Vec3& vertex : more.first) soup.first.push_back(vertex + at);
+  for (const mesh::Triangle& t : more.second) soup.second.push_back({t[0] + first, t[1] + first, t[2] + first});
+}
+
+std::shared_ptr<const Shape> shape_of(const Soup& soup) {
+  auto mesh = mesh::TriangleMesh::make(soup.first, soup.second).value();
+  return Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(mesh))).value();
+}
+
+/// How far contacts reach beyond a point of the floor in the direction in which they do so least: below 0 it is not
+/// between them.
+double support(std::span<const Contact> contacts, const Vec3& center) {
+  double least = INFINITY;
+  for (int degrees = 0; degrees < 360; ++degrees) {
+    const double angle = degrees * std::numbers::pi / 180.0;
+    double most = -INFINITY;
+    for (const Contact& c : contacts) {
+      most = std::max(most, (c.position - center).dot(Vec3(std::cos(angle), std::sin(angle), 0.0)));
+    }
+    least = std::min(least, most);
+  }
+  return least;
+}
+
+class BedOnManyFeet : public ::testing::TestWithParam<int> {};
+
+TEST_P(BedOnManyFeet, IsHeldByThoseAllAround) {
+  const int feet = GetParam();
+  Soup bed = made("box:x=1,y=1,z=0.1");
+  for (Vec3& vertex : bed.first) vertex.z() += 0.25;
+  const Soup foot = made("box:x=0.05,y=0.05,z=0.25");
+  for (int i = 0; i < feet * feet; ++i) {
+    const auto place = [&](int k) { return -0.45 + 0.9 * k / (feet - 1); };
+    add(bed, foot, {place(i % feet), place(i / feet), 0.1});
+  }
+  const auto floor = shape_of(made("box:x=4,y=4,z=1"));
+  const auto body = shape_of(bed);
+  for (const double tilt : {0.0, 1e-6, 1e-4}) {
+    for (const int most : {3, 4, 8}) {
+      math::Pose pose;
+      pose.rotation = (Eigen::AngleAxisd(0.37, Vec3::UnitZ()) * Eigen::AngleAxisd(tilt, Vec3(0.6, 0.8, 0))).matrix();
+      pose.translation = Vec3(0.03, 0.02, 0.5 + 0.025 - 1e-3);
+      Request request;
+      request.max_contacts = most;
+      Pair pair = Pair::make(floor, body).value();
+      const Answer& answer = pair.run(pose, request);
+      ASSERT_EQ(answer.contacts.size(), static_cast<std::size_t>(most));
+      EXPECT_GT(support(answer.contacts, pose.translation), most == 3 ? 0.0 : 0.2) << tilt << ", " << most;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Feet, BedOnManyFeet, ::testing::Values(4, 6, 8));
+
+class ThroughAPlate : public ::testing::TestWithParam<const char*> {};
+
+// Deeper than the plate is thick: its rims on both faces push against each other.
+TEST_P(ThroughAPlate, TheShorterWayOutStands) {
+  const auto plate = shape_of(made("box:x=2,y=2,z=0.02"));
+  const Soup soup = made(GetParam());
+  const auto body = shape_of(soup);
+  math::Random random(5);
+  for (int i = 0; i < 100; ++i) {
+    math::Pose pose;
+    pose.rotation = random.rotation().toRotationMatrix();
+    double lowest = INFINITY;
+    for (const Vec3& vertex : soup.first) lowest = std::min(lowest, (pose.rotation * vertex).z());
+    const double depth = random.uniform(0.021, 0.05);
+    pose.translation = Vec3(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), 0.01 - lowest - depth);
+    Request request;
+    request.max_contacts = 8;
+    Pair pair = Pair::make(plate, body).value();
+    const Answer& answer = pair.run(pose, request);
+    ASSERT_FALSE(answer.contacts.empty());
+    for (const Contact& contact : answer.contacts) {
+      EXPECT_LT(contact.normal.z(), 0.5) << i << ": B is above, so A's way is down";
+      EXPECT_LT(contact.depth, 2.0 * depth) << i;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Bodies, ThroughAPlate,
+                         ::testing::Values("box:x=0.3,y=0.3,z=0.3", "box:x=0.3,y=0.2,z=0.1,cells=4",
+                                           "icosphere:radius=0.3,frequency=6"));
+
+}  // namespace
+}  // namespace odds::query
