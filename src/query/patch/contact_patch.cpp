@@ -200,7 +200,13 @@ void PatchBuilder::Scratch::straighten(const PatchInput& input, std::span<const 
     const double most =
         is_whole ? std::min(tolerances::flush_lump * limit, tolerances::by_far_shorter * own.depth) : limit;
     const patch::PatchView view{input, *kernels, rim, sums[i], indices, thorough.sample};
-    if (!patch::is_of_direction(view, direction, most, watch)) continue;
+    // Faces that lean away say nothing where a ray does: of a cone whose foot hangs over an edge by a trifle.
+    Witness through;
+    const bool rays_tell = is_whole && input.solid_a && input.solid_b && own.chosen.count > 0 &&
+                           patch::probe_overlap(input, own.chosen.witnesses[0].middle(), direction,
+                                                2.0 * (sums[i].diagonal() + own.depth), watch, through) &&
+                           through.depth <= most;
+    if (!rays_tell && !patch::is_of_direction(view, direction, most, watch)) continue;
     const Patch straight = patch_along(direction, input, sums[i], indices, thorough, watch);
     if (watch.late()) return;  // it was not measured to its end
     if (straight.depth <= most) own = straight;

@@ -177,7 +177,8 @@ class LeastOverlap {
     double size = 0.0;
     for (std::size_t i = 0; i < view.pieces.size(); i += stride()) {
       const PlacedPair& placed = pair_at(i);
-      size = std::max({size, (placed.a[1] - placed.a[0]).norm(), (placed.b[1] - placed.b[0]).norm()});
+      // The smaller: a ground may be of triangles much larger than the body that is pressed on it.
+      size = std::max(size, std::min((placed.a[1] - placed.a[0]).norm(), (placed.b[1] - placed.b[0]).norm()));
     }
     shift_ = -tolerances::pressing_share * size * pressing;
     spread_ = view.sums.length > 0.0;
@@ -388,7 +389,10 @@ Vec3 least_overlap(const PatchView& view, const Vec3& area, Watch& watch) noexce
   for (std::size_t i = 0; i < faces.count; ++i) {
     offer(faces.ones[i].sum == Vec3::Zero() ? faces.ones[i].first : faces.ones[i].sum, 1.0);
   }
-  offer(view.sums.normals_b - view.sums.normals_a, 1.0);
+  // Of a crumb along an edge, all that a sample has left of a long rim, the mean of the two faces' normals cuts the
+  // corner: at places near the rim it seems shorter than it is.
+  const bool is_crumb = is_part_of_a_rim(view) && !in_part && faces.count == 2 && view.input.max_contacts > 1;
+  if (!is_crumb || search.best() == Vec3::Zero()) offer(view.sums.normals_b - view.sums.normals_a, 1.0);
   if (view.input.previous_normal != nullptr) search.offer(*view.input.previous_normal, 1.0);
   const bool walls_only = is_part_of_a_rim(view) || view.sums.length == 0.0;
   if (walls_only && !watch.late() && ((in_part && faces.count == 0) || search.is_a_long_way())) {

@@ -1,0 +1,101 @@
+// Where a rim alone misleads: sloping sides over an edge, a sample of a long rim, a ground of huge triangles.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <vector>
+
+#include "odds/math/random.hpp"
+#include "odds/mesh/made/by_name.hpp"
+#include "odds/query/pair.hpp"
+
+namespace odds::query {
+namespace {
+
+std::shared_ptr<const Shape> shape_of(mesh::TriangleMesh mesh) {
+  return Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(mesh))).value();
+}
+std::shared_ptr<const Shape> made(const std::string& name) {
+  return shape_of(mesh::made::make_shape("made:" + name).value());
+}
+
+/// Its base is at z = 0, its tip up.
+mesh::TriangleMesh cone(double radius, double height, std::uint32_t sides) {
+  std::vector<Vec3> vertices = {Vec3::Zero(), Vec3(0, 0, height)};
+  std::vector<mesh::Triangle> triangles;
+  for (std::uint32_t i = 0; i < sides; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / sides;
+    vertices.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0.0);
+    const std::uint32_t next = 2 + (i + 1) % sides;
+    triangles.push_back({0, next, 2 + i});
+    triangles.push_back({1, 2 + i, next});
+  }
+  return mesh::TriangleMesh::make(std::move(vertices), std::move(triangles)).value();
+}
+
+const Answer& contacts_of(Pair& pair, const math::Pose& pose) {
+  Request request;
+  request.max_contacts = 8;
+  pair.reset();
+  return pair.run(pose, request);
+}
+
+TEST(MisleadingRims, AConeWhoseFootHangsOverAnEdgeIsPushedUp) {
+  Pair pair = Pair::make(made("box:x=1,y=1,z=1"), shape_of(cone(0.5, 1.0, 24))).value();
+  math::Random random(7);
+  int met = 0;
+  for (int i = 0; i < 500; ++i) {
+    const double depth = i % 2 == 0 ? 1e-2 : 1e-3;
+    const math::Pose pose{Mat3::Identity(), Vec3(random.uniform(-0.02, 0.05), random.uniform(-0.3, 0.3), 0.5 - depth)};
+    const Answer& answer = contacts_of(pair, pose);
+    met += answer.verdict == Verdict::hit ? 1 : 0;
+    for (const Contact& contact : answer.contacts) {
+      ASSERT_LT(contact.normal.z(), -0.7) << i;
+      ASSERT_LT(contact.depth, 2.0 * depth) << i;
+    }
+  }
+  EXPECT_EQ(met, 500);
+}
+
+// 1,320 pairs of triangles cross; 512 are kept.
+TEST(MisleadingRims, ABrickThatLiesInAFloorIsPushedUpWhateverIsKeptOfItsRim) {
+  Pair pair = Pair::make(made("box:x=2,y=2,z=0.4,cells=200"), made("box:x=0.7,y=0.5,z=0.3,cells=100")).value();
+  math::Pose pose;
+  pose.rotation = Eigen::AngleAxisd(0.3, Vec3::UnitZ()).toRotationMatrix();
+  pose.translation = Vec3(0.013, 0.021, 0.2 + 0.15 - 0.02);
+  const Answer& answer = contacts_of(pair, pose);
+  ASSERT_EQ(answer.contacts.size(), 8U);
+  for (const Contact& contact : answer.contacts) {
+    EXPECT_LT(contact.normal.z(), -0.999);
+    EXPECT_NEAR(contact.depth, 0.02, 1e-3);
+  }
+}
+
+TEST(MisleadingRims, ASmallBoxOnTheInnerEdgeOfAHugeFloorIsPushedUp) {
+  constexpr double size = 1e-2;
+  constexpr double floor_size = 100.0;
+  const auto box = made("box:x=0.01,y=0.01,z=0.01");
+  Pair pair = Pair::make(made("box:x=100,y=100,z=10"), box).value();
+  math::Random random(4);
+  for (int i = 0; i < 3000; ++i) {
+    const double depth = size * std::pow(10.0, random.uniform(-4, -1));
+    math::Pose pose;
+    pose.rotation = random.rotation().toRotationMatrix();
+    double lowest = INFINITY;
+    for (const Vec3& vertex : box->mesh().vertices()) lowest = std::min(lowest, (pose.rotation * vertex).z());
+    const double along = random.uniform(-0.4, 0.4) * floor_size;  // on one diagonal of its top
+    const double side = i % 2 == 0 ? 1.0 : -1.0;                  // or on the other: one of them is an edge
+    pose.translation = Vec3(along + random.uniform(-0.4, 0.4) * size, side * along + random.uniform(-0.4, 0.4) * size,
+                            5.0 - lowest - depth);
+    const Answer& answer = contacts_of(pair, pose);
+    if (answer.verdict != Verdict::hit) continue;
+    ASSERT_FALSE(answer.contacts.empty());
+    ASSERT_LT(answer.contacts.front().normal.z(), -0.99) << i;
+    ASSERT_LT(answer.contacts.front().depth, 2.0 * depth) << i;
+  }
+}
+
+}  // namespace
+}  // namespace odds::query
