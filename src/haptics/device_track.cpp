@@ -11,6 +11,7 @@
 #include <limits>
 #include <sstream>
 
+#include "mesh/byte_order_mark.hpp"
 #include "mesh/output_file.hpp"
 #include "odds/haptics/settings.hpp"
 
@@ -182,7 +183,7 @@ Result<DeviceTrack> parse_track(std::string_view text, const std::string& name) 
   DeviceTrack track;
   std::optional<Columns> columns;
   std::size_t line_number = 0;
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte-order mark
+  text = mesh::without_byte_order_mark(text);
   while (!text.empty()) {
     const std::size_t end = text.find('\n');
     const std::string_view line = trimmed(text.substr(0, end));

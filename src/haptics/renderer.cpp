@@ -125,13 +125,19 @@ DeviceState Renderer::sensed(const DeviceState& said) const noexcept {
   return state;
 }
 
-void Renderer::read_device(std::int64_t now_ns) noexcept {
-  DeviceState said = own_;
+bool Renderer::ask_device(std::int64_t now_ns, DeviceState& said, DeviceState& state) noexcept {
+  said = own_;
   const bool told = hand_->device->read(now_ns, said);
   said = sensed(said);
-  const bool usable = told && make_usable(said);
-  const DeviceState state = hand_->scale.in_scene(said);
-  if (!usable || !state.position_m.allFinite() || !state.velocity_m_per_s.allFinite()) {
+  if (!told || !make_usable(said)) return false;
+  state = hand_->scale.in_scene(said);
+  return make_usable(state);  // no scale has carried it out of all numbers
+}
+
+void Renderer::read_device(std::int64_t now_ns) noexcept {
+  DeviceState said;
+  DeviceState state;
+  if (!ask_device(now_ns, said, state)) {
     ++failed_reads_;  // the last good state stays, and grows stale
     return;
   }
@@ -263,10 +269,9 @@ void Renderer::tick(std::int64_t now_ns, TickRecord& record) noexcept {
 
 std::int64_t Renderer::trial(std::int64_t now_ns) noexcept {
   if (hand_) {
-    DeviceState said = own_;
-    const bool told = hand_->device->read(now_ns, said);
-    said = sensed(said);
-    if (told && make_usable(said)) state_ = hand_->scale.in_scene(said);
+    DeviceState said;
+    DeviceState state;
+    if (ask_device(now_ns, said, state)) state_ = state;
     world_->set_coupling(hand_->tool, {});  // no stiffness, no damping: no rows, unless an effect pulls
   }
   const realtime::Clock& clock = world_->options().clock;

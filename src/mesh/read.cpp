@@ -6,6 +6,7 @@
 #include <new>
 #include <string_view>
 
+#include "mesh/byte_order_mark.hpp"
 #include "mesh/byte_source.hpp"
 #include "mesh/formats.hpp"
 #include "mesh/refusal.hpp"
@@ -59,11 +60,12 @@ bool has_size_of_binary_stl(Input& input, std::uint64_t largest_size) {
   return implied <= largest_size && implied == input.size();
 }
 
-/// Editors write one at the beginning of UTF-8 text.
+/// A binary STL file's header is free text, also if it begins with one.
 void skip_byte_order_mark(Input& input, std::uint64_t largest_size) {
-  constexpr std::string_view mark = "\xEF\xBB\xBF";
-  if (!input.fill(mark.size()) || std::string_view(input.cursor(), mark.size()) != mark) return;
-  if (!has_size_of_binary_stl(input, largest_size)) input.move_to(input.cursor() + mark.size());
+  if (!input.fill(byte_order_mark.size())) return;
+  const std::string_view head(input.cursor(), input.available());
+  if (!head.starts_with(byte_order_mark) || has_size_of_binary_stl(input, largest_size)) return;
+  input.move_to(input.cursor() + byte_order_mark.size());
 }
 
 Format choose_format(Input& input, std::uint64_t largest_size) {

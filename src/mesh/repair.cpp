@@ -61,7 +61,7 @@ class Bench {
     }
     judge_volumes(turn);
     for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
-      if (turn[i] == components_[component_of_[i]].inside_out) continue;
+      if (turn[i] == components_[component_of_[i]].turned) continue;
       std::swap(triangles_[i][1], triangles_[i][2]);
       ++log_.turned_triangles;
     }
@@ -101,7 +101,8 @@ class Bench {
     std::size_t odd = 0;
     bool orientable = true;
     bool closed = true;
-    bool inside_out = false;
+    bool inside_out = false;  ///< and in no other
+    bool turned = false;      ///< because of that, or with another
     double six_volumes = 0.0;
     Vec3 lower = Vec3::Constant(std::numeric_limits<double>::infinity());
     Vec3 upper = Vec3::Constant(-std::numeric_limits<double>::infinity());
@@ -143,8 +144,7 @@ class Bench {
     for (const Component& component : components_) log_.unorientable_components += component.orientable ? 0 : 1;
   }
 
-  /// Marks closed components that face inwards, except cavities, and what lies in those: of a hollow body that is
-  /// inside out its cavity, too.
+  /// Says which closed components are turned: those that face inwards, except cavities, and what lies in them.
   void judge_volumes(const std::vector<bool>& turn) {
     for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
       Component& own = components_[component_of_[i]];
@@ -165,21 +165,14 @@ class Bench {
     for (Component& component : components_) {
       component.inside_out =
           faces_inwards(component) && !lies_in_another(component, [](const Component& outer) { return outer.closed; });
+      component.turned = component.inside_out;
       log_.turned_components += component.inside_out ? 1 : 0;
     }
-    const std::vector<Component> judged = components_;
-    for (std::size_t i = 0; i < components_.size(); ++i) {
-      Component& inner = components_[i];
+    for (Component& inner : components_) {
       if (!inner.closed || !inner.orientable || inner.inside_out) continue;
-      const auto is_turned = [&](const Component& outer) {
-        return judged[static_cast<std::size_t>(&outer - components_.data())].inside_out;
-      };
-      if (lies_in_another(inner, is_turned)) {
-        inner.inside_out = true;
-        ++log_.turned_inner_components;
-      } else if (faces_inwards(inner)) {
-        ++log_.cavities_kept;
-      }
+      inner.turned = lies_in_another(inner, [](const Component& outer) { return outer.inside_out; });
+      log_.turned_inner_components += inner.turned ? 1 : 0;
+      log_.cavities_kept += !inner.turned && faces_inwards(inner) ? 1 : 0;
     }
   }
 

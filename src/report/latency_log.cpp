@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "report/run_files.hpp"
+#include "report/skipped_periods.hpp"
 
 namespace odds::report {
 

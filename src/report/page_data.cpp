@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "report/run_files.hpp"
+#include "report/skipped_periods.hpp"
 
 namespace odds::report {
 namespace {

@@ -1,10 +1,8 @@
 // The contents of a run's files, as text.
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "odds/haptics/tick_record.hpp"
 #include "odds/report/hlog.hpp"
@@ -13,13 +11,6 @@
 #include "odds/report/run_summary.hpp"
 
 namespace odds::report {
-
-/// Periods skipped after the last tick of a run: they stand in no record.
-[[nodiscard]] std::uint64_t skipped_at_the_end(const RunInfo& info, std::span<const haptics::TickRecord> ticks);
-/// How long each of them waited (of a million at most): until the last tick ended, but no less than until its own end,
-/// for the loop skips only what has passed. Nanoseconds.
-[[nodiscard]] std::vector<std::int64_t> waits_at_the_end(const RunInfo& info,
-                                                         std::span<const haptics::TickRecord> ticks);
 
 [[nodiscard]] std::string ticks_csv(std::span<const haptics::TickRecord> ticks);
 [[nodiscard]] std::string summary_json(const RunInfo& info, const RunSummary& summary);

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "report/run_checks.hpp"
-#include "report/run_files.hpp"
+#include "report/skipped_periods.hpp"
 
 namespace odds::report {
 namespace {
@@ -68,9 +68,6 @@ double net_us(const TickRecord& tick) {
   return tick.processor_us > 0.0 ? std::fmin(awake_us, tick.processor_us) : awake_us;
 }
 
-// So that a run that stood still for days needs no memory for each of its periods.
-constexpr std::uint64_t most_skipped_recorded = 1'000'000;
-
 /// Latencies and misses of one tick and of the periods skipped before it.
 void add_times(RunSummary& summary, const TickRecord& tick, std::int64_t period_ns, std::uint64_t& miss_run) {
   const std::int64_t latency_ns = tick.done_ns - tick.planned_ns;
@@ -100,27 +97,6 @@ const char* name(Check::State state) noexcept {
       break;
   }
   return "not measured";
-}
-
-std::uint64_t skipped_at_the_end(const RunInfo& info, std::span<const TickRecord> ticks) {
-  if (ticks.empty()) return 0;
-  const auto less = [](std::uint64_t all, std::uint64_t some) { return all > some ? all - some : 0; };
-  std::uint64_t unseen = info.loop.skipped;
-  for (const TickRecord& tick : ticks) unseen = less(unseen, tick.skipped_before);
-  // Where records were lost, the skips of lost ticks are unseen, too; the number of the last tick tells them apart.
-  return std::min(unseen, less(info.loop.ran + info.loop.skipped, ticks.back().tick + 1));
-}
-
-std::vector<std::int64_t> waits_at_the_end(const RunInfo& info, std::span<const TickRecord> ticks) {
-  std::vector<std::int64_t> waits;
-  const std::uint64_t skipped = skipped_at_the_end(info, ticks);
-  const auto planned_after = [&](std::uint64_t i) {
-    return ticks.back().planned_ns + static_cast<std::int64_t>(i) * info.period_ns;
-  };
-  for (std::uint64_t i = 1; i <= std::min(skipped, most_skipped_recorded); ++i) {
-    waits.push_back(std::max(ticks.back().done_ns, planned_after(skipped + 1)) - planned_after(i));
-  }
-  return waits;
 }
 
 RunSummary summarize(const RunInfo& info, std::span<const TickRecord> ticks) {

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string_view>
 
+#include "mesh/byte_order_mark.hpp"
 #include "tool/one_line.hpp"
 
 namespace odds::tool {
@@ -56,7 +57,7 @@ class Reader {
       }
       const auto taken = static_cast<std::size_t>(stream.gcount());
       std::string_view text(buffer.data(), stream.eof() ? taken : taken - 1);
-      if (line_number_ == 1 && text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte-order mark
+      if (line_number_ == 1) text = mesh::without_byte_order_mark(text);
       if (text.ends_with('\r')) text.remove_suffix(1);
       if (trimmed(text).empty() || text.starts_with('#')) continue;
       const std::vector<std::string_view> fields = split(text);

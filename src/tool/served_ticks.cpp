@@ -5,6 +5,7 @@
 #include <fstream>
 #include <string_view>
 
+#include "mesh/byte_order_mark.hpp"
 #include "tool/one_line.hpp"
 
 namespace odds::tool {
@@ -18,8 +19,7 @@ Result<std::vector<std::uint64_t>> read_served_ticks(const std::string& path) {
   std::vector<std::uint64_t> ticks;
   char line[longest_line];
   for (std::size_t number = 1; file.getline(line, longest_line) || file.gcount() > 0; ++number) {
-    std::string_view text(line);
-    if (number == 1 && text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte-order mark
+    const std::string_view text = number == 1 ? mesh::without_byte_order_mark(line) : line;
     const auto fault = [&](const std::string& what) { return Error{path, std::to_string(number), what, remedy}; };
     if (file.fail()) return fault("the line is too long");
     if (number == 1) {

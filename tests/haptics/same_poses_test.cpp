@@ -5,6 +5,7 @@
 
 #include <cstring>
 #include <string>
+#include "support/ball_on_terrain.hpp"
 
 namespace odds::scene {
 namespace {
@@ -13,24 +14,8 @@ const std::string world = R"(
 format = "odds.scene/1"
 [loop]
 seconds = 0.4
-[[mesh]]
-name = "terrain"
-file = "made:terrain:side=0.3,height=0.01,depth=0.03,cells=48"
-[[mesh]]
-name = "ball"
-file = "made:icosphere:radius=0.01"
-[[body]]
-name = "terrain"
-mesh = "terrain"
-[[body]]
-name = "ball"
-mesh = "ball"
-motion = "dynamic"
-mass_kg = 0.05
-device = "hand"
-[effects.contact]
-[effects.virtual_coupling]
-)";
+)" + testing::ball_on_terrain +
+                          "[effects.contact]\n[effects.virtual_coupling]\n";
 
 std::string hand(const std::string& type) {
   return "[device.hand]\ntype = \"" + type + R"("

@@ -9,6 +9,7 @@
 
 #include "odds/scene/explain.hpp"
 #include "support/allocation_counter.hpp"
+#include "support/ball_on_terrain.hpp"
 #include "support/sanitizer.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -20,22 +21,7 @@ const std::string world = R"(
 seconds = 0.6
 [query]
 budget_us = 60
-[[mesh]]
-name = "terrain"
-file = "made:terrain:side=0.3,height=0.01,depth=0.03,cells=48"
-[[mesh]]
-name = "ball"
-file = "made:icosphere:radius=0.01"
-[[body]]
-name = "terrain"
-mesh = "terrain"
-[[body]]
-name = "ball"
-mesh = "ball"
-motion = "dynamic"
-mass_kg = 0.05
-device = "hand"
-)";
+)" + testing::ball_on_terrain;
 const std::string scripted = R"(
 [device.hand]
 type = "scripted"

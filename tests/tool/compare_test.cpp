@@ -3,6 +3,7 @@
 
 #include <sstream>
 
+#include "support/ball_on_terrain.hpp"
 #include "support/run_tool.hpp"
 
 namespace odds {
@@ -15,23 +16,8 @@ using testing::TemporaryFolder;
 
 /// A ball that a hand presses onto a terrain; `query` and `loop` are keys of these sections.
 std::string scene(const std::string& query, const std::string& loop = "") {
-  return "format = \"odds.scene/1\"\n[loop]\nseconds = 0.3\n" + loop + "[query]\n" + query + R"(
-[[mesh]]
-name = "terrain"
-file = "made:terrain:side=0.3,height=0.01,depth=0.03,cells=48"
-[[mesh]]
-name = "ball"
-file = "made:icosphere:radius=0.01"
-[[body]]
-name = "terrain"
-mesh = "terrain"
-[[body]]
-name = "ball"
-mesh = "ball"
-motion = "dynamic"
-mass_kg = 0.05
-device = "hand"
-[device.hand]
+  return "format = \"odds.scene/1\"\n[loop]\nseconds = 0.3\n" + loop + "[query]\n" + query + "\n" +
+         testing::ball_on_terrain + R"([device.hand]
 type = "scripted"
 position_m = [-0.03, 0, 0.03]
 [[device.hand.motion]]

@@ -87,6 +87,8 @@ class Renderer {
   /// Reads the device as at time 0 and puts the tool there, at rest. False if it gives no position.
   bool begin_at_device() noexcept;
   void count_time(std::int64_t now_ns) noexcept;
+  /// What the device says, as far as it senses anything, and the same in the scene. False: nothing that can be used.
+  [[nodiscard]] bool ask_device(std::int64_t now_ns, DeviceState& said, DeviceState& state) noexcept;
   void read_device(std::int64_t now_ns) noexcept;
   /// What the device senses of what it says; the rest stays as it was.
   [[nodiscard]] DeviceState sensed(const DeviceState& said) const noexcept;

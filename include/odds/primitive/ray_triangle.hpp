@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 
 #include "odds/math/types.hpp"
 
@@ -30,16 +29,14 @@ namespace odds::primitive {
   const double v = direction.dot(q) / determinant;
   if (!(v >= -slack && u + v <= 1.0 + slack)) return none;
   const double distance = edge2.dot(q) / determinant;
-  constexpr double rounding = 16.0 * 0x1p-53;  // of the two products that the determinant is made of, and more
-  constexpr double one_point = 1e-2;           // of the longer edge: noise is off by as much as edges are long
-  const double longer = std::max(edge1.squaredNorm(), edge2.squaredNorm());
+  constexpr double rounding = 16.0 * 0x1p-53;  // of the products that determinant and u are made of, and more
   const double product =
       std::max(edge1.squaredNorm(), from_corner.squaredNorm()) * edge2.squaredNorm() * direction.squaredNorm();
-  if (determinant * determinant <= rounding * rounding * product) {
-    const Vec3 apart = from_corner + distance * direction - u * edge1 - v * edge2;
-    if (!(apart.squaredNorm() <= one_point * one_point * longer)) return none;
-  }
-  return distance;
+  if (determinant * determinant > rounding * rounding * product) return distance;
+  constexpr double one_point = 1e-2;  // of the longer edge: noise is off by as much as edges are long
+  const Vec3 apart = from_corner + distance * direction - u * edge1 - v * edge2;
+  const double longer = std::max(edge1.squaredNorm(), edge2.squaredNorm());
+  return apart.squaredNorm() <= one_point * one_point * longer ? distance : none;
 }
 
 }  // namespace odds::primitive

@@ -77,8 +77,8 @@ struct RunSummary {
 ///
 /// Latencies count from the planned start, so that a late wake-up is part of them. A skipped period has no force of its
 /// own: it counts with the time from its planned start to the end of the next tick that ran, which is how long the hand
-/// waited. Where none followed, the run's end takes its place: see waits_at_the_end. Without this the worst moments
-/// would be missing from the percentiles (coordinated omission).
+/// waited. Where none followed, until the last tick ended, but no less than until its own end. Without this the worst
+/// moments would be missing from the percentiles (coordinated omission).
 ///
 /// The net time of a tick is bounded from above in two ways, of which the smaller counts: from waking up to the force,
 /// less the stalls in its queries; and the time in which the loop's thread ran (TickRecord::processor_us), where it was

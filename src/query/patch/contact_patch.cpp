@@ -23,6 +23,17 @@ using patch::thorough;
 using patch::Watch;
 using patch::Witness;
 
+/// Whether a ray along the direction says that solids overlap by no more than `depth` at the patch's first contact. Its
+/// faces may lean away all the same, as of a cone whose foot hangs over an edge by a trifle.
+bool is_seen_through(const patch::PatchView& view, const Patch& made, const Vec3& direction, double depth,
+                     Watch& watch) noexcept {
+  if (!view.input.solid_a || !view.input.solid_b || made.chosen.count == 0) return false;
+  const double reach = 2.0 * (view.sums.diagonal() + made.depth);
+  Witness through;
+  return patch::probe_overlap(view.input, made.chosen.witnesses[0].middle(), direction, reach, watch, through) &&
+         through.depth <= depth;
+}
+
 /// Of more patches than contacts are wanted, puts first, behind the deepest, those that are far from each other in
 /// place or in direction, the deeper ones rather: a body on many feet must not be held by those of one side.
 void spread_out(std::span<Patch*> order, std::size_t wanted) noexcept {
@@ -200,13 +211,8 @@ void PatchBuilder::Scratch::straighten(const PatchInput& input, std::span<const 
     const double most =
         is_whole ? std::min(tolerances::flush_lump * limit, tolerances::by_far_shorter * own.depth) : limit;
     const patch::PatchView view{input, *kernels, rim, sums[i], indices, thorough.sample};
-    // Faces that lean away say nothing where a ray does: of a cone whose foot hangs over an edge by a trifle.
-    Witness through;
-    const bool rays_tell = is_whole && input.solid_a && input.solid_b && own.chosen.count > 0 &&
-                           patch::probe_overlap(input, own.chosen.witnesses[0].middle(), direction,
-                                                2.0 * (sums[i].diagonal() + own.depth), watch, through) &&
-                           through.depth <= most;
-    if (!rays_tell && !patch::is_of_direction(view, direction, most, watch)) continue;
+    const bool is_of_it = is_whole && is_seen_through(view, own, direction, most, watch);
+    if (!is_of_it && !patch::is_of_direction(view, direction, most, watch)) continue;
     const Patch straight = patch_along(direction, input, sums[i], indices, thorough, watch);
     if (watch.late()) return;  // it was not measured to its end
     if (straight.depth <= most) own = straight;
