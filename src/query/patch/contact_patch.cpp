@@ -36,7 +36,7 @@ bool is_seen_through(const patch::PatchView& view, const Patch& made, const Vec3
 
 /// Of more patches than contacts are wanted, puts first, behind the deepest, those that are far from each other in
 /// place or in direction, the deeper ones rather: a body on many feet must not be held by those of one side.
-void spread_out(std::span<Patch*> order, std::size_t wanted) noexcept {
+void spread_out(std::span<Patch*> order, std::size_t wanted, Watch& watch) noexcept {
   Vec3 lower = order[0]->centre;
   Vec3 upper = lower;
   for (const Patch* p : order) {
@@ -47,7 +47,7 @@ void spread_out(std::span<Patch*> order, std::size_t wanted) noexcept {
   const double deepest = order[0]->depth;
   std::array<double, patch::Components::most> nearest;  // of those that are taken
   nearest.fill(std::numeric_limits<double>::infinity());
-  for (std::size_t taken = 1; taken < wanted; ++taken) {
+  for (std::size_t taken = 1; taken < wanted && !watch.late(); ++taken) {
     const Patch& last = *order[taken - 1];
     std::size_t best = taken;
     double most = -1.0;
@@ -418,7 +418,7 @@ void PatchBuilder::Scratch::drop_opposed(const Vec3* previous) noexcept {
 }
 
 /// Deals the contacts out: every patch its first, the deepest patch first, then every patch its second, and so on.
-void PatchBuilder::Scratch::write(const PatchInput& input) noexcept {
+void PatchBuilder::Scratch::write(const PatchInput& input, Watch& watch) noexcept {
   std::array<Patch*, patch::Components::most> order{};
   std::size_t count = 0;
   for (std::size_t i = 0; i < patch_count; ++i) {
@@ -432,7 +432,7 @@ void PatchBuilder::Scratch::write(const PatchInput& input) noexcept {
   std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count),
             [&rank](const Patch* p, const Patch* q) { return rank(p) != rank(q) ? rank(p) > rank(q) : p < q; });
   const std::size_t wanted = most_wanted;
-  if (count > wanted) spread_out({order.data(), count}, wanted);
+  if (count > wanted) spread_out({order.data(), count}, wanted, watch);
   if (count >= wanted) {
     count = wanted;  // one contact a patch: at its middle, so that it bears without tipping
     for (std::size_t i = 0; i < count; ++i) {
@@ -472,7 +472,7 @@ std::span<const Contact> PatchBuilder::build(const PatchInput& input, const Dead
   } else {
     s.drop_crumbs();
     s.drop_opposed(input.previous_normal);
-    s.write(input);
+    s.write(input, watch);
   }
   return {s.contacts.data(), s.contact_count};
 }

@@ -32,7 +32,7 @@ void PatchBuilder::Scratch::make_hasty_contacts(const PatchInput& input, const D
   if (!known) made = shorter_way_out(made, normal.shortest_way, view, patch::hasty, watch);
   if (watch.late()) return write_pieces(normal.into_a, sums, indices);
   patches[patch_count++] = made;
-  write(input);
+  write(input, watch);
 }
 
 /// Contacts at some pieces, as deep as the least overlap of their triangles, and no deeper than the rim is wide: of a

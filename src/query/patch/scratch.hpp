@@ -86,7 +86,7 @@ struct PatchBuilder::Scratch {
                     const patch::Chosen& spread, Measured& measured, patch::Watch& watch) noexcept;
   void drop_crumbs() noexcept;
   void drop_opposed(const Vec3* previous) noexcept;
-  void write(const PatchInput& input) noexcept;
+  void write(const PatchInput& input, patch::Watch& watch) noexcept;
   void write_pieces(const Vec3& normal, const patch::RimSums& sums, Indices indices) noexcept;
 
   const patch::Kernels* kernels = nullptr;  ///< of the contacts that are being made
