@@ -1,8 +1,6 @@
 // Where a ray crosses a triangle.
 #pragma once
 
-#include <algorithm>
-
 #include "odds/math/types.hpp"
 
 namespace odds::primitive {
@@ -13,30 +11,6 @@ namespace odds::primitive {
 /// no harm to the nearest one, and a gap would. Where the determinant may be nothing but rounding, as in a plane that
 /// is askew to the axes, a crossing counts if the points that it is on the ray and on the triangle are one.
 /// Thread-safe.
-[[nodiscard]] inline double distance_along_ray(const Vec3 corners[3], const Vec3& origin,
-                                               const Vec3& direction) noexcept {
-  constexpr double none = -1.0;
-  constexpr double slack = 1e-12;
-  const Vec3 edge1 = corners[1] - corners[0];
-  const Vec3 edge2 = corners[2] - corners[0];
-  const Vec3 p = direction.cross(edge2);
-  const double determinant = edge1.dot(p);
-  if (determinant == 0.0) return none;  // its neighbours are met instead
-  const Vec3 from_corner = origin - corners[0];
-  const double u = from_corner.dot(p) / determinant;
-  if (!(u >= -slack && u <= 1.0 + slack)) return none;
-  const Vec3 q = from_corner.cross(edge1);
-  const double v = direction.dot(q) / determinant;
-  if (!(v >= -slack && u + v <= 1.0 + slack)) return none;
-  const double distance = edge2.dot(q) / determinant;
-  constexpr double rounding = 16.0 * 0x1p-53;  // of the products that determinant and u are made of, and more
-  const double product =
-      std::max(edge1.squaredNorm(), from_corner.squaredNorm()) * edge2.squaredNorm() * direction.squaredNorm();
-  if (determinant * determinant > rounding * rounding * product) return distance;
-  constexpr double one_point = 1e-2;  // of the longer edge: noise is off by as much as edges are long
-  const Vec3 apart = from_corner + distance * direction - u * edge1 - v * edge2;
-  const double longer = std::max(edge1.squaredNorm(), edge2.squaredNorm());
-  return apart.squaredNorm() <= one_point * one_point * longer ? distance : none;
-}
+[[nodiscard]] double distance_along_ray(const Vec3 corners[3], const Vec3& origin, const Vec3& direction) noexcept;
 
 }  // namespace odds::primitive
