@@ -70,6 +70,9 @@ struct Pair::Implementation {
 
   std::shared_ptr<const Shape> a;
   std::shared_ptr<const Shape> b;
+  // Every query asks for them.
+  double size_a = a->mesh().size();  ///< metres
+  double size_b = b->mesh().size();
   SharedScratch scratch;
   HitList hits;
   BottomSlice slice;         ///< of the incremental method with volumes of the generic framework
@@ -106,7 +109,7 @@ struct Pair::Implementation {
 
 /// Of both bodies, metres.
 [[nodiscard]] inline double smaller_size(const Pair::Implementation& pair) noexcept {
-  return std::min(pair.a->mesh().size(), pair.b->mesh().size());
+  return std::min(pair.size_a, pair.size_b);
 }
 
 /// The pair's memory for as many contacts as are asked for.

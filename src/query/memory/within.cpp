@@ -84,7 +84,9 @@ Contact contact_along(const Nested& nested, const Vec3& point, const Vec3& direc
 }  // namespace
 
 bool may_be_within(const Shape& a, const Shape& b, const math::Pose& b_in_a) noexcept {
-  return can_hold(a, b_in_a * first_vertex(b)) || can_hold(b, b_in_a.inverse() * first_vertex(a));
+  // An open body can hold nothing; of others this is asked in every query that finds them apart.
+  return (a.is_solid() && can_hold(a, b_in_a * first_vertex(b))) ||
+         (b.is_solid() && can_hold(b, b_in_a.inverse() * first_vertex(a)));
 }
 
 Within within(const Shape& a, const Shape& b, const math::Pose& b_in_a, Spending& spending) noexcept {

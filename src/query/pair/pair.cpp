@@ -210,16 +210,22 @@ void forecast(const Met& met, const math::Pose& pose_b_in_a, const SearchResult&
   answer.cell_pair_probability = static_cast<double>(cell_probability);
 }
 
-/// Whether all are apart because they were, and have hardly moved since.
+/// How all are known to be apart without a search.
+enum class Apart : std::uint8_t { unknown, far, still };
+
+/// `far`: farther than both reach; `still`: they were apart, and have hardly moved since.
 template <volume::BoundingVolume V>
-bool is_still_apart(const tree::Hierarchy<V>&, const PosedMeshes&, const Request&,
-                    const Pair::Implementation&) noexcept {
-  return false;
+Apart known_apart(const tree::Hierarchy<V>&, const tree::Hierarchy<V>&, const PosedMeshes&, const Request&,
+                  const Pair::Implementation&) noexcept {
+  return Apart::unknown;
 }
 
-bool is_still_apart(const tree::WideTree& b, const PosedMeshes& meshes, const Request& request,
-                    const Pair::Implementation& pair) noexcept {
-  return order_of(request) == Method::incremental && pair.front.is_apart(meshes.pose(), b.reach());
+Apart known_apart(const tree::WideTree& a, const tree::WideTree& b, const PosedMeshes& meshes, const Request& request,
+                  const Pair::Implementation& pair) noexcept {
+  if (request.polygon_free) return Apart::unknown;
+  if (wide::Encounter::are_far_apart(a, b, meshes.pose())) return Apart::far;
+  if (order_of(request) != Method::incremental) return Apart::unknown;
+  return pair.front.is_apart(meshes.pose(), b.reach()) ? Apart::still : Apart::unknown;
 }
 
 /// Bodies that have gone by more than half of the smaller one between two runs may have been anywhere: nothing is known
@@ -227,13 +233,11 @@ bool is_still_apart(const tree::WideTree& b, const PosedMeshes& meshes, const Re
 void forget_if_elsewhere(const PosedMeshes& meshes, Pair::Implementation& pair) noexcept {
   constexpr double elsewhere = 0.5;
   const math::Pose& now = meshes.pose();
-  const double size_a = pair.a->mesh().size();
-  const double size_b = pair.b->mesh().size();
   if (pair.known_at) {
     const math::Pose& before = *pair.known_at;
-    const Vec3 motion = size_b <= size_a ? Vec3(now.translation - before.translation)
-                                         : Vec3(now.inverse().translation - before.inverse().translation);
-    if (motion.norm() > elsewhere * std::min(size_a, size_b)) {
+    const Vec3 motion = pair.size_b <= pair.size_a ? Vec3(now.translation - before.translation)
+                                                   : Vec3(now.inverse().translation - before.inverse().translation);
+    if (motion.norm() > elsewhere * smaller_size(pair)) {
       pair.came.setZero();
       pair.previous_normal.setZero();
       pair.sweep.forget();
@@ -247,46 +251,61 @@ void forget_if_elsewhere(const PosedMeshes& meshes, Pair::Implementation& pair) 
   pair.apart_last = false;
 }
 
-template <class Tree>
-void search_and_answer(const Tree& a, const Tree& b, const PosedMeshes& meshes, const math::Pose& pose_b_in_a,
-                       const Request& request, Pair::Implementation& pair, Spending& spending) noexcept {
-  Answer& answer = pair.answer;
-  if (carry_contacts(meshes, pose_b_in_a, request, pair, spending)) return;
-  if (carry_late_contacts(meshes, pose_b_in_a, request, pair, spending)) return;
-  if (is_still_apart(b, meshes, request, pair)) {
-    pair.has_witness = false;
-    pair.flush.note_clear();
-    if (!answer_within(meshes, pose_b_in_a, request, b.reach(), pair.within_is_of_front, pair, spending)) {
-      note_clear(meshes, pose_b_in_a, request, pair);
-    }
-    return;
-  }
-  SearchResult result;
-  const ScratchPool::Loan scratch = pair.scratch.borrow();
-  if (witness_suffices(meshes, request, pair, spending)) {
-    result.ended = Progressed::enough;
-    result.method = Method::incremental;
-    judge(result, 0.5, request, true, answer);
-  } else {
-    const auto encounter = encounter_of(a, b, meshes, request);
-    result = search(encounter, meshes, request, scratch->queue, pair, spending);
-    forecast(encounter, pose_b_in_a, result, request, spending, pair);
-    if (answer.basis == Basis::budget) judge_by_flat_faces(meshes, request, pair, spending);
-  }
+/// What follows a search: contacts, or what is known of bodies that are apart. `patches` to make contacts in.
+void conclude(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, double reach_b, const SearchResult& result,
+              const Request& request, PatchBuilder* patches, Pair::Implementation& pair, Spending& spending) noexcept {
+  const Answer& answer = pair.answer;
   pair.within_is_of_front = false;
   if (!pair.hits.empty()) pair.within = Within::neither;
   if (!pair.hits.empty() && request.max_contacts > 0) {
-    const double most_depth = pair.known_depth.most(meshes.pose(), b.reach());
-    make_contacts(meshes, pose_b_in_a, result, most_depth, request, scratch->patches, pair, spending);
+    const double most_depth = pair.known_depth.most(meshes.pose(), reach_b);
+    make_contacts(meshes, pose_b_in_a, result, most_depth, request, *patches, pair, spending);
   } else if (answer.basis == Basis::proved && answer.verdict == Verdict::clear) {
     pair.flush.note_clear();
-    if (!answer_within(meshes, pose_b_in_a, request, b.reach(), false, pair, spending)) {
+    if (!answer_within(meshes, pose_b_in_a, request, reach_b, false, pair, spending)) {
       note_clear(meshes, pose_b_in_a, request, pair);
     }
     pair.within_is_of_front = pair.within_is_of_front && result.method == Method::incremental;
   } else if (pair.within == Within::neither && answer.contacts.empty()) {
     pair.previous_normal.setZero();
   }
+}
+
+template <class Tree>
+void search_and_answer(const Tree& a, const Tree& b, const PosedMeshes& meshes, const math::Pose& pose_b_in_a,
+                       const Request& request, Pair::Implementation& pair, Spending& spending) noexcept {
+  Answer& answer = pair.answer;
+  if (carry_contacts(meshes, pose_b_in_a, request, pair, spending)) return;
+  if (carry_late_contacts(meshes, pose_b_in_a, request, pair, spending)) return;
+  if (const Apart apart = known_apart(a, b, meshes, request, pair); apart != Apart::unknown) {
+    pair.has_witness = false;
+    pair.flush.note_clear();
+    const bool same = apart == Apart::still && pair.within_is_of_front;
+    if (!answer_within(meshes, pose_b_in_a, request, b.reach(), same, pair, spending)) {
+      note_clear(meshes, pose_b_in_a, request, pair);
+    }
+    pair.within_is_of_front = pair.within_is_of_front && apart == Apart::still;
+    return;
+  }
+  SearchResult result;
+  const bool is_witnessed = witness_suffices(meshes, request, pair, spending);
+  if (is_witnessed) {
+    result.ended = Progressed::enough;
+    result.method = Method::incremental;
+    judge(result, 0.5, request, true, answer);
+    // Nothing is worked in.
+    if (request.max_contacts == 0) {
+      return conclude(meshes, pose_b_in_a, b.reach(), result, request, nullptr, pair, spending);
+    }
+  }
+  const ScratchPool::Loan scratch = pair.scratch.borrow();
+  if (!is_witnessed) {
+    const auto encounter = encounter_of(a, b, meshes, request);
+    result = search(encounter, meshes, request, scratch->queue, pair, spending);
+    forecast(encounter, pose_b_in_a, result, request, spending, pair);
+    if (answer.basis == Basis::budget) judge_by_flat_faces(meshes, request, pair, spending);
+  }
+  conclude(meshes, pose_b_in_a, b.reach(), result, request, &scratch->patches, pair, spending);
 }
 
 template <class Tree>
@@ -388,12 +407,15 @@ void run_pair(Pair::Implementation& pair, const math::Pose& pose_b_in_a, const R
     pair.hits.clear();
     return;
   }
-  Request possible = request;
-  possible.polygon_free = request.polygon_free || pair.polygon_free;
+  if (pair.polygon_free && !request.polygon_free) {
+    Request possible = request;
+    possible.polygon_free = true;
+    return run_pair(pair, pose_b_in_a, possible);
+  }
   std::visit(
       [&](const auto& a) {
         using Tree = std::remove_cvref_t<decltype(a)>;
-        run_on(a, *std::get_if<Tree>(&pair.b->data().tree), pose_b_in_a, possible, pair);
+        run_on(a, *std::get_if<Tree>(&pair.b->data().tree), pose_b_in_a, request, pair);
       },
       pair.a->data().tree);
 }

@@ -24,7 +24,11 @@ class Encounter {
             EstimatorKind estimator) noexcept;
 
   /// See query::Encounter::far_apart.
-  [[nodiscard]] bool far_apart() const noexcept { return far_apart_; }
+  [[nodiscard]] bool far_apart() const noexcept { return are_far_apart(a_, b_, meshes_.pose()); }
+  [[nodiscard]] static bool are_far_apart(const tree::WideTree& a, const tree::WideTree& b,
+                                          const math::Pose& b_in_a) noexcept {
+    return !(b_in_a.translation.norm() <= (a.reach() + b.reach()) * (1.0 + 1e-9));
+  }
 
   [[nodiscard]] const tree::WideTree& a() const noexcept { return a_; }
   [[nodiscard]] const tree::WideTree& b() const noexcept { return b_; }
@@ -100,7 +104,6 @@ class Encounter {
   const WideLeaf* leaves_[2];
   Turn turns_[2];
   float margin_ = 0.0F;
-  bool far_apart_ = false;
   EstimatorKind estimator_;
 };
 
