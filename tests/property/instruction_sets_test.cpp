@@ -8,6 +8,7 @@
 #include "odds/math/random.hpp"
 #include "odds/query/pair.hpp"
 #include "query/wide/searches.hpp"
+#include "support/instruction_sets.hpp"
 #include "support/near_poses.hpp"
 #include "support/shapes.hpp"
 
@@ -40,9 +41,9 @@ TEST(InstructionSets, GiveTheSameBitsForEveryMethodAndBudget) {
   std::optional<Pair> portable = pair_on(InstructionSet::portable, a, b);
   ASSERT_TRUE(portable.has_value());
   int others = 0;
-  for (const InstructionSet set : {InstructionSet::sse2, InstructionSet::avx2, InstructionSet::avx512}) {
+  for (const InstructionSet set : testing::instruction_sets) {
     std::optional<Pair> pair = pair_on(set, a, b);
-    if (!pair) continue;  // not on this processor
+    if (!pair || set == InstructionSet::portable) continue;  // not on this processor
     ++others;
     math::Random random(5);
     for (int i = 0; i < 200; ++i) {
@@ -58,8 +59,8 @@ TEST(InstructionSets, GiveTheSameBitsForEveryMethodAndBudget) {
       if (HasFatalFailure()) FAIL() << "pose " << i;
     }
   }
-#if defined(__x86_64__)
-  EXPECT_GE(others, 1);  // every x86-64 has SSE2
+#if defined(__x86_64__) || defined(__aarch64__)
+  EXPECT_GE(others, 1);  // every x86-64 has SSE2, every 64-bit ARM NEON
 #else
   EXPECT_EQ(others, 0);
 #endif
@@ -73,7 +74,7 @@ TEST(InstructionSets, CastTheSameRays) {
   const auto mesh = testing::wavy_sphere(20, 0.3);
   const auto tree = tree::WideTree::build(*mesh, {.leaf_triangles = 8});
   const wide::Searches* portable = wide::searches_for(InstructionSet::portable);
-  for (const InstructionSet set : {InstructionSet::sse2, InstructionSet::avx2, InstructionSet::avx512}) {
+  for (const InstructionSet set : testing::instruction_sets) {
     const wide::Searches* searches = wide::searches_for(set);
     if (searches == nullptr) continue;
     math::Random random(6);

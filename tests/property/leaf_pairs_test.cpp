@@ -11,6 +11,7 @@
 #include "odds/primitive/triangle_distance.hpp"
 #include "query/wide/encounter.hpp"
 #include "query/wide/lanes.hpp"
+#include "support/instruction_sets.hpp"
 
 namespace odds::query::wide {
 namespace {
@@ -88,12 +89,7 @@ Counts compare(const Leaf& a, const Leaf& b, const math::Pose& pose, bool finely
 
 template <class L>
 class LeafPairsOn : public ::testing::Test {};
-using BuiltHere = ::testing::Types<
-#if defined(__SSE2__)
-    lanes::Sse2,
-#endif
-    lanes::Portable>;
-TYPED_TEST_SUITE(LeafPairsOn, BuiltHere);
+TYPED_TEST_SUITE(LeafPairsOn, testing::LanesBuiltHere);
 
 /// Corners on a grid of so few points that triangles share corners, sides and planes all the time, some without area;
 /// slivers where one axis is short.

@@ -15,6 +15,7 @@
 #include "odds/volume/kind.hpp"
 #include "soak/meshes.hpp"
 #include "support/brute_force.hpp"
+#include "support/instruction_sets.hpp"
 #include "support/near_poses.hpp"
 
 namespace {
@@ -56,10 +57,8 @@ class Engine {
   Engine(const soak::MeshPair& meshes, const Variant& variant, std::size_t rotate, volume::Kind kind,
          InstructionSet set)
       : variant_(variant),
-        name_(std::string(volume::name(kind)) + (set == InstructionSet::avx2       ? " avx2"
-                                                 : set == InstructionSet::sse2     ? " sse2"
-                                                 : set == InstructionSet::portable ? " portable"
-                                                                                   : "")),
+        name_(std::string(volume::name(kind)) +
+              (set == InstructionSet::best ? "" : " " + std::string(testing::name(set)))),
         a_(testing::changed(*meshes.a, variant.scale, variant.move_a, rotate)),
         b_(testing::changed(*meshes.b, variant.scale, variant.move_b, rotate / 2)),
         ab_(pair_of(a_, b_, kind, set)),
@@ -100,7 +99,7 @@ std::vector<Engine> engines(const soak::MeshPair& meshes, math::Random& random) 
     for (std::size_t k = 0; k < volume::kind_names.size(); ++k) {
       all.emplace_back(meshes, variant, rotate, static_cast<volume::Kind>(k), InstructionSet::best);
     }
-    for (const InstructionSet set : {InstructionSet::avx2, InstructionSet::sse2, InstructionSet::portable}) {
+    for (const InstructionSet set : testing::instruction_sets) {
       const auto shape = query::Shape::build(meshes.a).value();
       if (!query::Pair::make(shape, shape, {.instruction_set = set}).ok()) continue;  // not on this processor
       all.emplace_back(meshes, variant, rotate, volume::Kind::wide, set);

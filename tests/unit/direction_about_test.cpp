@@ -10,6 +10,7 @@
 #include "odds/mesh/made/by_name.hpp"
 #include "odds/query/pair.hpp"
 #include "query/contacts/direction_about.hpp"
+#include "support/instruction_sets.hpp"
 
 namespace odds::query {
 namespace {
@@ -75,7 +76,7 @@ TEST(DirectionAboutAnything, IsTheSameByEveryInstructionSet) {
     const Vec3 place = knot->mesh().vertices()[static_cast<std::size_t>(i) * 37U];
     const Contact contact{place, random.direction(), 1e-4, 5, 7};
     const Vec3 best = direction_about(*knot, *knot, *wide::searches_for(InstructionSet::best), meshes, contact);
-    for (const InstructionSet set : {InstructionSet::avx2, InstructionSet::sse2, InstructionSet::portable}) {
+    for (const InstructionSet set : testing::instruction_sets) {
       const wide::Searches* const searches = wide::searches_for(set);
       if (searches == nullptr) continue;
       ++compared;

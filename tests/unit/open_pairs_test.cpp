@@ -37,55 +37,5 @@ TEST(OpenPairs, KnowWhoseSlotIsOpened) {
   EXPECT_EQ(pairs.pair(0).of[1], 40U);
 }
 
-template <class L>
-class Lanes : public ::testing::Test {};
-using BuiltHere = ::testing::Types<
-#if defined(__SSE2__)
-    lanes::Sse2,
-#endif
-    lanes::Portable>;
-TYPED_TEST_SUITE(Lanes, BuiltHere);
-
-TYPED_TEST(Lanes, AreWrittenInOrderCountedOrNot) {
-  math::Random random(3);
-  for (int i = 0; i < 2000; ++i) {
-    const auto mask = static_cast<unsigned>(random.below(256));
-    const auto counted = static_cast<unsigned>(random.below(256));
-    std::uint32_t written[wide_lanes] = {};
-    TypeParam::write_either(written, 1000, 7, mask, counted);
-    std::size_t at = 0;
-    for (unsigned lane = 0; lane < wide_lanes; ++lane) {
-      if ((mask >> lane & 1U) == 0) continue;
-      ASSERT_EQ(written[at++], (counted >> lane & 1U) != 0 ? 1000 + lane : 7U);
-    }
-  }
-}
-
-TYPED_TEST(Lanes, AreChosenAndTheLeastFound) {
-  math::Random random(4);
-  alignas(64) float numbers[2][wide_lanes + 1];
-  for (int i = 0; i < 2000; ++i) {
-    for (auto& eight : numbers) {
-      for (float& number : eight) number = static_cast<float>(random.below(20)) - 10.0F;
-    }
-    const auto mask = static_cast<unsigned>(random.below(256));
-    const auto chosen = TypeParam::choose(mask, TypeParam::load(numbers[0]), TypeParam::load_from(numbers[1] + 1));
-    alignas(64) float kept[wide_lanes];
-    TypeParam::store(kept, chosen);
-    float written[wide_lanes];
-    TypeParam::write_some(written, chosen, mask);
-    std::size_t at = 0;
-    for (unsigned lane = 0; lane < wide_lanes; ++lane) {
-      const bool is_first = (mask >> lane & 1U) != 0;
-      ASSERT_EQ(kept[lane], is_first ? numbers[0][lane] : numbers[1][lane + 1]);
-      if (!is_first) continue;
-      ASSERT_EQ(written[at++], kept[lane]);
-    }
-    const float least = *std::min_element(std::begin(kept), std::end(kept));
-    ASSERT_EQ(TypeParam::least_value(chosen), least);
-    ASSERT_EQ(kept[TypeParam::least(chosen)], least);
-  }
-}
-
 }  // namespace
 }  // namespace odds::query::wide

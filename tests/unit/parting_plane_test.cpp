@@ -16,6 +16,7 @@
 #include "query/wide/kinetic_front.hpp"
 #include "query/wide/lanes.hpp"
 #include "query/wide/part_leaves.hpp"
+#include "support/instruction_sets.hpp"
 
 namespace odds::query::wide {
 namespace {
@@ -134,12 +135,7 @@ void follow(const Leaf& a, const Leaf& b, math::Pose pose, bool by_triangles, ma
 
 template <class L>
 class PartingPlanesOn : public ::testing::Test {};
-using BuiltHere = ::testing::Types<
-#if defined(__SSE2__)
-    lanes::Sse2,
-#endif
-    lanes::Portable>;
-TYPED_TEST_SUITE(PartingPlanesOn, BuiltHere);
+TYPED_TEST_SUITE(PartingPlanesOn, testing::LanesBuiltHere);
 
 TYPED_TEST(PartingPlanesOn, PartWhatTheySayHoweverTheBodiesMove) {
   math::Random random(31);

@@ -12,6 +12,7 @@
 #include "odds/math/random.hpp"
 #include "odds/math/tolerances.hpp"
 #include "query/wide/searches.hpp"
+#include "support/instruction_sets.hpp"
 
 namespace odds::query::patch {
 namespace {
@@ -84,8 +85,7 @@ PlacedPair place(const PatchInput& input, const TrianglePair& index) {
 
 std::vector<const Kernels*> all_kernels() {
   std::vector<const Kernels*> all;
-  for (const InstructionSet set :
-       {InstructionSet::portable, InstructionSet::sse2, InstructionSet::avx2, InstructionSet::avx512}) {
+  for (const InstructionSet set : testing::instruction_sets) {
     if (const wide::Searches* searches = wide::searches_for(set)) all.push_back(&searches->patch);
   }
   return all;

@@ -12,6 +12,7 @@
 #include "query/wide/searches.hpp"
 #include "support/contact_scene.hpp"
 #include "support/flush_slabs.hpp"
+#include "support/instruction_sets.hpp"
 #include "support/shapes.hpp"
 
 namespace odds::query {
@@ -66,8 +67,7 @@ TEST(PatchKernels, OfEachInstructionSetAreItsOwn) {
   std::set<decltype(Kernels::place)> place;
   std::set<decltype(Kernels::farthest)> farthest;
   std::size_t sets = 0;
-  for (const InstructionSet set :
-       {InstructionSet::portable, InstructionSet::sse2, InstructionSet::avx2, InstructionSet::avx512}) {
+  for (const InstructionSet set : testing::instruction_sets) {
     const wide::Searches* const searches = wide::searches_for(set);
     if (searches == nullptr) continue;  // not on this processor
     ++sets;

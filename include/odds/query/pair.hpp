@@ -22,6 +22,7 @@ enum class InstructionSet : std::uint8_t {
            ///< it slows
   avx2,    ///< x86, since 2013
   sse2,    ///< every x86-64
+  neon,    ///< every 64-bit ARM
   portable,  ///< plain C++
 };
 

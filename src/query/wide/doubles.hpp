@@ -1,5 +1,5 @@
-// Eight doubles at a time, beside lanes.hpp: one AVX-512 register, two of AVX, four of SSE2, or plain loops. All give
-// the same bits: no fused multiply-add.
+// Eight doubles at a time, beside lanes.hpp: one AVX-512 register, two of AVX, four of SSE2 or NEON, or plain loops.
+// All give the same bits: no fused multiply-add.
 #pragma once
 
 #include <cmath>
@@ -100,6 +100,36 @@ struct TwoDoubles {
   ODDS_LANES_INLINE static Register choose(Truth t, Register a, Register b) noexcept {
     return _mm_or_pd(_mm_and_pd(t, a), _mm_andnot_pd(t, b));
   }
+};
+#endif
+
+#if defined(__aarch64__)
+struct NeonDoubles {
+  using Register = float64x2_t;
+  using Truth = uint64x2_t;
+  static constexpr int lanes = 2;
+  ODDS_LANES_INLINE static Register load(const double* p) noexcept { return vld1q_f64(p); }
+  ODDS_LANES_INLINE static Register from(const double* const* p, int offset) noexcept {
+    return Register{p[0][offset], p[1][offset]};
+  }
+  ODDS_LANES_INLINE static void store(double* p, Register a) noexcept { vst1q_f64(p, a); }
+  ODDS_LANES_INLINE static Register all(double x) noexcept { return vdupq_n_f64(x); }
+  ODDS_LANES_INLINE static Register add(Register a, Register b) noexcept { return vaddq_f64(a, b); }
+  ODDS_LANES_INLINE static Register subtract(Register a, Register b) noexcept { return vsubq_f64(a, b); }
+  ODDS_LANES_INLINE static Register multiply(Register a, Register b) noexcept { return vmulq_f64(a, b); }
+  ODDS_LANES_INLINE static Register divide(Register a, Register b) noexcept { return vdivq_f64(a, b); }
+  ODDS_LANES_INLINE static Register root(Register a) noexcept { return vsqrtq_f64(a); }
+  ODDS_LANES_INLINE static Register abs(Register a) noexcept { return vabsq_f64(a); }
+  ODDS_LANES_INLINE static Register min(Register a, Register b) noexcept { return choose(less(a, b), a, b); }
+  ODDS_LANES_INLINE static Register max(Register a, Register b) noexcept { return choose(less(b, a), a, b); }
+  ODDS_LANES_INLINE static Truth less(Register a, Register b) noexcept { return vcltq_f64(a, b); }
+  ODDS_LANES_INLINE static Truth less_equal(Register a, Register b) noexcept { return vcleq_f64(a, b); }
+  ODDS_LANES_INLINE static Truth both(Truth a, Truth b) noexcept { return vandq_u64(a, b); }
+  ODDS_LANES_INLINE static Truth either(Truth a, Truth b) noexcept { return vorrq_u64(a, b); }
+  ODDS_LANES_INLINE static unsigned bits(Truth a) noexcept {
+    return static_cast<unsigned>(vaddvq_u64(vandq_u64(a, Truth{1, 2})));
+  }
+  ODDS_LANES_INLINE static Register choose(Truth t, Register a, Register b) noexcept { return vbslq_f64(t, a, b); }
 };
 #endif
 
@@ -258,6 +288,12 @@ struct DoublesOf<Portable> {
 template <>
 struct DoublesOf<Sse2> {
   using Register = TwoDoubles;
+};
+#endif
+#if defined(__aarch64__)
+template <>
+struct DoublesOf<Neon> {
+  using Register = NeonDoubles;
 };
 #endif
 #if defined(__AVX2__)

@@ -1,5 +1,5 @@
-// Eight floats at a time: AVX-512 (sixteen), AVX2, two SSE registers, or plain loops. All give the same bits: no fused
-// multiply-add.
+// Eight floats at a time: AVX-512 (sixteen), AVX2, two SSE or NEON registers, or plain loops. All give the same bits:
+// no fused multiply-add.
 #pragma once
 
 #include <bit>
@@ -8,6 +8,8 @@
 
 #if defined(__SSE2__)
 #include <immintrin.h>
+#elif defined(__aarch64__)
+#include <arm_neon.h>
 #endif
 
 // Everything here must vanish into its caller: a function of its own, compiled with wider instructions than the
@@ -243,6 +245,117 @@ ODDS_LANES_INLINE Sse2::Float operator-(Sse2::Float a, Sse2::Float b) noexcept {
 }
 ODDS_LANES_INLINE Sse2::Float operator*(Sse2::Float a, Sse2::Float b) noexcept {
   return {_mm_mul_ps(a.lo, b.lo), _mm_mul_ps(a.hi, b.hi)};
+}
+#endif
+
+#if defined(__aarch64__)
+/// Every 64-bit ARM; those of 32 bits have no doubles in their registers, and lose what is very small.
+struct Neon {
+  struct Float {
+    float32x4_t lo, hi;
+  };
+  static constexpr const char* name = "neon";
+  ODDS_LANES_INLINE static Float load(const float* p) noexcept { return {vld1q_f32(p), vld1q_f32(p + 4)}; }
+  ODDS_LANES_INLINE static Float load_from(const float* p) noexcept { return load(p); }
+  ODDS_LANES_INLINE static void store(float* p, Float a) noexcept {
+    vst1q_f32(p, a.lo);
+    vst1q_f32(p + 4, a.hi);
+  }
+  ODDS_LANES_INLINE static Float all(float x) noexcept { return {vdupq_n_f32(x), vdupq_n_f32(x)}; }
+  ODDS_LANES_INLINE static Float abs(Float a) noexcept { return {vabsq_f32(a.lo), vabsq_f32(a.hi)}; }
+  ODDS_LANES_INLINE static Float divide(Float a, Float b) noexcept {
+    return {vdivq_f32(a.lo, b.lo), vdivq_f32(a.hi, b.hi)};
+  }
+  ODDS_LANES_INLINE static Float root(Float a) noexcept { return {vsqrtq_f32(a.lo), vsqrtq_f32(a.hi)}; }
+  ODDS_LANES_INLINE static void split(Float a, Float& exponent, Float& fraction) noexcept {
+    split_four(a.lo, exponent.lo, fraction.lo);
+    split_four(a.hi, exponent.hi, fraction.hi);
+  }
+  ODDS_LANES_INLINE static void split_four(float32x4_t a, float32x4_t& exponent, float32x4_t& fraction) noexcept {
+    const uint32x4_t bits = vreinterpretq_u32_f32(a);
+    exponent = vcvtq_f32_s32(vsubq_s32(vreinterpretq_s32_u32(vshrq_n_u32(bits, 23)), vdupq_n_s32(127)));
+    const uint32x4_t mantissa = vandq_u32(bits, vdupq_n_u32(0x007FFFFF));
+    fraction = vsubq_f32(vreinterpretq_f32_u32(vorrq_u32(mantissa, vdupq_n_u32(0x3F800000))), vdupq_n_f32(1.0F));
+  }
+  // Not vminq_f32 and vmaxq_f32: of what is not a number they make another one than SSE does.
+  ODDS_LANES_INLINE static Float min(Float a, Float b) noexcept {
+    return {vbslq_f32(vcltq_f32(a.lo, b.lo), a.lo, b.lo), vbslq_f32(vcltq_f32(a.hi, b.hi), a.hi, b.hi)};
+  }
+  ODDS_LANES_INLINE static Float max(Float a, Float b) noexcept {
+    return {vbslq_f32(vcgtq_f32(a.lo, b.lo), a.lo, b.lo), vbslq_f32(vcgtq_f32(a.hi, b.hi), a.hi, b.hi)};
+  }
+  ODDS_LANES_INLINE static unsigned less_equal(Float a, Float b) noexcept {
+    return vaddvq_u32(
+        vorrq_u32(vandq_u32(vcleq_f32(a.lo, b.lo), lower_bits()), vandq_u32(vcleq_f32(a.hi, b.hi), upper_bits())));
+  }
+  ODDS_LANES_INLINE static unsigned highest_bits(const void* eight) noexcept {
+    const auto* const lanes = static_cast<const float*>(eight);
+    const auto is_set = [](const float* four) {
+      return vreinterpretq_u32_s32(vshrq_n_s32(vreinterpretq_s32_f32(vld1q_f32(four)), 31));
+    };
+    return vaddvq_u32(vorrq_u32(vandq_u32(is_set(lanes), lower_bits()), vandq_u32(is_set(lanes + 4), upper_bits())));
+  }
+  ODDS_LANES_INLINE static Float choose(unsigned mask, Float a, Float b) noexcept {
+    return {vbslq_f32(vtstq_u32(vdupq_n_u32(mask), lower_bits()), a.lo, b.lo),
+            vbslq_f32(vtstq_u32(vdupq_n_u32(mask), upper_bits()), a.hi, b.hi)};
+  }
+  ODDS_LANES_INLINE static void write_some(float* to, Float a, unsigned mask) noexcept {
+    write_permuted(reinterpret_cast<std::uint8_t*>(to), vreinterpretq_u8_f32(a.lo), vreinterpretq_u8_f32(a.hi), mask);
+  }
+  ODDS_LANES_INLINE static void write_lanes(std::uint32_t* to, std::uint32_t first, unsigned mask) noexcept {
+    const uint16x8_t lanes = vmovl_u8(vld1_u8(lane_order.of[mask]));
+    vst1q_u32(to, vaddw_u16(vdupq_n_u32(first), vget_low_u16(lanes)));
+    vst1q_u32(to + 4, vaddw_u16(vdupq_n_u32(first), vget_high_u16(lanes)));
+  }
+  ODDS_LANES_INLINE static void write_either(std::uint32_t* to, std::uint32_t first, std::uint32_t other, unsigned mask,
+                                             unsigned counted) noexcept {
+    const uint32x4_t lane = {0, 1, 2, 3};
+    const uint32x4_t lower = vaddq_u32(vdupq_n_u32(first), lane);
+    const uint32x4_t upper = vaddq_u32(vdupq_n_u32(first + 4), lane);
+    const uint32x4_t uncounted = vdupq_n_u32(other);
+    const uint32x4_t counts = vdupq_n_u32(counted);
+    write_permuted(reinterpret_cast<std::uint8_t*>(to),
+                   vreinterpretq_u8_u32(vbslq_u32(vtstq_u32(counts, lower_bits()), lower, uncounted)),
+                   vreinterpretq_u8_u32(vbslq_u32(vtstq_u32(counts, upper_bits()), upper, uncounted)), mask);
+  }
+  ODDS_LANES_INLINE static void write_all(std::uint32_t* to, std::uint32_t value) noexcept {
+    vst1q_u32(to, vdupq_n_u32(value));
+    vst1q_u32(to + 4, vdupq_n_u32(value));
+  }
+  ODDS_LANES_INLINE static float least_value(Float a) noexcept { return vgetq_lane_f32(least_in_all(a), 0); }
+  ODDS_LANES_INLINE static unsigned least(Float a) noexcept {
+    const float32x4_t m = least_in_all(a);
+    return static_cast<unsigned>(__builtin_ctz(less_equal(a, {m, m}) | 0x100U));
+  }
+
+ private:
+  ODDS_LANES_INLINE static uint32x4_t lower_bits() noexcept { return uint32x4_t{1, 2, 4, 8}; }
+  ODDS_LANES_INLINE static uint32x4_t upper_bits() noexcept { return uint32x4_t{16, 32, 64, 128}; }
+  ODDS_LANES_INLINE static float32x4_t least_in_all(Float a) noexcept {
+    const Float m = min(a, {vextq_f32(a.lo, a.lo, 2), vextq_f32(a.hi, a.hi, 2)});
+    const float32x4_t four = min({m.lo, m.lo}, {m.hi, m.hi}).lo;
+    return min({four, four}, {vrev64q_f32(four), four}).lo;
+  }
+  /// Lanes of the mask, in order: each is four bytes of a table of 32.
+  ODDS_LANES_INLINE static void write_permuted(std::uint8_t* to, uint8x16_t lower, uint8x16_t upper,
+                                               unsigned mask) noexcept {
+    const uint16x8_t lanes = vmovl_u8(vld1_u8(lane_order.of[mask]));
+    const auto bytes_of = [](uint16x4_t four) {
+      return vreinterpretq_u8_u32(vmlaq_n_u32(vdupq_n_u32(0x03020100), vmovl_u16(four), 0x04040404));
+    };
+    const uint8x16x2_t table = {{lower, upper}};
+    vst1q_u8(to, vqtbl2q_u8(table, bytes_of(vget_low_u16(lanes))));
+    vst1q_u8(to + 16, vqtbl2q_u8(table, bytes_of(vget_high_u16(lanes))));
+  }
+};
+ODDS_LANES_INLINE Neon::Float operator+(Neon::Float a, Neon::Float b) noexcept {
+  return {vaddq_f32(a.lo, b.lo), vaddq_f32(a.hi, b.hi)};
+}
+ODDS_LANES_INLINE Neon::Float operator-(Neon::Float a, Neon::Float b) noexcept {
+  return {vsubq_f32(a.lo, b.lo), vsubq_f32(a.hi, b.hi)};
+}
+ODDS_LANES_INLINE Neon::Float operator*(Neon::Float a, Neon::Float b) noexcept {
+  return {vmulq_f32(a.lo, b.lo), vmulq_f32(a.hi, b.hi)};
 }
 #endif
 

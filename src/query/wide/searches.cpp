@@ -14,6 +14,15 @@ const Searches* sse2_searches() noexcept {
 #endif
 }
 
+const Searches* neon_searches() noexcept {
+#if defined(__aarch64__)
+  static constexpr Searches searches = searches_of<lanes::Neon>();
+  return &searches;
+#else
+  return nullptr;
+#endif
+}
+
 const Searches* portable_searches() noexcept {
   static constexpr Searches searches = searches_of<lanes::Portable>();
   return &searches;
@@ -48,6 +57,8 @@ const Searches* searches_for(InstructionSet set) noexcept {
       return avx2_searches_here();
     case InstructionSet::sse2:
       return sse2_searches();
+    case InstructionSet::neon:
+      return neon_searches();
     case InstructionSet::portable:
       return portable_searches();
     case InstructionSet::best:
@@ -56,6 +67,7 @@ const Searches* searches_for(InstructionSet set) noexcept {
   if (const Searches* searches = avx512_searches_here()) return searches;
   if (const Searches* searches = avx2_searches_here()) return searches;
   if (const Searches* searches = sse2_searches()) return searches;
+  if (const Searches* searches = neon_searches()) return searches;
   return portable_searches();
 }
 

@@ -1,0 +1,190 @@
+// What the lanes of each instruction set do, beside plain numbers.
+#include "query/wide/lanes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <iterator>
+#include <limits>
+
+#include "odds/math/random.hpp"
+#include "odds/tree/wide_tree.hpp"
+#include "query/wide/doubles.hpp"
+#include "support/instruction_sets.hpp"
+
+namespace odds::query::wide {
+namespace {
+
+using tree::wide_lanes;
+
+template <class L>
+class Lanes : public ::testing::Test {};
+TYPED_TEST_SUITE(Lanes, testing::LanesBuiltHere);
+
+TYPED_TEST(Lanes, AreWrittenInOrderCountedOrNot) {
+  math::Random random(3);
+  for (int i = 0; i < 2000; ++i) {
+    const auto mask = static_cast<unsigned>(random.below(256));
+    const auto counted = static_cast<unsigned>(random.below(256));
+    std::uint32_t written[wide_lanes] = {};
+    TypeParam::write_either(written, 1000, 7, mask, counted);
+    std::size_t at = 0;
+    for (unsigned lane = 0; lane < wide_lanes; ++lane) {
+      if ((mask >> lane & 1U) == 0) continue;
+      ASSERT_EQ(written[at++], (counted >> lane & 1U) != 0 ? 1000 + lane : 7U);
+    }
+  }
+}
+
+TYPED_TEST(Lanes, AreChosenAndTheLeastFound) {
+  math::Random random(4);
+  alignas(64) float numbers[2][wide_lanes + 1];
+  for (int i = 0; i < 2000; ++i) {
+    for (auto& eight : numbers) {
+      for (float& number : eight) number = static_cast<float>(random.below(20)) - 10.0F;
+    }
+    const auto mask = static_cast<unsigned>(random.below(256));
+    const auto chosen = TypeParam::choose(mask, TypeParam::load(numbers[0]), TypeParam::load_from(numbers[1] + 1));
+    alignas(64) float kept[wide_lanes];
+    TypeParam::store(kept, chosen);
+    float written[wide_lanes];
+    TypeParam::write_some(written, chosen, mask);
+    std::size_t at = 0;
+    for (unsigned lane = 0; lane < wide_lanes; ++lane) {
+      const bool is_first = (mask >> lane & 1U) != 0;
+      ASSERT_EQ(kept[lane], is_first ? numbers[0][lane] : numbers[1][lane + 1]);
+      if (!is_first) continue;
+      ASSERT_EQ(written[at++], kept[lane]);
+    }
+    const float least = *std::min_element(std::begin(kept), std::end(kept));
+    ASSERT_EQ(TypeParam::least_value(chosen), least);
+    ASSERT_EQ(kept[TypeParam::least(chosen)], least);
+  }
+}
+
+/// Of any size, of either sign, zero, and now and then none.
+template <class T>
+T any_number(math::Random& random) {
+  constexpr T special[] = {T(0),
+                           -T(0),
+                           std::numeric_limits<T>::infinity(),
+                           std::numeric_limits<T>::denorm_min(),
+                           std::numeric_limits<T>::min(),
+                           std::numeric_limits<T>::max(),
+                           std::numeric_limits<T>::quiet_NaN()};
+  if (random.below(8) == 0) return special[random.below(std::size(special))];
+  const auto size = static_cast<T>(std::exp(random.uniform(-20.0, 20.0)));
+  return random.below(2) == 0 ? size : -size;
+}
+
+/// Equal, or neither a number.
+template <class T>
+bool same(T x, T y) {
+  return x == y || (std::isnan(x) && std::isnan(y));
+}
+
+TYPED_TEST(Lanes, CalculateAsOneNumberDoes) {
+  math::Random random(5);
+  alignas(64) float a[wide_lanes];
+  alignas(64) float b[wide_lanes];
+  const auto is_as = [&](const auto& lanes, const auto& one) {
+    alignas(64) float made[wide_lanes];
+    TypeParam::store(made, lanes);
+    for (unsigned i = 0; i < wide_lanes; ++i) {
+      if (!same(made[i], one(a[i], b[i]))) return false;
+    }
+    return true;
+  };
+  for (int i = 0; i < 5000; ++i) {
+    for (float& number : a) number = any_number<float>(random);
+    for (float& number : b) number = any_number<float>(random);
+    const auto x = TypeParam::load(a);
+    const auto y = TypeParam::load(b);
+    ASSERT_TRUE(is_as(x + y, [](float p, float q) { return p + q; })) << i;
+    ASSERT_TRUE(is_as(x - y, [](float p, float q) { return p - q; })) << i;
+    ASSERT_TRUE(is_as(x * y, [](float p, float q) { return p * q; })) << i;
+    ASSERT_TRUE(is_as(TypeParam::divide(x, y), [](float p, float q) { return p / q; })) << i;
+    ASSERT_TRUE(is_as(TypeParam::abs(x), [](float p, float) { return std::fabs(p); })) << i;
+    ASSERT_TRUE(is_as(TypeParam::root(TypeParam::abs(x)), [](float p, float) { return std::sqrt(std::fabs(p)); })) << i;
+    // Of what is not a number the second one, as SSE has it.
+    ASSERT_TRUE(is_as(TypeParam::min(x, y), [](float p, float q) { return p < q ? p : q; })) << i;
+    ASSERT_TRUE(is_as(TypeParam::max(x, y), [](float p, float q) { return p > q ? p : q; })) << i;
+    unsigned mask = 0;
+    unsigned signs = 0;
+    for (unsigned lane = 0; lane < wide_lanes; ++lane) {
+      mask |= (a[lane] <= b[lane] ? 1U : 0U) << lane;
+      signs |= (std::signbit(a[lane]) ? 1U : 0U) << lane;
+    }
+    ASSERT_EQ(TypeParam::less_equal(x, y), mask) << i;
+    ASSERT_EQ(TypeParam::highest_bits(a), signs) << i;
+  }
+}
+
+TYPED_TEST(Lanes, SplitExponentsOff) {
+  math::Random random(6);
+  for (int i = 0; i < 2000; ++i) {
+    alignas(64) float numbers[wide_lanes];
+    for (float& number : numbers) number = static_cast<float>(std::exp(random.uniform(-80.0, 80.0)));
+    typename TypeParam::Float exponent;
+    typename TypeParam::Float fraction;
+    TypeParam::split(TypeParam::load(numbers), exponent, fraction);
+    alignas(64) float exponents[wide_lanes];
+    alignas(64) float fractions[wide_lanes];
+    TypeParam::store(exponents, exponent);
+    TypeParam::store(fractions, fraction);
+    for (unsigned lane = 0; lane < wide_lanes; ++lane) {
+      ASSERT_EQ(std::ldexp(1.0F + fractions[lane], static_cast<int>(exponents[lane])), numbers[lane]);
+      ASSERT_GE(fractions[lane], 0.0F);
+      ASSERT_LT(fractions[lane], 1.0F);
+    }
+  }
+}
+
+TYPED_TEST(Lanes, OfDoublesCalculateAsOneNumberDoes) {
+  using Eight = lanes::Doubles<typename lanes::DoublesOf<TypeParam>::Register>;
+  math::Random random(7);
+  alignas(64) double a[8];
+  alignas(64) double b[8];
+  const auto is_as = [&](const Eight& eight, const auto& one) {
+    alignas(64) double made[8];
+    eight.store(made);
+    for (unsigned i = 0; i < 8; ++i) {
+      if (!same(made[i], one(a[i], b[i]))) return false;
+    }
+    return true;
+  };
+  for (int i = 0; i < 5000; ++i) {
+    for (double& number : a) number = any_number<double>(random);
+    for (double& number : b) number = any_number<double>(random);
+    const Eight x = Eight::load(a);
+    const Eight y = Eight::load(b);
+    ASSERT_TRUE(is_as(x + y, [](double p, double q) { return p + q; })) << i;
+    ASSERT_TRUE(is_as(x - y, [](double p, double q) { return p - q; })) << i;
+    ASSERT_TRUE(is_as(x * y, [](double p, double q) { return p * q; })) << i;
+    ASSERT_TRUE(is_as(x / y, [](double p, double q) { return p / q; })) << i;
+    ASSERT_TRUE(is_as(abs(x), [](double p, double) { return std::fabs(p); })) << i;
+    ASSERT_TRUE(is_as(root(abs(x)), [](double p, double) { return std::sqrt(std::fabs(p)); })) << i;
+    ASSERT_TRUE(is_as(min(x, y), [](double p, double q) { return p < q ? p : q; })) << i;
+    ASSERT_TRUE(is_as(max(x, y), [](double p, double q) { return p > q ? p : q; })) << i;
+    ASSERT_TRUE(is_as(choose(x < y, x, y), [](double p, double q) { return p < q ? p : q; })) << i;
+    const double* rows[8];
+    for (unsigned lane = 0; lane < 8; ++lane) rows[lane] = a + 7 - lane;
+    alignas(64) double turned[8];
+    Eight::from(rows, 0).store(turned);
+    unsigned less = 0;
+    unsigned either = 0;
+    for (unsigned lane = 0; lane < 8; ++lane) {
+      ASSERT_TRUE(same(turned[lane], a[7 - lane])) << i;
+      less |= (a[lane] < b[lane] ? 1U : 0U) << lane;
+      either |= (a[lane] < b[lane] || b[lane] <= a[lane] ? 1U : 0U) << lane;
+    }
+    ASSERT_EQ((x < y).bits(), less) << i;
+    ASSERT_EQ(((x < y) | (y <= x)).bits(), either) << i;
+    ASSERT_EQ(((x < y) & (y <= x)).bits(), 0U) << i;
+  }
+}
+
+}  // namespace
+}  // namespace odds::query::wide
