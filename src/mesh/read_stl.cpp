@@ -107,7 +107,7 @@ bool is_binary(Input& input, std::uint64_t largest_size) {
     const std::uint64_t implied = preamble_bytes + claim * facet_bytes;
     if (implied <= largest_size && implied == input.size()) return true;
   }
-  return std::any_of(head.begin(), head.end(), [](char c) { return c >= 0 && c < ' ' && (c < '\t' || c > '\r'); });
+  return std::any_of(head.begin(), head.end(), [](unsigned char c) { return c < ' ' && (c < '\t' || c > '\r'); });
 }
 
 void read_binary(Input& input, MeshBuilder& builder) {
