@@ -32,7 +32,7 @@ Encounter::Encounter(const tree::WideTree& a, const tree::WideTree& b, const Pos
   const math::Pose& pose = meshes.pose();
   // Bodies that are farther apart than their own sizes are only asked for their distance.
   const double reach = std::max(a.reach() + b.reach(), pose.translation.norm());
-  far_apart_ = !(pose.translation.norm() <= (a.reach() + b.reach()) * (1.0 + 1e-9));
+  far_apart_ = !(pose.translation.norm() <= (a.reach() + b.reach()) * most_stretch);
   // Sums of up to 50 roundings of `reach` stand for a gap along a slab: twice the margin that single boxes need.
   relative_ = volume::RelativePose::make(pose, 4.0 * reach);
   turns_[0] = make_turn(relative_);
