@@ -5,11 +5,16 @@
 #include <span>
 
 #include "odds/math/pose.hpp"
+#include "odds/math/tolerances.hpp"
 #include "odds/mesh/triangle_mesh.hpp"
 #include "odds/query/contact_patch.hpp"
 #include "odds/tree/topology.hpp"
 
 namespace odds::query {
+
+/// A rotation that is only just one makes no length greater than by this factor: with entries of R^T R - I within the
+/// tolerance its greatest singular value squared is at most 1 and three times that.
+inline constexpr double most_stretch = 1.0 + 2.0 * tolerances::pose_orthonormality;
 
 /// Works in A's tree frame: the mesh's, moved so that `origin_a` is the origin. Both meshes must outlive it.
 class PosedMeshes {

@@ -1,6 +1,8 @@
 // Searches against every triangle with every triangle: other places, scales, orders of arguments and of triangles.
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "odds/query/pair.hpp"
 #include "support/all_kinds.hpp"
 #include "support/brute_force.hpp"
@@ -102,6 +104,32 @@ TEST_P(AgainstBruteForce, NoContactIsMissedFarFromTheOrigin) {
       for (const Request& request : requests) {
         ASSERT_EQ(pair.run(pose, request).verdict == Verdict::hit, expected) << i << " " << band;
       }
+    }
+  }
+}
+
+TEST_P(AgainstBruteForce, NoContactIsMissedAtThePoseThatIsOnlyJustRigid) {
+  // Corner against corner, as far out as both bodies reach: B is longer there by half of what a pose may be off.
+  const auto box = std::make_shared<const mesh::TriangleMesh>(
+      std::move(mesh::TriangleMesh::make({{1, 1, 1}, {-1, -1, -1}, {-1, 1, -1}, {1, -1, -1}},
+                                         {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}}))
+          .value());
+  Pair pair = pair_of(box, box, GetParam());
+  const Vec3 corner(1, 1, 1);
+  for (const double stretch : {4.9e-7, 1e-7, 0.0, -4.9e-7}) {
+    math::Pose pose;
+    pose.rotation =
+        (1.0 + stretch) * Eigen::AngleAxisd(std::numbers::pi, Vec3(1, -1, 0).normalized()).toRotationMatrix();
+    for (const double gap : {-4e-7, -2e-7, -1e-8, 1e-8, 2e-7, 6e-7}) {
+      pose.translation = (1.0 + gap) * corner - pose.rotation * corner;
+      const bool expected = testing::brute_force(*box, *box, pose);
+      for (const Request& request : requests) {
+        const Answer& answer = pair.run(pose, request);
+        ASSERT_EQ(answer.verdict == Verdict::hit, expected) << stretch << " " << gap;
+        ASSERT_EQ(answer.basis, Basis::proved);
+      }
+      if (expected && GetParam() == volume::Kind::wide) ASSERT_EQ(pair.distance(pose).upper, 0.0);
+      if (expected) ASSERT_EQ(pair.distance(pose, {.budget = Budget::work(1)}).lower, 0.0);
     }
   }
 }

@@ -86,6 +86,34 @@ TEST_F(Distance, WithinAMarginSaysSoOrThatNothingIs) {
   }
 }
 
+TEST_F(Distance, WithinNothingIsWhatMeets) {
+  int met = 0;
+  for (int i = 0; i < 40; ++i) {
+    const math::Pose pose = random_pose(1.0, 2.6);
+    const DistanceAnswer distance = pair_.distance(pose);
+    const DistanceAnswer touch = pair_.distance(pose, {.within = 0.0});
+    ASSERT_TRUE(touch.proved);
+    ASSERT_EQ(touch.lower, 0.0);
+    ASSERT_EQ(touch.upper == 0.0, distance.upper == 0.0);
+    ASSERT_EQ(std::isinf(touch.upper), distance.upper > 0.0);
+    ASSERT_EQ(touch.triangle_a != no_feature, distance.upper == 0.0);
+    met += distance.upper == 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(met, 5);
+  EXPECT_LT(met, 35);
+}
+
+TEST_F(Distance, WhatMeetsEndsTheSearch) {
+  const math::Pose pose = random_pose(1.0, 1.1);
+  const DistanceAnswer whole = pair_.distance(pose);
+  ASSERT_TRUE(whole.proved);
+  ASSERT_EQ(whole.upper, 0.0);
+  for (std::uint64_t units = 8; units < 3000; units += 8) {
+    const DistanceAnswer answer = pair_.distance(pose, {.budget = Budget::work(units)});
+    ASSERT_EQ(answer.proved, answer.upper == 0.0) << units << ": no two points are nearer than those that meet";
+  }
+}
+
 TEST_F(Distance, BoundsHoldUnderEveryWorkBudget) {
   const math::Pose pose = random_pose(2.2, 2.4);
   const double exact = pair_.distance(pose).upper;

@@ -12,6 +12,7 @@
 
 #include "odds/mesh/made/by_name.hpp"
 #include "support/all_kinds.hpp"
+#include "support/brute_force.hpp"
 #include "support/by_queue.hpp"
 #include "support/shapes.hpp"
 #include "support/slabs.hpp"
@@ -67,6 +68,21 @@ TEST_P(PairOfSpheres, NeverSpendsMoreThanItsWorkBudget) {
     const Answer& answer = at(1.9);
     EXPECT_LE(answer.cost.node_pairs + answer.cost.triangle_pairs, units);
     EXPECT_TRUE(answer.probability >= 0.0 && answer.probability <= 1.0);
+  }
+}
+
+TEST_P(PairOfSpheres, NeitherWhereItLooksFirstAtWhatMet) {
+  request_.method = Method::incremental;
+  for (const int contacts : {1, 4}) {
+    request_.max_contacts = contacts;
+    request_.carry_motion = 1.0;
+    for (std::uint64_t units = 1; units < 12; ++units) {
+      request_.budget = {};
+      ASSERT_EQ(at(1.9).verdict, Verdict::hit);
+      request_.budget = Budget::work(units);
+      const Answer& answer = at(1.999);
+      EXPECT_LE(answer.cost.node_pairs + answer.cost.triangle_pairs, units) << contacts << " contacts";
+    }
   }
 }
 
@@ -302,6 +318,31 @@ TEST(Pair, OnlyRequestsThatCountLikelyPairsAreSearchedInAnotherOrderThanExact) {
   }
   EXPECT_GE(undecided, 3);
   EXPECT_GE(in_another_order, 1);
+}
+
+// To ask how probable a pair is takes longer than to open one.
+TEST(Pair, ReadsTheClockBetweenEstimates) {
+  const auto outer = Shape::build(testing::wavy_sphere(48)).value();
+  const auto inner =
+      Shape::build(testing::changed(*testing::wavy_sphere(48), 0.995, {Mat3::Identity(), Vec3::Zero()}, 0)).value();
+  auto pair = std::move(Pair::make(outer, inner)).value();
+  for (const EstimatorKind estimator : {EstimatorKind::kinematic, EstimatorKind::cells}) {
+    for (const bool polygon_free : {false, true}) {
+      // Lanes are ordered by how deep they overlap, unless their cells are counted.
+      if (polygon_free && estimator == EstimatorKind::kinematic) continue;
+      realtime::ManualClock clock(0);
+      Request request;
+      request.estimator = estimator;
+      request.polygon_free = polygon_free;
+      request.p_min = 0.9999999;
+      request.k_min = 1'000'000;
+      request.max_contacts = 0;
+      request.budget = Budget::time(1e6);
+      request.budget.clock = clock.clock();
+      const Answer& answer = pair.run({}, request);
+      EXPECT_GT(clock.readings(), static_cast<std::int64_t>(answer.cost.node_pairs / 8)) << polygon_free;
+    }
+  }
 }
 
 TEST(Pair, SaysAQuickEstimatedHitOnlyIfAsked) {

@@ -63,7 +63,8 @@ SearchResult search(const Encounter<V>& encounter, const PosedMeshes&, const Req
   if (encounter.far_apart()) return result;
   Method order = order_of(request);
   if (order == Method::incremental && request.budget.is_limited() && pair.slice.pauses()) order = Method::time_critical;
-  if (pieces_are_long<V> && !spending.may_go_on()) {
+  // Pairs of triangles that met before may have taken all units.
+  if (!spending.allows(1) || (pieces_are_long<V> && !spending.may_go_on())) {
     result.method = order;
     result.ended = Progressed::spent;
     consider(result, {0, 0, encounter.rank(0, 0)});

@@ -43,8 +43,8 @@ DistanceAnswer Pair::distance(const math::Pose& pose_b_in_a, const DistanceReque
   const PosedMeshes meshes(pair.a->mesh(), pair.b->mesh(), a->origin(), b->origin(), pose_b_in_a);
   const double apart = meshes.pose().translation.norm();
   const double reach = a->reach() + b->reach();
-  answer.lower = std::max(0.0, apart - reach * (1.0 + 1e-12));
-  const double farthest = (apart + reach) * (1.0 + 1e-6);
+  answer.lower = std::max(0.0, apart - reach * most_stretch);
+  const double farthest = (apart + reach) * most_stretch;
   if (answer.lower > request.within) {
     answer.lower = request.within;
     answer.proved = true;

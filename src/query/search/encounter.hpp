@@ -13,6 +13,7 @@
 #include "query/node_odds/met_place.hpp"
 #include "query/node_odds/node_odds.hpp"
 #include "query/node_odds/node_odds_table.hpp"
+#include "query/posed_meshes.hpp"
 #include "query/search/bucket_queue.hpp"
 #include "query/shape_data.hpp"
 #include "query/spending.hpp"
@@ -61,7 +62,7 @@ class Encounter {
 
   /// True if the enclosing balls about both origins are apart; then nothing below may be asked (the margins assume
   /// less).
-  [[nodiscard]] bool far_apart() const noexcept { return !(b_in_a_.translation.norm() <= reach_ * (1.0 + 1e-9)); }
+  [[nodiscard]] bool far_apart() const noexcept { return !(b_in_a_.translation.norm() <= reach_ * most_stretch); }
 
   /// True too for two leaves whose volumes are not to be tested.
   [[nodiscard]] bool volumes_overlap(std::uint32_t i, std::uint32_t j) const noexcept {

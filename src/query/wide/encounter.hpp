@@ -27,7 +27,7 @@ class Encounter {
   [[nodiscard]] bool far_apart() const noexcept { return are_far_apart(a_, b_, meshes_.pose()); }
   [[nodiscard]] static bool are_far_apart(const tree::WideTree& a, const tree::WideTree& b,
                                           const math::Pose& b_in_a) noexcept {
-    return !(b_in_a.translation.norm() <= (a.reach() + b.reach()) * (1.0 + 1e-9));
+    return !(b_in_a.translation.norm() <= (a.reach() + b.reach()) * most_stretch);
   }
 
   [[nodiscard]] const tree::WideTree& a() const noexcept { return a_; }

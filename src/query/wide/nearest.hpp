@@ -1,6 +1,7 @@
 // The distance between two wide trees: nearest pair of slots first, by branch and bound.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 
 #include "query/wide/opening.hpp"
@@ -49,9 +50,13 @@ class Nearest {
   [[nodiscard]] bool is_leaf(std::uint32_t side, Slot slot) const noexcept { return met_.child(side, slot).is_leaf(); }
 
   [[nodiscard]] double least_distance(float gap) const noexcept {
-    return static_cast<double>(gap) - static_cast<double>(met_.margin());
+    return std::max(static_cast<double>(gap) - static_cast<double>(met_.margin()), 0.0);
   }
-  [[nodiscard]] bool too_far(float gap) const noexcept { return !(least_distance(gap) < task_.bound); }
+  /// What is as near as the bound is asked for until something is found: within a margin of 0 all that touches is.
+  [[nodiscard]] bool may_be_nearer(double least) const noexcept {
+    return least < task_.bound || (least == task_.bound && !task_.found);
+  }
+  [[nodiscard]] bool too_far(float gap) const noexcept { return !may_be_nearer(least_distance(gap)); }
 
   void open(const SlotPair& pair) noexcept {
     const Expanded<L> expanded = expand<L, false, true>(met_, pair);
@@ -93,7 +98,7 @@ class Nearest {
           }
         }
       }
-      if (!(static_cast<double>(gaps[row][lane]) < task_.bound)) return true;
+      if (!may_be_nearer(static_cast<double>(gaps[row][lane]))) return true;
       gaps[row][lane] = std::numeric_limits<float>::infinity();
       if (!task_.spending.may_go_on() || !task_.spending.allows(1)) return false;
       task_.spending.spend_triangle_pairs(1);
@@ -104,7 +109,7 @@ class Nearest {
   void leave() noexcept {
     double lower = task_.bound;
     for (std::size_t i = 0; i < size_; ++i) lower = std::min(lower, least_distance(stack_[i].gap));
-    task_.lower = std::max(lower, 0.0);
+    task_.lower = lower;
   }
 
   NearestTask& task_;

@@ -74,12 +74,33 @@ class TimeCritical {
     NodePair child;
     (expanded.side == 0 ? child.b : child.a) = expanded.other;
     Slot& opened = expanded.side == 0 ? child.a : child.b;
+    bool is_time_up = false;
     for (unsigned lanes = expanded.lanes; lanes != 0 && !finished_; lanes &= lanes - 1U) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
       opened = expanded.first + lane;
-      child.rank = task_.request.estimator == EstimatorKind::kinematic ? rank[lane] : met_.rank(child.a, child.b);
+      child.rank = rank[lane];
+      is_time_up = is_time_up || !task_.spending.may_go_on_after(units_between_polls);
+      if (is_time_up) {
+        keep(child, cost);
+        continue;
+      }
+      if (task_.request.estimator != EstimatorKind::kinematic) {
+        note_estimate();
+        child.rank = met_.rank(child.a, child.b);
+      }
       meet(child, cost);
     }
+    if (is_time_up) finish(Progressed::spent);
+  }
+
+  /// To ask how probable a pair is takes as long as opening one or two, and counts as none: the clock is looked at so
+  /// much sooner.
+  void note_estimate() noexcept {
+    task_.spending.hasten_poll(task_.request.estimator == EstimatorKind::kinematic ? wide_lanes : 2 * wide_lanes);
+  }
+  [[nodiscard]] float probability(const NodePair& pair) noexcept {
+    note_estimate();
+    return met_.probability(pair.a, pair.b);
   }
 
   /// log2 of what is left to do below a pair: each level of eight lanes is worth three of two.
@@ -105,7 +126,7 @@ class TimeCritical {
 
   void visit_leaf_pair(const NodePair& pair) noexcept {
     if (task_.request.polygon_free) {
-      const float p = met_.probability(pair.a, pair.b);
+      const float p = probability(pair);
       task_.result.estimate = std::max(task_.result.estimate, p);
       if (p >= 0.5F) {
         task_.result.estimated_hit = true;
@@ -125,7 +146,7 @@ class TimeCritical {
 
   void meet(const NodePair& pair, float cost) noexcept {
     if (task_.request.p_min < 1.0) {
-      const float p = met_.probability(pair.a, pair.b);
+      const float p = probability(pair);
       if (static_cast<double>(p) >= task_.request.p_min) {
         task_.result.estimate = std::max(task_.result.estimate, p);
         if (++sure_pairs_ >= task_.request.k_min) {
@@ -138,12 +159,22 @@ class TimeCritical {
     add(pair, cost);
   }
 
+  void push(const NodePair& pair, float cost) noexcept {
+    task_.queue->push(bucket_of_value(std::min(pair.rank, highest_rank) - cost), pair);
+  }
+
+  /// A pair that there was no time to ask anything about; its rank is how deep it overlaps.
+  void keep(const NodePair& pair, float cost) noexcept {
+    if (!task_.queue->full()) return push(pair, cost);
+    leave_open<L>(task_, pair);
+  }
+
   void add(const NodePair& pair, float cost) noexcept {
-    if (!task_.queue->full()) return task_.queue->push(bucket_of_value(std::min(pair.rank, highest_rank) - cost), pair);
+    if (!task_.queue->full()) return push(pair, cost);
     // Nothing is dropped: what finds no room is searched to its end at once.
     task_.spending.note_full_queue();
     if (task_.request.polygon_free) {
-      task_.result.estimate = std::max(task_.result.estimate, met_.probability(pair.a, pair.b));
+      task_.result.estimate = std::max(task_.result.estimate, probability(pair));
       leave_open<L>(task_, pair);
       return;
     }
