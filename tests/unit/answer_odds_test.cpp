@@ -185,5 +185,16 @@ TEST(Recalibration, IsRefusedOutOfRangeAndTheSameEachTime) {
   EXPECT_NE(one.run(pose, request).probability, general.run(pose, request).probability);
 }
 
+TEST(Recalibration, HasNothingToLearnFromWithoutPolygons) {
+  const auto shape = Shape::build(testing::wavy_sphere(10)).value();
+  const auto without = shape->without_polygons();
+  PairOptions options;
+  EXPECT_TRUE(Pair::make(shape, without, options).ok());
+  options.calibration_poses = 48;
+  EXPECT_FALSE(Pair::make(shape, without, options).ok());
+  EXPECT_FALSE(Pair::make(without, shape, options).ok());
+  EXPECT_TRUE(Pair::make(shape, shape, options).ok());
+}
+
 }  // namespace
 }  // namespace odds::query

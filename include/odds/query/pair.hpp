@@ -32,7 +32,7 @@ struct PairOptions {
   std::uint32_t hit_capacity = 512;      ///< intersecting triangle pairs kept for contacts, 8 .. 65536
   InstructionSet instruction_set = InstructionSet::best;
   /// Poses on which `make` learns how true the general odds are for this very pair; 0: none. About 0.2 ms each; 240 and
-  /// more are worth it. The pair keeps what it learnt.
+  /// more are worth it. The pair keeps what it learnt. Of shapes with polygons.
   std::uint32_t calibration_poses = 0;
   /// Memory for Request::late_contacts: 3.1 MB, shared by all pairs with the same capacities, once for each pair but no
   /// more than 16 times; of more that would use it at once, some make their contacts as without.
@@ -48,7 +48,7 @@ class Pair {
  public:
   struct Implementation;  // private to src/query
 
-  /// Refuses two shapes of unlike bounding volumes, capacities out of range, and instructions that are not there.
+  /// Refuses two shapes of unlike bounding volumes, options out of range, and instructions that are not there.
   static Result<Pair> make(std::shared_ptr<const Shape> a, std::shared_ptr<const Shape> b,
                            const PairOptions& options = {});
   ~Pair();

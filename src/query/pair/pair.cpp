@@ -369,6 +369,11 @@ Result<Pair> Pair::make(std::shared_ptr<const Shape> a, std::shared_ptr<const Sh
   if (options.calibration_poses > 1'000'000) {
     return Error{"", "", "calibration_poses is " + std::to_string(options.calibration_poses), "choose 0 to 1000000"};
   }
+  if (options.calibration_poses > 0 && !(a->has_polygons() && b->has_polygons())) {
+    return Error{a->has_polygons() ? b->mesh().name() : a->mesh().name(), "",
+                 "without polygons nothing is proved that odds could be learnt from",
+                 "choose calibration_poses (--calibrate) 0, or shapes with polygons"};
+  }
   if (wide::searches_for(options.instruction_set) == nullptr) {
     return Error{"", "", "this processor, or this build, lacks the instructions asked for",
                  "choose InstructionSet::best"};
