@@ -115,6 +115,7 @@ INSTANTIATE_TEST_SUITE_P(
         Malformed{"EstimatorUnknown", 7, "estimator = \"book\"", "7:13", "cells or kinematic"},
         Malformed{"TooManyContacts", 8, "max_contacts = 9", "8:16", "0 to 8"},
         Malformed{"PMinAboveOne", 8, "p_min = 1.5", "8:9", "at most 1"},
+        Malformed{"KMinWithoutPMin", 8, "k_min = 20", "8:1", "p_min"},
         Malformed{"CarryMotionAboveOne", 8, "carry_motion = 2", "8:16", "at most 1"},
         Malformed{"MeshWithoutFile", 11, "", "9:1", "'file'"},
         Malformed{"MeshFileEmpty", 11, "file = \"\"", "11:8", "empty"},

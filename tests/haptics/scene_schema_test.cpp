@@ -83,7 +83,7 @@ class SceneSchema : public ::testing::Test {
 Json base() {
   return Json::parse(R"({
     "format": "odds.scene/1", "search": ["meshes"],
-    "loop": {"rate_hz": 1000}, "query": {"budget_us": 50, "frame_us": 500}, "physics": {"solver": "iterative", "iterations": 30},
+    "loop": {"rate_hz": 1000}, "query": {"budget_us": 50, "frame_us": 500, "p_min": 0.99}, "physics": {"solver": "iterative", "iterations": 30},
     "mesh": [{"name": "block", "file": "made:box"}],
     "body": [{"name": "floor", "mesh": "block"},
              {"name": "loose", "mesh": "block", "motion": "dynamic", "mass_kg": 1.0}],
@@ -291,6 +291,8 @@ TEST_F(SceneSchema, RefusesWhatDisagrees) {
       {"a made shape with a scale", R"([{"op": "add", "path": "/mesh/0/scale", "value": 2.0}])"},
       {"mass and density", R"([{"op": "add", "path": "/body/1/density_kg_per_m3", "value": 2.0}])"},
       {"a fixed body with a mass", R"([{"op": "add", "path": "/body/0/mass_kg", "value": 2.0}])"},
+      {"k_min without p_min",
+       R"([{"op": "remove", "path": "/query/p_min"}, {"op": "add", "path": "/query/k_min", "value": 20}])"},
       {"iterations of the exact solver", R"([{"op": "remove", "path": "/physics/solver"}])"},
       {"half of the sub-steps", R"([{"op": "add", "path": "/physics/most_substeps", "value": 4}])"},
       {"sub-steps in parts",
