@@ -15,8 +15,6 @@ constexpr int deepest_nesting = 32;
 constexpr std::array<std::string_view, 9> joint_types = {"fixed", "revolute", "revolute2", "prismatic", "continuous",
                                                          "ball",  "screw",    "universal", "gearbox"};
 
-bool is_true(std::string_view text) { return text == "true" || text == "1"; }
-
 class SdfReader {
  public:
   explicit SdfReader(const XmlReader& xml) : xml_(xml), frames_(xml) {}
@@ -65,12 +63,12 @@ class SdfReader {
     if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) return pose;
     if (std::string_view(node.attribute("rotation_format").value()) == "quat_xyzw") {
       const std::vector<double> v = xml_.numbers(node, text, 7, "pose");
-      const Quat q(v[6], v[3], v[4], v[5]);
-      if (!(std::abs(q.norm() - 1.0) <= 1e-3)) xml_.fail(node, "the quaternion is no rotation", "give x y z w, unit");
-      return math::Pose::from_quaternion({v[0], v[1], v[2]}, q);
+      pose.translation = {v[0], v[1], v[2]};
+      pose.rotation = xml_.rotation_of_xyzw(node, v.data() + 3);
+      return pose;
     }
     const std::vector<double> v = xml_.numbers(node, text, 6, "pose");
-    const double unit = is_true(node.attribute("degrees").value()) ? std::numbers::pi / 180.0 : 1.0;
+    const double unit = xml_.flag(node, node.attribute("degrees").value()) ? std::numbers::pi / 180.0 : 1.0;
     pose.translation = {v[0], v[1], v[2]};
     pose.rotation = rotation_of_rpy(unit * Vec3(v[3], v[4], v[5]));
     return pose;
@@ -86,11 +84,16 @@ class SdfReader {
   void read_top_model(pugi::xml_node node) {
     Model model;
     model.name = xml_.name(node);
-    model.is_static = is_true(node.child("static").text().get());
+    model.is_static = is_static(node);
     index_.clear();
     read_model(node, "", "", model, 0);
     if (model.links.empty()) xml_.fail(node, fmt::format("the model '{}' has no link", model.name), "add a <link>");
     description_.models.push_back(std::move(model));
+  }
+
+  [[nodiscard]] bool is_static(pugi::xml_node model) const {
+    const pugi::xml_node node = model.child("static");
+    return xml_.flag(node, node.text().get());
   }
 
   // `scope` is the one that the model stands in, "" or "outer::".
@@ -99,6 +102,7 @@ class SdfReader {
     if (node.attribute("placement_frame")) {
       xml_.fail(node, "a placement_frame is not understood", "give the pose of the model's own frame");
     }
+    const std::size_t first_link = model.links.size();
     const std::string own = xml_.name(node, scope);
     const std::string inside = own + "::";
     const std::string frame = inside + "__model__";
@@ -123,6 +127,8 @@ class SdfReader {
       }
     }
     for (const pugi::xml_node part : node.children("joint")) read_joint(part, inside, model);
+    if (!is_static(node)) return;
+    for (std::size_t i = first_link; i < model.links.size(); ++i) model.links[i].stands = true;
   }
 
   [[nodiscard]] Link read_link(pugi::xml_node node, const std::string& scope) {
@@ -135,18 +141,32 @@ class SdfReader {
       if (name == "collision") {
         const math::Pose in_link = collision_pose(part);
         if (auto geometry = geometry_of(xml_.child(part, "geometry"))) {
-          link.collisions.push_back({in_link, std::move(*geometry), xml_.place_of(part)});
+          link.collisions.push_back({in_link, std::move(*geometry), xml_.place_of(part), density_of(part)});
         }
         read_friction(part);
       } else if (name == "inertial") {
-        if (const pugi::xml_node mass = part.child("mass")) {
-          link.mass_kg = xml_.positive(mass, mass.text().get(), "mass");
-        }
+        read_mass(part, link);
       } else if (part.type() == pugi::node_element && name != "pose") {
         ++description_.left_out[std::string(name)];
       }
     }
     return link;
+  }
+
+  // "auto" without a mass: of the shapes, by their densities, or the link's, or the format's default.
+  void read_mass(pugi::xml_node inertial, Link& link) const {
+    if (const pugi::xml_node mass = inertial.child("mass")) {
+      link.mass_kg = xml_.positive(mass, mass.text().get(), "mass");
+    } else if (xml_.flag(inertial, inertial.attribute("auto").value())) {
+      link.mass_kg.reset();
+      link.density_kg_per_m3 = density_of(inertial).value_or(1000.0);
+    }
+  }
+
+  [[nodiscard]] std::optional<double> density_of(pugi::xml_node owner) const {
+    const pugi::xml_node node = owner.child("density");
+    if (!node) return std::nullopt;
+    return xml_.positive(node, node.text().get(), "density");
   }
 
   [[nodiscard]] math::Pose collision_pose(pugi::xml_node node) const {
@@ -206,7 +226,7 @@ class SdfReader {
   [[nodiscard]] std::size_t joint_end(pugi::xml_node joint, const char* end, const std::string& scope,
                                       const Model& model) const {
     const pugi::xml_node node = xml_.child(joint, end);
-    const std::string name = node.text().get();
+    const std::string name = XmlReader::text_of(node);
     if (name == "world") return Joint::world;
     if (const auto found = index_.find(scope + name); found != index_.end()) return found->second;
     std::vector<std::string_view> names;
