@@ -114,6 +114,7 @@ INSTANTIATE_TEST_SUITE_P(
         Malformed{"VolumeUnknown", 7, "bv = \"obbb\"", "7:6", "did you mean 'obb'"},
         Malformed{"EstimatorUnknown", 7, "estimator = \"book\"", "7:13", "cells or kinematic"},
         Malformed{"TooManyContacts", 8, "max_contacts = 9", "8:16", "0 to 8"},
+        Malformed{"ContactWithoutPoints", 8, "max_contacts = 0", "29:1", "max_contacts"},
         Malformed{"PMinAboveOne", 8, "p_min = 1.5", "8:9", "at most 1"},
         Malformed{"KMinWithoutPMin", 8, "k_min = 20", "8:1", "p_min"},
         Malformed{"CarryMotionAboveOne", 8, "carry_motion = 2", "8:16", "at most 1"},
