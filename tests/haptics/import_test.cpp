@@ -230,6 +230,14 @@ TEST_F(Import, TakesWhatXacroHasMade) {
   EXPECT_EQ(imported.bodies, 1U);
 }
 
+TEST_F(Import, WhatAUrdfTellsGazeboIsReadOrCounted) {
+  const ImportedScene imported =
+      good("r.urdf", urdf(link("a", box_of("1 1 1")) + "<gazebo reference=\"a\"><mu1>0.4</mu1><material>Red</material>"
+                                                       "</gazebo><gazebo><plugin name=\"p\"/></gazebo>"));
+  EXPECT_TRUE(assumes(imported, "left out: 1 <material>, 1 <plugin>"));
+  EXPECT_NE(imported.text.find("mu = 0.4"), std::string::npos);
+}
+
 TEST_F(Import, ALinkNamedWorldStandsWithWhatHangsOnIt) {
   const std::string text =
       urdf(link("world", box_of("4 4 0.1")) + link("base", box_of("1 1 1")) + link("arm", box_of("0.1 0.1 0.1")) +

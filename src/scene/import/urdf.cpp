@@ -122,6 +122,12 @@ class UrdfReader {
     }
     const pugi::xml_node is_static = node.child("static");
     if (xml_.flag(is_static, is_static.text().get())) model_.is_static = true;
+    for (const pugi::xml_node part : node.children()) {
+      const std::string_view name = part.name();
+      if (part.type() == pugi::node_element && name != "mu1" && name != "static") {
+        ++description_.left_out[std::string(name)];
+      }
+    }
   }
 
   [[nodiscard]] std::size_t link_named(pugi::xml_node joint, const char* end) const {
