@@ -270,6 +270,20 @@ TEST(Effects, AMagnetDrawsMostAtItsRangeOverRootThreeAndKeepsTheEnergy) {
   EXPECT_LT(energy_high - energy_low, 0.002);  // of a well that is 0.077 J deep
 }
 
+TEST(Effects, AMagnetTooStiffForTheStepSaysHowStrongItIs) {
+  const auto warnings = [](double mass, const std::string& range) {
+    return simulate(
+               on_floor(moving("ball", "ball", 0.3, 0.5, mass) +
+                        "[effects.attraction]\nbody = \"ball\"\nto = \"floor\"\nmax_force_n = 1\nrange_m = " + range))
+        ->warnings();
+  };
+  EXPECT_TRUE(warnings(0.1, "0.1").empty());
+  ASSERT_EQ(warnings(0.001, "0.001").size(), 1U);
+  EXPECT_NE(warnings(0.001, "0.001")[0].find("the magnet of 1 N between 'ball' and 'floor' is 0.245 N strong"),
+            std::string::npos)
+      << warnings(0.001, "0.001")[0];
+}
+
 TEST(Effects, AMagnetThatIsFixedDrawsToItsMiddleWhereverTheOriginOfItsMeshIs) {
   const auto simulation =
       simulate(on_floor(moving("ball", "ball", 0.3, 0.5) +
