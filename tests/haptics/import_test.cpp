@@ -164,6 +164,38 @@ TEST_F(Import, SdfPosesAreRelativeToWhatTheyName) {
   EXPECT_NE(imported.text.find("g_m_per_s2 = [0, 0, -1.62]"), std::string::npos) << imported.text;
 }
 
+// A joint's ends may be frames, joints and models: the links that they are attached to are meant.
+TEST_F(Import, SdfJointsEndAtWhatIsAttachedToLinks) {
+  const auto boxed = [](const std::string& name) {
+    return "<link name=\"" + name +
+           "\"><collision name=\"c\"><geometry><box><size>1 1 1</size></box></geometry></collision></link>";
+  };
+  const auto joined = [](const std::string& name, const std::string& parent, const std::string& child) {
+    return "<joint name=\"" + name + "\" type=\"fixed\"><parent>" + parent + "</parent><child>" + child +
+           "</child></joint>";
+  };
+  const auto bodies = [&](const std::string& joints) {
+    const ImportedScene imported =
+        good("w.sdf", sdf("<model name=\"m\">" + boxed("a") + boxed("b") +
+                          "<frame name=\"tip\" attached_to=\"b\"/><frame name=\"end\" attached_to=\"tip\"/>"
+                          "<frame name=\"outside\" attached_to=\"world\"/><model name=\"sub\" canonical_link=\"l\">" +
+                          boxed("k") + boxed("l") + joined("in", "k", "l") + "</model>" + joints + "</model>"));
+    const Scene scene = scene_of(imported);
+    return std::pair(scene.bodies.size(), scene.bodies[0].dynamic);
+  };
+  EXPECT_EQ(bodies(""), std::pair(std::size_t{3}, true));  // a, b, and the model within
+  EXPECT_EQ(bodies(joined("j", "end", "sub")), std::pair(std::size_t{2}, true));
+  EXPECT_EQ(bodies(joined("j", "a", "sub::in")), std::pair(std::size_t{2}, true));
+  EXPECT_EQ(bodies(joined("j", "b", "__model__")), std::pair(std::size_t{2}, true));
+  EXPECT_EQ(bodies(joined("j", "outside", "sub")), std::pair(std::size_t{3}, true));
+  EXPECT_EQ(bodies(joined("j", "outside", "a") + joined("i", "a", "sub")), std::pair(std::size_t{2}, false));
+  EXPECT_NE(refused("w.sdf", sdf("<model name=\"m\">" + boxed("a") +
+                                 "<frame name=\"x\" attached_to=\"y\"/><frame name=\"y\" attached_to=\"x\"/>" +
+                                 joined("j", "a", "x") + "</model>"))
+                .what.find("there is no link named 'x'"),
+            std::string::npos);
+}
+
 TEST_F(Import, APlaneIsASlabWithItsTopThere) {
   const ImportedScene imported = good("w.sdf", sdf(R"(<model name="ground"><static>1</static><link name="l">
     <collision name="c"><geometry><plane><normal>0 0 2</normal><size>5 5</size></plane></geometry></collision>

@@ -12,6 +12,7 @@ namespace odds::scene {
 namespace {
 
 constexpr int deepest_nesting = 32;
+constexpr int longest_chain = 256;  // of frames attached to frames, up to a joint's end
 constexpr std::array<std::string_view, 9> joint_types = {"fixed", "revolute", "revolute2", "prismatic", "continuous",
                                                          "ball",  "screw",    "universal", "gearbox"};
 
@@ -117,18 +118,34 @@ class SdfReader {
         index_.emplace(model.links.back().name, model.links.size() - 1);
         link_frames_.push_back(model.links.back().name);
       } else if (name == "frame") {
-        add_frame(part, inside, frame, part.attribute("attached_to").value());
+        const std::string_view to = part.attribute("attached_to").value();
+        add_frame(part, inside, frame, to);
+        attached_.emplace(xml_.name(part, inside), to.empty() ? frame : scoped(inside, to));
       } else if (name == "joint") {
-        add_frame(part, inside, frame, xml_.child_text(part, "child"));
+        const std::string child = xml_.child_text(part, "child");
+        add_frame(part, inside, frame, child);
+        attached_.emplace(xml_.name(part, inside), scoped(inside, child));
       } else if (name == "model") {
         read_model(part, inside, frame, model, depth + 1);
       } else if (part.type() == pugi::node_element && name != "pose" && name != "static") {
         ++description_.left_out[std::string(name)];
       }
     }
+    attached_.emplace(own, frame);
+    attached_.emplace(frame, canonical_link(node, inside, model, first_link));
     for (const pugi::xml_node part : node.children("joint")) read_joint(part, inside, model);
     if (!is_static(node)) return;
     for (std::size_t i = first_link; i < model.links.size(); ++i) model.links[i].stands = true;
+  }
+
+  // The link that a model's own frame is attached to: the one named, or its first.
+  [[nodiscard]] static std::string canonical_link(pugi::xml_node node, const std::string& inside, const Model& model,
+                                                  std::size_t first) {
+    if (const std::string_view named = node.attribute("canonical_link").value(); !named.empty()) {
+      return inside + std::string(named);
+    }
+    if (const pugi::xml_node own = node.child("link")) return inside + own.attribute("name").value();
+    return first < model.links.size() ? model.links[first].name : std::string();
   }
 
   [[nodiscard]] Link read_link(pugi::xml_node node, const std::string& scope) {
@@ -227,8 +244,15 @@ class SdfReader {
                                       const Model& model) const {
     const pugi::xml_node node = xml_.child(joint, end);
     const std::string name = XmlReader::text_of(node);
-    if (name == "world") return Joint::world;
-    if (const auto found = index_.find(scope + name); found != index_.end()) return found->second;
+    // A link, or what is attached to one: a frame, a joint, a model.
+    std::string at = scoped(scope, name);
+    for (int steps = 0; steps < longest_chain; ++steps) {
+      if (at.empty()) return Joint::world;
+      if (const auto found = index_.find(at); found != index_.end()) return found->second;
+      const auto next = attached_.find(at);
+      if (next == attached_.end()) break;
+      at = next->second;
+    }
     std::vector<std::string_view> names;
     for (const Link& link : model.links) {
       if (link.name.starts_with(scope)) names.push_back(std::string_view(link.name).substr(scope.size()));
@@ -256,6 +280,7 @@ class SdfReader {
   SdfFrames frames_;
   Description description_;
   std::map<std::string, std::size_t, std::less<>> index_;  // of links, by full name
+  std::map<std::string, std::string> attached_;            // of other frames, by full name: what to; "": the world
   std::vector<std::string> link_frames_;                   // in the order of all models' links
 };
 
