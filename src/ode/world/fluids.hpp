@@ -5,14 +5,20 @@
 
 namespace odds::ode {
 
+/// How hardly a body turns, about which axes of its mesh's frame.
+struct PrincipalAxes {
+  Mat3 axes = Mat3::Identity();  ///< columns
+  Vec3 moments_kg_m2 = Vec3::Ones();
+};
+[[nodiscard]] PrincipalAxes principal_axes(const Mat3& inertia_kg_m2);
+
 /// Fluids add up before their decay over the step is taken: of each by itself, two strong ones would turn a speed
 /// round, and three would have it grow.
 class Fluids {
  public:
   void add(const Drag& drag) noexcept;
-  /// Force and torque that, held over the step, leave the speeds that the fluids would. `inertia`: the least of the
-  /// body's moments.
-  [[nodiscard]] Wrench over_one_step(const BodyState& state, double mass_kg, double inertia_kg_m2,
+  /// Force and torque that, held over the step, leave the speeds that the fluids would.
+  [[nodiscard]] Wrench over_one_step(const BodyState& state, double mass_kg, const PrincipalAxes& principal,
                                      double step_s) const noexcept;
 
  private:

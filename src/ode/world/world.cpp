@@ -3,7 +3,6 @@
 
 #include <ode/ode.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -308,8 +307,7 @@ Result<BodyId> World::add_dynamic(std::shared_ptr<const query::Shape> shape, con
   if (!added) return added.error();
   Body& body = *added.value();
   body.mass = properties.value();
-  const Eigen::SelfAdjointEigenSolver<Mat3> axes(body.mass.inertia_kg_m2);
-  body.least_inertia_kg_m2 = axes.eigenvalues().minCoeff();
+  body.principal = principal_axes(body.mass.inertia_kg_m2);
   body.body = dBodyCreate(self.world);
   give_mass(body.body, body.mass);
   dBodySetGyroscopicMode(body.body, 0);      // its explicit term feeds energy to fast spins
@@ -421,8 +419,8 @@ void World::add_drag(BodyId id, const Drag& drag) noexcept {
   const double sum = drag.force_ns_per_m + drag.torque_nms_per_rad + drag.flow_m_per_s.sum();
   if (body.body == nullptr || !std::isfinite(sum)) return;
   body.fluids.add(drag);
-  const Wrench now = body.fluids.over_one_step(state_of(body), body.mass.mass_kg, body.least_inertia_kg_m2,
-                                               implementation_->options.step_s);
+  const Wrench now =
+      body.fluids.over_one_step(state_of(body), body.mass.mass_kg, body.principal, implementation_->options.step_s);
   apply(id, {now.force_n - body.of_fluids.force_n, now.torque_nm - body.of_fluids.torque_nm});
   body.of_fluids = now;
 }

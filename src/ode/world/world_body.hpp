@@ -22,9 +22,9 @@ struct Body {
   std::unique_ptr<CouplingJoint> coupling;
   BodyState last_good;
   Vec3 contact_impulse_ns = Vec3::Zero();  // since prepare()
-  double least_inertia_kg_m2 = 0.0;        // about any axis
-  Fluids fluids = {};                      // of the next step
-  Wrench of_fluids = {};                   // that they have exerted for it
+  PrincipalAxes principal = {};
+  Fluids fluids = {};     // of the next step
+  Wrench of_fluids = {};  // that they have exerted for it
 };
 
 [[nodiscard]] BodyState state_of(const Body& body) noexcept;
