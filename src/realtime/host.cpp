@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -192,7 +193,9 @@ HostLine load(const Files& files) {
   fields >> one >> five >> fifteen;
   HostLine line{"load (1, 5, 15 min)", one + ", " + five + ", " + fifteen, Readiness::neutral, ""};
   const double usable = std::max(1.0, static_cast<double>(std::thread::hardware_concurrency()));
-  if (std::strtod(one.c_str(), nullptr) > usable) {
+  double running = 0.0;  // not by strtod: a program may have set a locale whose numbers have commas
+  std::from_chars(one.data(), one.data() + one.size(), running);
+  if (running > usable) {
     line.readiness = Readiness::hinders;
     line.remark = "more runnable programs than processors: end the others, or ask for real-time priority";
   }

@@ -1,22 +1,46 @@
 // Writing and reading the percentile table.
 #include "odds/report/hgrm.hpp"
 
+#include <fmt/printf.h>
+
 #include <algorithm>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <istream>
+#include <optional>
 #include <ostream>
+#include <string_view>
 
 namespace odds::report {
 namespace {
 
 constexpr std::size_t longest_line = 4096;
 
+// Not the C library's: a program may have set a locale whose numbers have commas.
 template <class... Values>
 void print(std::ostream& out, const char* format, Values... values) {
-  char line[256];
-  std::snprintf(line, sizeof line, format, values...);
-  out << line;
+  out << fmt::sprintf(format, values...);
+}
+
+/// The number that `text` begins with, behind blanks, which is cut off.
+template <class Number>
+std::optional<Number> take_number(std::string_view& text) {
+  text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
+  Number value{};
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (code != std::errc{}) return std::nullopt;
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  return value;
+}
+
+/// The number behind "KEY =".
+template <class Number>
+std::optional<Number> number_of(std::string_view line, std::string_view key) {
+  const std::size_t found = line.find(key);
+  const std::size_t equals = found == std::string_view::npos ? found : line.find('=', found + key.size());
+  if (equals == std::string_view::npos) return std::nullopt;
+  line.remove_prefix(equals + 1);
+  return take_number<Number>(line);
 }
 
 /// The next level at which HdrHistogram reports: steps are halved with each halving of the distance to 100 %.
@@ -38,18 +62,19 @@ bool continues(const HgrmTable& table, const HgrmRow& row) {
 }
 
 bool read_footer(const std::string& line, HgrmTable& table) {
-  double a = 0.0;
-  double b = 0.0;
-  unsigned long long count = 0;
-  if (std::sscanf(line.c_str(), "#[Mean = %lf, StdDeviation = %lf]", &a, &b) == 2) {
-    table.mean = a;
-    table.standard_deviation = b;
-    return std::isfinite(a) && std::isfinite(b);
+  const auto mean = number_of<double>(line, "#[Mean");
+  const auto deviation = number_of<double>(line, ", StdDeviation");
+  if (mean && deviation) {
+    table.mean = *mean;
+    table.standard_deviation = *deviation;
+    return std::isfinite(*mean) && std::isfinite(*deviation);
   }
-  if (std::sscanf(line.c_str(), "#[Max = %lf, Total count = %llu]", &a, &count) == 2) {
-    table.max = a;
-    table.count = count;
-    return std::isfinite(a);
+  const auto max = number_of<double>(line, "#[Max");
+  const auto count = number_of<std::uint64_t>(line, ", Total count");
+  if (max && count) {
+    table.max = *max;
+    table.count = *count;
+    return std::isfinite(*max);
   }
   return true;  // other comments
 }
@@ -104,12 +129,12 @@ Result<HgrmTable> read_hgrm(std::istream& in, const std::string& name) {
       header_seen = true;
       continue;
     }
-    HgrmRow row;
-    unsigned long long count = 0;
-    if (std::sscanf(line.c_str(), "%lf %lf %llu", &row.value, &row.fraction, &count) != 3) {
-      return bad_line(name, number, "not a line of value, percentile and count");
-    }
-    row.total_count = count;
+    std::string_view rest = line;
+    const auto value = take_number<double>(rest);
+    const auto fraction = take_number<double>(rest);
+    const auto count = take_number<std::uint64_t>(rest);
+    if (!value || !fraction || !count) return bad_line(name, number, "not a line of value, percentile and count");
+    const HgrmRow row{*value, *fraction, *count};
     if (!continues(table, row))
       return bad_line(name, number, "values, percentiles and counts must be finite and never fall");
     table.rows.push_back(row);

@@ -1,10 +1,11 @@
 // Writing and reading the lines of the interval log; histogram_codec.cpp does the histograms in it.
 #include "odds/report/hlog.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <istream>
 #include <optional>
 #include <ostream>
@@ -19,6 +20,14 @@ std::optional<double> number(std::string_view text) {
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (code != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
   return value;
+}
+
+/// Of the line "#[StartTime: SECONDS (seconds since epoch), ...]".
+std::optional<double> start_time(std::string_view line) {
+  constexpr std::string_view mark = "#[StartTime:";
+  if (line.rfind(mark, 0) != 0) return std::nullopt;
+  line.remove_prefix(std::min(line.find_first_not_of(' ', mark.size()), line.size()));
+  return number(line.substr(0, line.find_first_of(" ,]")));
 }
 
 /// Cuts the text up to the next comma off `rest`.
@@ -53,15 +62,15 @@ Result<HlogInterval> read_interval(std::string_view line, const std::string& nam
 }  // namespace
 
 void write_hlog(std::ostream& out, const Hlog& log) {
-  char line[160];
+  // Not the C library's numbers: a program may have set a locale in which they have commas.
   out << "#[Histogram log format version 1.3]\n";
-  std::snprintf(line, sizeof line, "#[StartTime: %.3f (seconds since epoch)]\n", log.start_epoch_s);
-  out << line << "\"StartTimestamp\",\"Interval_Length\",\"Interval_Max\",\"Interval_Compressed_Histogram\"\n";
+  out << fmt::format("#[StartTime: {:.3f} (seconds since epoch)]\n", log.start_epoch_s);
+  out << "\"StartTimestamp\",\"Interval_Length\",\"Interval_Max\",\"Interval_Compressed_Histogram\"\n";
   for (const HlogInterval& interval : log.intervals) {
     if (!interval.tag.empty()) out << "Tag=" << interval.tag << ',';
-    std::snprintf(line, sizeof line, "%.3f,%.3f,%.3f,", interval.start_s, interval.length_s,
-                  static_cast<double>(interval.histogram.max()) * 1e-6);
-    out << line << encode_histogram(interval.histogram) << '\n';
+    out << fmt::format("{:.3f},{:.3f},{:.3f},", interval.start_s, interval.length_s,
+                       static_cast<double>(interval.histogram.max()) * 1e-6)
+        << encode_histogram(interval.histogram) << '\n';
   }
 }
 
@@ -77,8 +86,7 @@ Result<Hlog> read_hlog(std::istream& in, const std::string& name) {
     if (line.empty()) continue;
     if (line[0] == '#') {
       if (line.rfind("#[Histogram log format version", 0) == 0) recognised = true;
-      double start = 0.0;
-      if (std::sscanf(line.c_str(), "#[StartTime: %lf", &start) == 1 && std::isfinite(start)) log.start_epoch_s = start;
+      if (const auto start = start_time(line)) log.start_epoch_s = *start;
       continue;
     }
     if (line[0] == '"') continue;  // the heading

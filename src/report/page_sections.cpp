@@ -70,8 +70,9 @@ struct AnswerKind {
 
 std::string page_latency(const RunInfo& info, const RunSummary& s, bool charts) {
   std::string html =
-      "<h2 id=\"latency\">Latency</h2>\n<p>Tick and wake-up count from the planned start, and every planned period is "
-      "in them, skipped ones too. The other rows are the durations of parts of a tick.</p>\n" +
+      "<h2 id=\"latency\">Latency</h2>\n<p>Tick and wake-up count from the planned start. Every planned period is "
+      "among the ticks, skipped ones too; wake-ups are of those that ran. The other rows are the durations of parts of "
+      "a tick.</p>\n" +
       percentile_table(info, s);
   if (!charts) return html;
   html += "<div class=\"pair\">\n";

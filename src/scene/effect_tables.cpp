@@ -40,6 +40,11 @@ std::optional<Error> check(const Scene& scene, const Made& made) {
     return error(fmt::format("{} needs {}", words, rests_on),
                  fmt::format("add [effects.{}], or remove this table", rests_on));
   }
+  const bool needs_points = (made.effect->needs() & (haptics::need_one_contact | haptics::need_patch)) != 0;
+  if (needs_points && scene.query.max_contacts == 0) {
+    return error(fmt::format("{} needs points of contact, and 'max_contacts' of [query] is 0", words),
+                 "give 'max_contacts' from 1 to 8, or remove this table");
+  }
   const bool held = scene.device.has_value();  // one that no body follows is refused elsewhere
   if ((made.effect->needs() & haptics::need_device) != 0 && !held) {
     return error(fmt::format("the {} has no device to pull towards", words),

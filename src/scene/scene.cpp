@@ -57,6 +57,9 @@ std::optional<Error> read_query(const Settings& settings, Scene& scene) {
   }
   reader.number("p_min", {0.0, 1.0, true}, request.p_min);
   if (reader.integer("k_min", 1, 1'000'000, number)) request.k_min = static_cast<std::uint32_t>(number);
+  if (reader.has("k_min") && !reader.has("p_min")) {
+    reader.reject("k_min", "without 'p_min' no query ends on probability", "add 'p_min', or remove this key");
+  }
   reader.number("frame_us", Range::positive(), scene.frame.microseconds);
   if (reader.integer("frame_work_units", 1, largest_integer, number)) {
     scene.frame.work_units = static_cast<std::uint64_t>(number);

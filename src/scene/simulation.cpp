@@ -109,6 +109,10 @@ std::optional<Error> Simulation::load() {
                  fmt::format("the device '{}' gives no position: {}", scene_.device->name, device_->last_error()),
                  "check the device"};
   }
+  // Where the hand was is told by the device only.
+  for (Body& body : scene_.bodies) {
+    if (body.follows_device) body.pose = world_->state(*tool_).pose;
+  }
   report("memory of the loop", 1.0);
   return std::nullopt;
 }

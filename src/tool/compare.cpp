@@ -106,6 +106,7 @@ std::string onset(const report::ForceDifference& d) {
 }
 
 std::string errors(const report::ForceDifference& d) {
+  if (d.ticks == 0) return "no force to compare";
   return fmt::format("force off by {:.2f} % (p95 {:.2f} %), {:.2f} degrees (p95 {:.2f})", 100.0 * d.error_p50,
                      100.0 * d.error_p95, d.angle_p50_deg, d.angle_p95_deg);
 }
@@ -120,8 +121,11 @@ void print(const report::Comparison& comparison) {
     fmt::print("  {:>20}: {}, {}, {} ticks missed in a row\n", run.name, errors(d), onset(d), d.missed_in_row);
   }
   const report::ForceDifference& exact = comparison.runs.front().difference;
-  fmt::print("force on the hand, each run on its own: {} ticks in contact, mean {:.3g} N, own noise {:.3f} % ({})\n",
-             exact.ticks, exact.mean_force_n, 100.0 * exact.noise_share, report::noise_band(comparison.rate_hz));
+  fmt::print(
+      "force on the hand, each run on its own: {} ticks with at least {:.3g} N, mean {:.3g} N, own noise {:.3f} % "
+      "({})\n",
+      exact.ticks, comparison.touching_n, exact.mean_force_n, 100.0 * exact.noise_share,
+      report::noise_band(comparison.rate_hz));
   for (const report::ComparedRun& run : comparison.runs) {
     const report::ForceDifference& d = run.difference;
     fmt::print("  {:>20}: {:5.1f} % of ticks proved, {}, {:.3f} % added noise, {}\n", run.name,

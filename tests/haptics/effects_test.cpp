@@ -215,6 +215,29 @@ TEST(Effects, AFluidBringsABodyToTheSpeedOfItsFlow) {
   EXPECT_EQ(outside->effects().cost(0).evaluations, 0U);
 }
 
+// Together they are one fluid of their drags' sum, which flows with the mean of their flows.
+TEST(Effects, FluidsInOnePlaceTurnNoSpeedRoundHoweverStrong) {
+  const auto fluid = [](double drag, double flow) {
+    return "[[effects.viscosity]]\ndrag_ns_per_m = " + std::to_string(drag) +
+           "\nangular_drag_nms_per_rad = " + std::to_string(drag) + "\nflow_m_per_s = [" + std::to_string(flow) +
+           ", 0, 0]\n";
+  };
+  const auto simulation =
+      simulate(on_floor(moving("ball", "ball", 0, 0.5) + fluid(1000, 0.1) + fluid(1000, 0.1) + fluid(2000, 0.3)));
+  throw_body(*simulation, 1, Vec3(1, 0, 0), Vec3(0, 30, 0));
+  double least = 1.0;
+  run_ticks(*simulation, 50, [&](int, const haptics::TickRecord&) {
+    const ode::BodyState ball = simulation->world().state({1});
+    least = std::min(least, ball.velocity_m_per_s.x());
+    EXPECT_NEAR(ball.velocity_m_per_s.x(), 0.2, 1e-9);
+    EXPECT_LT(ball.angular_velocity_rad_per_s.norm(), 0.1);
+  });
+  EXPECT_GT(least, 0.0);
+  const auto weak = simulate(on_floor(moving("ball", "ball", 0, 0.5) + fluid(0.2, 0.1) + fluid(0.3, 0.4)));
+  run_ticks(*weak, 400);  // two time constants of m / c = 0.2 s
+  EXPECT_NEAR(weak->world().state({1}).velocity_m_per_s.x(), 0.28 * (1.0 - std::exp(-2.0)), 1e-3);
+}
+
 TEST(Effects, AMagnetDrawsMostAtItsRangeOverRootThreeAndKeepsTheEnergy) {
   const auto simulation = simulate(
       on_floor(moving("ball", "ball", 0.3, 0.5) +
@@ -245,6 +268,20 @@ TEST(Effects, AMagnetDrawsMostAtItsRangeOverRootThreeAndKeepsTheEnergy) {
   EXPECT_NEAR(greatest * 0.1 / 0.001, 0.5, 0.005);  // m dv / h
   EXPECT_NEAR(where, 0.1 / std::sqrt(3.0), 0.003);
   EXPECT_LT(energy_high - energy_low, 0.002);  // of a well that is 0.077 J deep
+}
+
+TEST(Effects, AMagnetTooStiffForTheStepSaysHowStrongItIs) {
+  const auto warnings = [](double mass, const std::string& range) {
+    return simulate(
+               on_floor(moving("ball", "ball", 0.3, 0.5, mass) +
+                        "[effects.attraction]\nbody = \"ball\"\nto = \"floor\"\nmax_force_n = 1\nrange_m = " + range))
+        ->warnings();
+  };
+  EXPECT_TRUE(warnings(0.1, "0.1").empty());
+  ASSERT_EQ(warnings(0.001, "0.001").size(), 1U);
+  EXPECT_NE(warnings(0.001, "0.001")[0].find("the magnet of 1 N between 'ball' and 'floor' is 0.245 N strong"),
+            std::string::npos)
+      << warnings(0.001, "0.001")[0];
 }
 
 TEST(Effects, AMagnetThatIsFixedDrawsToItsMiddleWhereverTheOriginOfItsMeshIs) {

@@ -164,12 +164,129 @@ TEST_F(Import, SdfPosesAreRelativeToWhatTheyName) {
   EXPECT_NE(imported.text.find("g_m_per_s2 = [0, 0, -1.62]"), std::string::npos) << imported.text;
 }
 
+// A joint's ends may be frames, joints and models: the links that they are attached to are meant.
+TEST_F(Import, SdfJointsEndAtWhatIsAttachedToLinks) {
+  const auto boxed = [](const std::string& name) {
+    return "<link name=\"" + name +
+           "\"><collision name=\"c\"><geometry><box><size>1 1 1</size></box></geometry></collision></link>";
+  };
+  const auto joined = [](const std::string& name, const std::string& parent, const std::string& child) {
+    return "<joint name=\"" + name + "\" type=\"fixed\"><parent>" + parent + "</parent><child>" + child +
+           "</child></joint>";
+  };
+  const auto bodies = [&](const std::string& joints) {
+    const ImportedScene imported =
+        good("w.sdf", sdf("<model name=\"m\">" + boxed("a") + boxed("b") +
+                          "<frame name=\"tip\" attached_to=\"b\"/><frame name=\"end\" attached_to=\"tip\"/>"
+                          "<frame name=\"outside\" attached_to=\"world\"/><model name=\"sub\" canonical_link=\"l\">" +
+                          boxed("k") + boxed("l") + joined("in", "k", "l") + "</model>" + joints + "</model>"));
+    const Scene scene = scene_of(imported);
+    return std::pair(scene.bodies.size(), scene.bodies[0].dynamic);
+  };
+  EXPECT_EQ(bodies(""), std::pair(std::size_t{3}, true));  // a, b, and the model within
+  EXPECT_EQ(bodies(joined("j", "end", "sub")), std::pair(std::size_t{2}, true));
+  EXPECT_EQ(bodies(joined("j", "a", "sub::in")), std::pair(std::size_t{2}, true));
+  EXPECT_EQ(bodies(joined("j", "b", "__model__")), std::pair(std::size_t{2}, true));
+  EXPECT_EQ(bodies(joined("j", "outside", "sub")), std::pair(std::size_t{3}, true));
+  EXPECT_EQ(bodies(joined("j", "outside", "a") + joined("i", "a", "sub")), std::pair(std::size_t{2}, false));
+  EXPECT_NE(refused("w.sdf", sdf("<model name=\"m\">" + boxed("a") +
+                                 "<frame name=\"x\" attached_to=\"y\"/><frame name=\"y\" attached_to=\"x\"/>" +
+                                 joined("j", "a", "x") + "</model>"))
+                .what.find("there is no link named 'x'"),
+            std::string::npos);
+}
+
 TEST_F(Import, APlaneIsASlabWithItsTopThere) {
   const ImportedScene imported = good("w.sdf", sdf(R"(<model name="ground"><static>1</static><link name="l">
     <collision name="c"><geometry><plane><normal>0 0 2</normal><size>5 5</size></plane></geometry></collision>
     </link></model>)"));
   expect_box(imported.meshes.at(0).mesh, {-10, -10, -1}, {10, 10, 0}, 1e-12);
   EXPECT_TRUE(assumes(imported, "1 planes are slabs of 20 m by 20 m"));
+}
+
+// Gazebo reads booleans and names whatever the size of their letters and the blanks around them.
+TEST_F(Import, SdfIsReadAsGazeboReadsIt) {
+  const std::string box = "<collision name=\"c\"><geometry><box><size>1 1 1</size></box></geometry></collision>";
+  for (const std::string yes : {"true", "True", " TRUE\n", "1"}) {
+    const std::string text =
+        sdf("<model name=\"m\"><static>" + yes + "</static><link name=\"a\">" + box + "</link></model>");
+    EXPECT_FALSE(scene_of(good("w.sdf", text)).bodies.at(0).dynamic) << yes;
+    EXPECT_FALSE(
+        scene_of(good("r.urdf", urdf(link("a", box_of("1 1 1")) + "<gazebo><static>" + yes + "</static></gazebo>")))
+            .bodies.at(0)
+            .dynamic)
+        << yes;
+  }
+  const ImportedScene turned =
+      good("w.sdf",
+           sdf("<model name=\"m\"><pose degrees=\"True\">0 0 0 0 0 180</pose><link name=\"a\">" + box +
+               "</link><link name=\"b\">" + box +
+               "</link><joint name=\"j\" type=\"fixed\"><parent>\n a\n</parent><child> b </child></joint></model>"));
+  const Scene scene = scene_of(turned);
+  ASSERT_EQ(scene.bodies.size(), 1U);
+  EXPECT_LT((scene.bodies[0].pose.rotation * Vec3::UnitX() + Vec3::UnitX()).norm(), 1e-9);
+}
+
+TEST_F(Import, AStaticModelWithinOneThatMovesStands) {
+  const std::string box = "<collision name=\"c\"><geometry><box><size>1 1 1</size></box></geometry></collision>";
+  const Scene scene = scene_of(good("w.sdf", sdf("<model name=\"m\"><link name=\"a\">" + box +
+                                                 "</link><model name=\"n\"><static>true</static><link name=\"b\">" +
+                                                 box + "</link></model></model>")));
+  ASSERT_EQ(scene.bodies.size(), 2U);
+  EXPECT_TRUE(scene.bodies[0].dynamic);
+  EXPECT_FALSE(scene.bodies[1].dynamic);
+}
+
+// Boxes of 1, 0.5 and 2 m^3.
+TEST_F(Import, MassesThatSdfLeavesToDensitiesAreThoseOfTheShapes) {
+  const auto shape = [](const std::string& size, const std::string& density) {
+    return "<collision name=\"" + size + "\"><pose>9 0 0 0.3 0 0</pose>" + density + "<geometry><box><size>" + size +
+           "</size></box></geometry></collision>";
+  };
+  const std::string three =
+      shape("1 1 1", "<density>500</density>") + shape("1 1 0.5", "") + shape("2 1 1", "<density>10</density>");
+  const auto mass_of = [&](const std::string& inertial) {
+    const std::string text = sdf("<model name=\"m\"><link name=\"a\">" + inertial + three + "</link></model>");
+    return scene_of(good("w.sdf", text)).bodies.at(0).mass.mass_kg;
+  };
+  EXPECT_NEAR(mass_of("<inertial auto=\"true\"/>"), 500.0 + 0.5 * 1000.0 + 20.0, 1e-9);
+  EXPECT_NEAR(mass_of("<inertial auto=\"true\"><density>4</density></inertial>"), 500.0 + 2.0 + 20.0, 1e-9);
+  EXPECT_EQ(mass_of("<inertial auto=\"true\"><mass>7</mass></inertial>"), 7.0);
+  EXPECT_EQ(mass_of("<inertial/>"), 1.0);
+}
+
+// What xacro has made of a robot keeps its namespace.
+TEST_F(Import, TakesWhatXacroHasMade) {
+  const ImportedScene imported = good("r.urdf", "<robot name=\"r\" xmlns:xacro=\"http://www.ros.org/wiki/xacro\">" +
+                                                    link("a", box_of("1 1 1")) + "</robot>");
+  EXPECT_EQ(imported.bodies, 1U);
+}
+
+TEST_F(Import, WhatAUrdfTellsGazeboIsReadOrCounted) {
+  const ImportedScene imported =
+      good("r.urdf", urdf(link("a", box_of("1 1 1")) + "<gazebo reference=\"a\"><mu1>0.4</mu1><material>Red</material>"
+                                                       "</gazebo><gazebo><plugin name=\"p\"/></gazebo>"));
+  EXPECT_TRUE(assumes(imported, "left out: 1 <material>, 1 <plugin>"));
+  EXPECT_NE(imported.text.find("mu = 0.4"), std::string::npos);
+}
+
+TEST_F(Import, ALinkNamedWorldStandsWithWhatHangsOnIt) {
+  const std::string text =
+      urdf(link("world", box_of("4 4 0.1")) + link("base", box_of("1 1 1")) + link("arm", box_of("0.1 0.1 0.1")) +
+           R"(<joint name="bolted" type="fixed"><parent link="world"/><child link="base"/><origin xyz="0 0 1"/></joint>
+         <joint name="elbow" type="revolute"><parent link="base"/><child link="arm"/></joint>)");
+  const Scene scene = scene_of(good("r.urdf", text));
+  ASSERT_EQ(scene.bodies.size(), 2U);
+  for (const Body& body : scene.bodies) EXPECT_FALSE(body.dynamic) << body.name;
+}
+
+// x, y, z of the box go to x, z, -y of the link.
+TEST_F(Import, UrdfOriginsMayHaveQuaternions) {
+  const ImportedScene imported =
+      good("r.urdf", urdf(link("a", box_of("0.1 0.2 0.4",
+                                           "<origin xyz=\"1 2 3\" quat_xyzw=\"0.70710678118654757 0 0 "
+                                           "0.70710678118654757\"/>"))));
+  expect_box(imported.meshes.at(0).mesh, {0.95, 1.8, 2.9}, {1.05, 2.2, 3.1}, 1e-12);
 }
 
 TEST_F(Import, MotionCanBeAskedFor) {
@@ -213,7 +330,14 @@ TEST_F(Import, RefusesWithPlaceAndRemedy) {
       {"<robot>\n<link name=\"a\">\n</robot>", "3:", "not valid XML"},
       {"", "", "not valid XML"},
       {"<mujoco/>", "1:", "<mujoco> is no description that is known"},
-      {"<robot xmlns:xacro=\"http://www.ros.org/wiki/xacro\"/>", "1:", "is a xacro file"},
+      {"<robot xmlns:xacro=\"http://www.ros.org/wiki/xacro\">\n<xacro:include filename=\"a\"/></robot>",
+       "2:", "is a xacro file"},
+      {"<robot xmlns:xacro=\"http://www.ros.org/wiki/xacro\">\n<link name=\"${side}_arm\"/></robot>",
+       "2:", "is a xacro file"},
+      {urdf(link("a", box_of("1 1 1", "<origin rpy=\"0 0 0\" quat_xyzw=\"0 0 0 1\"/>"))), "3:", "both 'rpy' and"},
+      {urdf(link("a", box_of("1 1 1", "<origin quat_xyzw=\"0 0 0 2\"/>"))), "3:", "is no rotation"},
+      {urdf(a + "<gazebo><static>yes</static></gazebo>"), "4:", "'yes' is neither true nor false"},
+      {sdf("<model name=\"m\"><static>yes</static><link name=\"a\"/></model>"), "2:", "'yes' is neither true nor"},
       {urdf(link("a", "<collision><geometry><mesh filename=\"no.stl\"/></geometry></collision>")),
        "3:", "the mesh 'no.stl' is not there"},
       {urdf(link("a", "<collision><geometry><mesh filename=\"package://no/no.stl\"/></geometry></collision>")),

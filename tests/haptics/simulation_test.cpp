@@ -185,6 +185,18 @@ TEST(Simulation, KeepsThePosesOfMovingBodies) {
   EXPECT_EQ(rows[30].position_m.x(), tick.tool_position_m[0]);
 }
 
+// The replay's files tell where bodies begin, and tell everything from the place of the first.
+TEST(Simulation, TheBodyOfTheHandBeginsWhereTheDeviceIs) {
+  const auto simulation = simulated(world + scripted + effects);
+  int held = 0;
+  for (const Body& body : simulation->scene().bodies) {
+    if (!body.follows_device) continue;
+    EXPECT_EQ(body.pose.translation, Vec3(-0.03, 0, 0.03));
+    ++held;
+  }
+  EXPECT_EQ(held, 1);
+}
+
 TEST(Simulation, ThePegOfTheDemoFindsItsHole) {
   Result<Scene> peg = read_scene(std::string(ODDS_SOURCE_DIR) + "/demos/scenes/peg_in_hole.toml");
   ASSERT_TRUE(peg.ok()) << peg.error().message();

@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <clocale>
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 namespace odds::realtime {
 namespace {
@@ -55,6 +58,15 @@ TEST_F(MadeUpHost, ordinary_kernel_and_saving_governor_hinder_and_say_what_helps
   EXPECT_EQ(line("kernel pre-emption").value, "PREEMPT_DYNAMIC");
   EXPECT_EQ(line("kernel pre-emption").readiness, HostLine::Readiness::hinders);
   EXPECT_NE(line("frequency governor").remark.find("cpupower"), std::string::npos);
+}
+
+TEST_F(MadeUpHost, a_load_just_beyond_the_processors_hinders_in_every_locale) {
+  put("proc/loadavg", std::to_string(std::max(1U, std::thread::hardware_concurrency())) + ".50 0.10 0.10 1/100 1234");
+  EXPECT_EQ(line("load (1, 5, 15 min)").readiness, HostLine::Readiness::hinders);
+  if (std::setlocale(LC_NUMERIC, "de_DE.UTF-8") == nullptr) GTEST_SKIP() << "no locale with decimal commas";
+  const HostLine::Readiness with_commas = line("load (1, 5, 15 min)").readiness;
+  std::setlocale(LC_NUMERIC, "C");
+  EXPECT_EQ(with_commas, HostLine::Readiness::hinders);
 }
 
 TEST_F(MadeUpHost, a_quota_anywhere_above_the_own_group_counts) {

@@ -65,6 +65,15 @@ TEST(AccuracyPage, NothingFromOutsideBecomesMarkup) {
   EXPECT_EQ(files.value().worst.size(), most_worst_poses);
 }
 
+TEST(AccuracyPage, TheSentenceAtTheTopSaysWhatStoppedItsQueries) {
+  Study study = made_study("mesh.obj");
+  EXPECT_EQ(headline(study, accuracy_rows(study)).rfind("Within 20 µs, ", 0), 0U);
+  study.settings.trials = {{Trial::Kind::time, 5, 0.9}, {Trial::Kind::exact, 0, 1.0}};
+  study.samples.resize(2);
+  EXPECT_EQ(headline(study, accuracy_rows(study)).rfind("Within 5 µs, or stopped at p ≥ 0.9, ", 0), 0U)
+      << headline(study, accuracy_rows(study));
+}
+
 TEST(AccuracyPage, WhatIsWrittenIsReadBack) {
   const testing::TemporaryFolder folder;
   const Study study = made_study("a,b'c.obj");

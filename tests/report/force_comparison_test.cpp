@@ -92,6 +92,9 @@ TEST(ForceComparison, TicksWithoutContactCountFromTheSecondInARowOn) {
   for (const std::size_t at : {10UL, 20UL, 21UL, 30UL, 31UL, 32UL}) run[at].contacts = 0;
   EXPECT_EQ(compare_forces(exact, run, 0.05, rate_hz).missed_in_row, 3U);
   EXPECT_EQ(compare_forces(exact, run, 100.0, rate_hz).missed_in_row, 0U);
+  auto free = exact;  // a hand that moves its tool through the air feels it
+  for (ForceSample& sample : free) sample.contacts = 0;
+  EXPECT_EQ(compare_forces(free, free, 0.05, rate_hz).missed_in_row, 0U);
 }
 
 TEST(ForceComparison, AForceWhereNothingTouchesIsSeen) {
@@ -123,6 +126,7 @@ TEST(ForceComparison, ThePageShowsEveryRunAndEscapesNames) {
   for (std::size_t at = page.find("<svg"); at != std::string::npos; at = page.find("<svg", at + 1)) ++pictures;
   EXPECT_EQ(pictures, 3U);
   EXPECT_NE(page.find("At the poses of the exact run"), std::string::npos);
+  EXPECT_NE(page.find("4,000 ticks with a force of at least 0.05 N"), std::string::npos);
   const std::string csv = testing::contents_of(folder / "comparison.csv");
   EXPECT_EQ(csv.find("run,poses,proved_share"), 0U);
   const auto columns = [](const std::string& line) { return std::count(line.begin(), line.end(), ','); };

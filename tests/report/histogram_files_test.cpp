@@ -4,6 +4,7 @@
 #include <rapidcheck/gtest.h>
 
 #include <array>
+#include <clocale>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -65,6 +66,50 @@ TEST(HistogramFiles, our_log_is_still_the_golden_log) {
     const auto b = golden.intervals[i].histogram.counters();
     EXPECT_TRUE(std::equal(a.begin(), a.end(), b.begin(), b.end())) << i;
   }
+}
+
+/// The C library's numbers have commas while it lives, if the system has a locale of such.
+class NumbersWithCommas {
+ public:
+  NumbersWithCommas() {
+    for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "de_DE", "fr_FR.UTF-8", "fr_FR"}) {
+      if (std::setlocale(LC_NUMERIC, name) != nullptr) break;
+    }
+  }
+  ~NumbersWithCommas() { std::setlocale(LC_NUMERIC, "C"); }
+  NumbersWithCommas(const NumbersWithCommas&) = delete;
+  NumbersWithCommas& operator=(const NumbersWithCommas&) = delete;
+  [[nodiscard]] bool have() const { return std::localeconv()->decimal_point[0] == ','; }
+};
+
+TEST(HistogramFiles, are_the_same_in_every_locale) {
+  const auto written = [](Hlog& log, HgrmTable& table) {
+    std::stringstream as_log;
+    write_hlog(as_log, golden_log());
+    std::stringstream as_table;
+    write_hgrm(as_table, golden_log().intervals.front().histogram);
+    Result<Hlog> read = read_hlog(as_log, "log");
+    EXPECT_TRUE(read.ok()) << read.error().message();
+    if (read.ok()) log = std::move(read).value();
+    Result<HgrmTable> rows = read_hgrm(as_table, "table");
+    EXPECT_TRUE(rows.ok()) << rows.error().message();
+    if (rows.ok()) table = std::move(rows).value();
+    return as_log.str() + as_table.str();
+  };
+  Hlog log;
+  HgrmTable table;
+  const std::string plain = written(log, table);
+  const NumbersWithCommas commas;
+  if (!commas.have()) GTEST_SKIP() << "no locale with decimal commas";
+  Hlog again;
+  HgrmTable rows;
+  EXPECT_EQ(written(again, rows), plain);
+  EXPECT_EQ(again.start_epoch_s, log.start_epoch_s);
+  EXPECT_EQ(rows.mean, table.mean);
+  EXPECT_EQ(rows.max, table.max);
+  ASSERT_EQ(rows.rows.size(), table.rows.size());
+  EXPECT_EQ(rows.rows[1].value, table.rows[1].value);
+  EXPECT_GT(table.mean, 0.0);
 }
 
 TEST(HistogramFiles, our_reader_finds_the_figures_that_the_independent_reader_found) {

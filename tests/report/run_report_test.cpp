@@ -370,6 +370,17 @@ TEST_F(RunReport, repeats_the_warnings_of_the_program) {
   EXPECT_EQ(json["warnings"], nlohmann::json(made.info.warnings));
 }
 
+TEST_F(RunReport, page_says_which_rows_have_skipped_periods_in_them) {
+  MadeRecording made = calm_recording();
+  made.ticks.back().tick += 3;
+  made.ticks.back().skipped_before = 3;
+  made.info.loop = {made.ticks.size(), 3, false};
+  const RunSummary summary = summarize(made.info, made.ticks);
+  EXPECT_EQ(summary.tick.count(), summary.ran + 3);
+  EXPECT_EQ(summary.wake.count(), summary.ran);
+  EXPECT_NE(text_of(write(made).page).find("skipped ones too; wake-ups are of those that ran"), std::string::npos);
+}
+
 TEST_F(RunReport, page_speaks_of_answers_without_proof_where_there_are_some) {
   MadeRecording made = made_recording(10.0);
   constexpr const char* others = "in the others the answer is the likelier one";

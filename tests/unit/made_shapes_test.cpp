@@ -174,6 +174,7 @@ TEST(MadeShapes, MalformedSettingsAreRefused) {
                                      "plate_with_hole:around=12",
                                      "plate_with_hole:clearance=0.1",
                                      "plates:count=1000,cells=1000",
+                                     "plates:thickness=1e-300",
                                      "car_body:triangles=10"}) {
     const auto mesh = make_shape(bad);
     ASSERT_FALSE(mesh.ok()) << bad;

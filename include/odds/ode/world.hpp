@@ -116,6 +116,13 @@ struct Wrench {
   Vec3 torque_nm = Vec3::Zero();
 };
 
+/// A fluid about a body.
+struct Drag {
+  double force_ns_per_m = 0.0;      ///< against the speed relative to the flow; >= 0
+  double torque_nms_per_rad = 0.0;  ///< against the spin; >= 0
+  Vec3 flow_m_per_s = Vec3::Zero();
+};
+
 /// A spring and damper in six degrees of freedom between a body and a moving target. Solved together with the contacts
 /// and implicitly in time, so that it is stable for every stiffness, damping and mass.
 struct Coupling {
@@ -208,6 +215,9 @@ class World {
   [[nodiscard]] Vec3 contact_impulse(BodyId body) const noexcept;
   /// Adds a force at the centre of mass and a torque for the next step. World frame. What is not finite is ignored.
   void apply(BodyId body, const Wrench& wrench) noexcept;
+  /// Adds the drag of a fluid for the next step. All fluids about a body act as one: its speeds decay towards their
+  /// flow as they would within the step, and turn round at no strength. What is not finite is ignored.
+  void add_drag(BodyId body, const Drag& drag) noexcept;
 
   [[nodiscard]] BodyState state(BodyId body) const noexcept;
   /// Puts a body somewhere, e.g. to begin a run anew. Ignored unless finite and rigid.

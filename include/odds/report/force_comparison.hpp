@@ -38,8 +38,8 @@ struct ForceDifference {
   std::uint64_t onsets = 0;         ///< of contact in the exact run, after at least five ticks without
   std::uint64_t onsets_missed = 0;  ///< without one in this run within 20 ticks
   std::optional<double> onset_p99_ticks;  ///< how far apart they are
-  /// Ticks in which this run has no contact although the exact run's force is at least `touching_n`, and so in the tick
-  /// before.
+  /// Ticks in which this run has no contact although the exact run has one and its force is at least `touching_n`, and
+  /// so in the tick before.
   std::uint64_t missed_in_row = 0;
   double largest_false_n = 0.0;  ///< difference of the forces in ticks in which the exact run's is below `touching_n`
 };

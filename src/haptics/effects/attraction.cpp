@@ -1,4 +1,6 @@
 // A magnet: two bodies draw each other, most at a certain distance, not at all far away.
+#include <fmt/core.h>
+
 #include <array>
 
 #include "haptics/effects/body_key.hpp"
@@ -10,6 +12,7 @@ namespace {
 struct Magnet {
   ode::BodyId body;
   ode::BodyId to;
+  std::string names;  // of both, for people
   double max_force_n = 0.0;
   double range_m = 0.0;
 };
@@ -31,8 +34,17 @@ class Attraction final : public Effect {
     }
     centers_ = {center_of(world, magnet_.body), center_of(world, magnet_.to)};
     const double step_s = world.options().step_s;
+    step_s_ = step_s;
     softening_ = 1.0 + step_s * step_s * steepest * magnet_.max_force_n / magnet_.range_m * inverse_mass;
     return std::nullopt;
+  }
+  [[nodiscard]] std::vector<std::string> warnings(const EffectSet&) const override {
+    if (softening_ <= bearable) return {};
+    return {
+        fmt::format("attraction: with steps of {:.3g} ms the magnet of {:.3g} N between {} is {:.3g} N strong at most, "
+                    "for more would "
+                    "tremble on so little mass: give a greater 'range_m', a smaller 'max_force_n', or a higher rate_hz",
+                    1e3 * step_s_, magnet_.max_force_n, magnet_.names, magnet_.max_force_n / softening_)};
   }
   std::uint32_t before_step(const TickView& tick) noexcept override {
     const Vec3 away =
@@ -46,6 +58,7 @@ class Attraction final : public Effect {
   }
 
  private:
+  static constexpr double bearable = 1.05;  // of the softening: a change that nobody feels
   static constexpr double steepest =
       3.0792014356780042;  // 16 / (3 sqrt(3)): the greatest value of x / (1 + x^2)^2, inverted
   // In the mesh's frame. A fixed body has no mass: the middle of its bounding box.
@@ -56,6 +69,7 @@ class Attraction final : public Effect {
   Magnet magnet_;
   std::array<Vec3, 2> centers_ = {Vec3::Zero(), Vec3::Zero()};  // of the body and of what draws it
   double softening_ = 1.0;
+  double step_s_ = 0.0;
 };
 
 }  // namespace
@@ -65,6 +79,10 @@ Result<std::unique_ptr<Effect>> make_attraction(const EffectRequest& request) {
   Magnet magnet;
   read_body(reader, "body", request.bodies, true, magnet.body);
   read_body(reader, "to", request.bodies, false, magnet.to);
+  if (magnet.body.index < request.bodies.size() && magnet.to.index < request.bodies.size()) {
+    magnet.names =
+        fmt::format("'{}' and '{}'", request.bodies[magnet.body.index].name, request.bodies[magnet.to.index].name);
+  }
   reader.require("max_force_n");
   reader.require("range_m");
   reader.number("max_force_n", Range::positive(), magnet.max_force_n);

@@ -1,4 +1,7 @@
 // A fastener: holds a point of a body at a place of another, until it is pulled too hard.
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
 #include "haptics/effects/body_key.hpp"
 #include "haptics/effects/list.hpp"
 
@@ -37,11 +40,11 @@ class Snap final : public Effect {
     if (!now_.held) return 1;
     // Linearly implicit, so that no stiffness and no damping is too much for the step.
     const double h = tick.step_s;
-    const double soft = 1.0 + h * (point.compliance + socket.compliance) *
-                                  (fastener_.damping_ns_per_m + h * fastener_.stiffness_n_per_m);
+    const double yields = h * (fastener_.damping_ns_per_m + h * fastener_.stiffness_n_per_m);
+    const Mat3 soft = Mat3::Identity() + yields * (point.compliance + socket.compliance);
     const Vec3 approach = socket.velocity - point.velocity;
-    const Vec3 force =
-        (fastener_.stiffness_n_per_m * (away + h * approach) + fastener_.damping_ns_per_m * approach) / soft;
+    const Vec3 asked = fastener_.stiffness_n_per_m * (away + h * approach) + fastener_.damping_ns_per_m * approach;
+    const Vec3 force = soft.ldlt().solve(asked);
     if (fastener_.stiffness_n_per_m * distance > fastener_.break_force_n) {
       now_ = {false, false};
       return 1;
@@ -60,19 +63,21 @@ class Snap final : public Effect {
     Vec3 position;
     Vec3 velocity;  // after the step, as far as weight changes it
     Vec3 arm;
-    double compliance = 0.0;  // 1 / kg: how fast an impulse moves the point, at most
+    Mat3 compliance;  // 1 / kg: how fast an impulse moves the point
   };
   static Spot spot(const ode::World& world, ode::BodyId body, const Vec3& local_m) noexcept {
     const ode::BodyState state = world.state(body);
     const Vec3 position = state.pose * local_m;
-    if (!world.is_dynamic(body)) return {position, Vec3::Zero(), Vec3::Zero(), 0.0};
+    if (!world.is_dynamic(body)) return {position, Vec3::Zero(), Vec3::Zero(), Mat3::Zero()};
     const ode::MassProperties& mass = world.mass(body);
     const Vec3 arm = position - state.pose * mass.center_m;
-    const double least_inertia =
-        mass.inertia_kg_m2.trace() / 6.0;  // no principal moment of a real body is far below it
+    Mat3 lever;  // times a vector: the cross product with the arm
+    lever << 0.0, -arm.z(), arm.y(), arm.z(), 0.0, -arm.x(), -arm.y(), arm.x(), 0.0;
+    const Mat3& r = state.pose.rotation;
+    const Mat3 turns = r * mass.inertia_kg_m2.inverse() * r.transpose();
     const Vec3 fall = world.options().step_s * world.options().gravity_m_per_s2;
     return {position, state.velocity_m_per_s + fall + state.angular_velocity_rad_per_s.cross(arm), arm,
-            1.0 / mass.mass_kg + arm.squaredNorm() / least_inertia};
+            Mat3::Identity() / mass.mass_kg - lever * turns * lever};
   }
 
   Fastener fastener_;

@@ -38,7 +38,13 @@ class Texture final : public Effect {
       const auto [height, slope] = at(pose.inverse() * point.position_m);
       const Vec3 tilt = pose.rotation * slope;
       point.depth_m = std::max(0.0, point.depth_m + height);
-      point.normal = (point.normal - outward * (tilt - tilt.dot(point.normal) * point.normal)).normalized();
+      // The gradient of the potential is the longer, the steeper the surface. With a mere unit normal, who
+      // goes in on a flank and out in a valley would gain.
+      const Vec3 gradient = point.normal - outward * (tilt - tilt.dot(point.normal) * point.normal);
+      const double length = gradient.norm();
+      point.normal = gradient / length;
+      point.surface.stiffness_n_per_m *= length;
+      point.surface.damping_ns_per_m *= length;
     }
     return static_cast<std::uint32_t>(meeting.contacts.size());
   }

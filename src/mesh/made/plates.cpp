@@ -46,7 +46,7 @@ Ring add_sheet(Surface& surface, const Plates& shape, double z, bool facing_up) 
 std::span<const Field<Plates>> Plates::fields() {
   static constexpr std::array<Field<Plates>, 6> list = {
       {{"side", &Plates::side, 1e-6, 1e4, "of a square plate, metres"},
-       {"thickness", &Plates::thickness, 0.0, 1e3, "metres; 0: sheets"},
+       {"thickness", &Plates::thickness, 0.0, 1e3, "metres; 0: sheets, else 1e-9 or more"},
        {"gap", &Plates::gap, 1e-9, 1e3, "between neighbours, metres"},
        {"wave", &Plates::wave, 0.0, 1e3, "height of a wave that all share, metres"},
        {"count", &Plates::count, 1, 1000, "plates"},
@@ -56,6 +56,12 @@ std::span<const Field<Plates>> Plates::fields() {
 
 Result<TriangleMesh> make(const Plates& shape) {
   if (auto error = out_of_range(shape)) return *std::move(error);
+  constexpr double thinnest =
+      1e-9;  // as near as neighbours: the coordinates of a thinner one's two sides fall together
+  if (shape.thickness > 0.0 && shape.thickness < thinnest) {
+    return refuse(shape, "thickness = " + number_text(shape.thickness) + " is thinner than coordinates can tell",
+                  "give 0 for sheets, or at least " + number_text(thinnest));
+  }
   if (static_cast<double>(shape.count) * shape.cells * shape.cells > 5e6) {
     return refuse(shape, "count * cells^2 exceeds 5 million cells", "give fewer plates or cells");
   }

@@ -307,6 +307,7 @@ Result<BodyId> World::add_dynamic(std::shared_ptr<const query::Shape> shape, con
   if (!added) return added.error();
   Body& body = *added.value();
   body.mass = properties.value();
+  body.principal = principal_axes(body.mass.inertia_kg_m2);
   body.body = dBodyCreate(self.world);
   give_mass(body.body, body.mass);
   dBodySetGyroscopicMode(body.body, 0);      // its explicit term feeds energy to fast spins
@@ -379,7 +380,9 @@ StepSummary World::step() noexcept {
   dJointGroupEmpty(self.contacts);
   if (measures) self.note_contacts();
   for (const auto& body : self.bodies) {
-    if (body->body != nullptr) self.hold_to_limits(*body);
+    if (body->body == nullptr) continue;
+    self.hold_to_limits(*body);
+    leave_fluids(*body);
   }
   self.summary.step_us = 1e-3 * static_cast<double>(self.options.clock() - collided_ns);
   return self.summary;
@@ -409,6 +412,17 @@ void World::apply(BodyId id, const Wrench& wrench) noexcept {
   if (body.body == nullptr || !wrench.force_n.allFinite() || !wrench.torque_nm.allFinite()) return;
   dBodyAddForce(body.body, wrench.force_n.x(), wrench.force_n.y(), wrench.force_n.z());
   dBodyAddTorque(body.body, wrench.torque_nm.x(), wrench.torque_nm.y(), wrench.torque_nm.z());
+}
+
+void World::add_drag(BodyId id, const Drag& drag) noexcept {
+  Body& body = *implementation_->bodies[id.index];
+  const double sum = drag.force_ns_per_m + drag.torque_nms_per_rad + drag.flow_m_per_s.sum();
+  if (body.body == nullptr || !std::isfinite(sum)) return;
+  body.fluids.add(drag);
+  const Wrench now =
+      body.fluids.over_one_step(state_of(body), body.mass.mass_kg, body.principal, implementation_->options.step_s);
+  apply(id, {now.force_n - body.of_fluids.force_n, now.torque_nm - body.of_fluids.torque_nm});
+  body.of_fluids = now;
 }
 
 BodyState World::state(BodyId id) const noexcept { return state_of(*implementation_->bodies[id.index]); }

@@ -15,6 +15,11 @@ BodyState state_of(const Body& body) noexcept {
   return state;
 }
 
+void leave_fluids(Body& body) noexcept {
+  body.fluids = {};
+  body.of_fluids = {};
+}
+
 void place(Body& body, const BodyState& state) noexcept {
   dMatrix3 rotation;
   to_ode(state.pose.rotation, rotation);
@@ -34,6 +39,7 @@ void place(Body& body, const BodyState& state) noexcept {
   dBodySetAngularVel(body.body, w.x(), w.y(), w.z());
   dBodySetForce(body.body, 0.0, 0.0, 0.0);
   dBodySetTorque(body.body, 0.0, 0.0, 0.0);
+  leave_fluids(body);
 }
 
 }  // namespace odds::ode

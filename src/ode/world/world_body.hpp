@@ -9,6 +9,7 @@
 #include "odds/ode/geom.hpp"
 #include "odds/ode/world.hpp"
 #include "ode/world/coupling_joint.hpp"
+#include "ode/world/fluids.hpp"
 
 namespace odds::ode {
 
@@ -21,9 +22,15 @@ struct Body {
   std::unique_ptr<CouplingJoint> coupling;
   BodyState last_good;
   Vec3 contact_impulse_ns = Vec3::Zero();  // since prepare()
+  PrincipalAxes principal = {};
+  Fluids fluids = {};     // of the next step
+  Wrench of_fluids = {};  // that they have exerted for it
 };
 
 [[nodiscard]] BodyState state_of(const Body& body) noexcept;
+
+/// Fluids drag for one step.
+void leave_fluids(Body& body) noexcept;
 
 /// Puts it there; forces that waited for it are gone.
 void place(Body& body, const BodyState& state) noexcept;

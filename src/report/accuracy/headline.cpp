@@ -39,10 +39,12 @@ std::string headline(const Study& study, const std::vector<AccuracyRow>& rows) {
   const AccuracyRow* row = chosen_row(study, rows);
   if (row == nullptr) return "No answers.";
   const Trial& trial = study.settings.trials[row->trial];
+  const std::string stop = trial.p_min < 1.0 ? fmt::format(", or stopped at p ≥ {}", trial.p_min) : "";
   std::string text = fmt::format(
-      "Within {}, {} of {} poses were proved and {} answered wrongly (95 %: {}).",
+      "Within {}{}, {} of {} poses were proved and {} answered wrongly (95 %: {}).",
       trial.kind == Trial::Kind::time ? fmt::format("{} µs", trial.amount) : fmt::format("{} work units", trial.amount),
-      percent(row->share_proved()), grouped(row->poses), percent(row->share_wrong()), bounds(row->wrong_interval()));
+      stop, percent(row->share_proved()), grouped(row->poses), percent(row->share_wrong()),
+      bounds(row->wrong_interval()));
   const ForecastQuality& q = row->unproved;
   if (q.count > 0) {
     text += fmt::format(" The {} answers without proof stated a hit with {} on average; {} were hits.",

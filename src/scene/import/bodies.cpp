@@ -67,6 +67,9 @@ class Assembly {
         if (held_name_.empty()) held_name_ = fmt::format("'{}', {}", joint.name, joint.type);
       }
     }
+    for (std::size_t i = 0; i < model.links.size(); ++i) {
+      if (model.links[i].stands) connected.join(Joint::world, i);
+    }
     std::map<std::size_t, std::vector<std::size_t>> groups;  // in the order of their first links
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < model.links.size(); ++i) {
@@ -95,7 +98,10 @@ class Assembly {
       body.mass_kg += link.mass_kg.value_or(0.0);
       if (link.collisions.empty()) ++bare_;
       for (const Collision& collision : link.collisions) {
-        add_shape(collision, world_in_body * link.in_world * collision.in_link, body.triangles);
+        const double volume_m3 =
+            add_shape(collision, world_in_body * link.in_world * collision.in_link, body.triangles);
+        if (!link.density_kg_per_m3) continue;
+        body.mass_kg += volume_m3 * collision.density_kg_per_m3.value_or(*link.density_kg_per_m3);
       }
     }
     if (body.triangles.triangles.empty()) return;
@@ -109,7 +115,9 @@ class Assembly {
     bodies_.push_back(std::move(body));
   }
 
-  void add_shape(const Collision& collision, const math::Pose& in_body, Soup& soup) {
+  /// Adds to `soup`; returns the volume of what was added.
+  double add_shape(const Collision& collision, const math::Pose& in_body, Soup& soup) {
+    const std::size_t before = soup.triangles.size();
     const Geometry& geometry = collision.geometry;
     if (geometry.kind == Geometry::Kind::plane) ++planes_;
     if (geometry.kind == Geometry::Kind::mesh) {
@@ -122,6 +130,7 @@ class Assembly {
       count(solid.triangles.size(), collision);
       soup.add(solid.vertices, solid.triangles, in_body, Vec3::Ones());
     }
+    return soup.volume(before, in_body.translation);
   }
 
   void count(std::size_t more, const Collision& collision) {

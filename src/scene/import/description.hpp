@@ -27,12 +27,15 @@ struct Collision {
   math::Pose in_link;
   Geometry geometry;
   haptics::Place place;
+  std::optional<double> density_kg_per_m3 = {};  ///< where it is not the link's
 };
 
 struct Link {
   std::string name;
   math::Pose in_world;  ///< with all joints at zero
   std::optional<double> mass_kg;
+  std::optional<double> density_kg_per_m3;  ///< of its shapes, which give its mass; nothing: mass_kg does
+  bool stands = false;                      ///< attached to the world
   std::vector<Collision> collisions;
   haptics::Place place;
 };

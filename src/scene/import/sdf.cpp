@@ -12,10 +12,9 @@ namespace odds::scene {
 namespace {
 
 constexpr int deepest_nesting = 32;
+constexpr int longest_chain = 256;  // of frames attached to frames, up to a joint's end
 constexpr std::array<std::string_view, 9> joint_types = {"fixed", "revolute", "revolute2", "prismatic", "continuous",
                                                          "ball",  "screw",    "universal", "gearbox"};
-
-bool is_true(std::string_view text) { return text == "true" || text == "1"; }
 
 class SdfReader {
  public:
@@ -65,12 +64,12 @@ class SdfReader {
     if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) return pose;
     if (std::string_view(node.attribute("rotation_format").value()) == "quat_xyzw") {
       const std::vector<double> v = xml_.numbers(node, text, 7, "pose");
-      const Quat q(v[6], v[3], v[4], v[5]);
-      if (!(std::abs(q.norm() - 1.0) <= 1e-3)) xml_.fail(node, "the quaternion is no rotation", "give x y z w, unit");
-      return math::Pose::from_quaternion({v[0], v[1], v[2]}, q);
+      pose.translation = {v[0], v[1], v[2]};
+      pose.rotation = xml_.rotation_of_xyzw(node, v.data() + 3);
+      return pose;
     }
     const std::vector<double> v = xml_.numbers(node, text, 6, "pose");
-    const double unit = is_true(node.attribute("degrees").value()) ? std::numbers::pi / 180.0 : 1.0;
+    const double unit = xml_.flag(node, node.attribute("degrees").value()) ? std::numbers::pi / 180.0 : 1.0;
     pose.translation = {v[0], v[1], v[2]};
     pose.rotation = rotation_of_rpy(unit * Vec3(v[3], v[4], v[5]));
     return pose;
@@ -86,11 +85,16 @@ class SdfReader {
   void read_top_model(pugi::xml_node node) {
     Model model;
     model.name = xml_.name(node);
-    model.is_static = is_true(node.child("static").text().get());
+    model.is_static = is_static(node);
     index_.clear();
     read_model(node, "", "", model, 0);
     if (model.links.empty()) xml_.fail(node, fmt::format("the model '{}' has no link", model.name), "add a <link>");
     description_.models.push_back(std::move(model));
+  }
+
+  [[nodiscard]] bool is_static(pugi::xml_node model) const {
+    const pugi::xml_node node = model.child("static");
+    return xml_.flag(node, node.text().get());
   }
 
   // `scope` is the one that the model stands in, "" or "outer::".
@@ -99,6 +103,7 @@ class SdfReader {
     if (node.attribute("placement_frame")) {
       xml_.fail(node, "a placement_frame is not understood", "give the pose of the model's own frame");
     }
+    const std::size_t first_link = model.links.size();
     const std::string own = xml_.name(node, scope);
     const std::string inside = own + "::";
     const std::string frame = inside + "__model__";
@@ -113,16 +118,34 @@ class SdfReader {
         index_.emplace(model.links.back().name, model.links.size() - 1);
         link_frames_.push_back(model.links.back().name);
       } else if (name == "frame") {
-        add_frame(part, inside, frame, part.attribute("attached_to").value());
+        const std::string_view to = part.attribute("attached_to").value();
+        add_frame(part, inside, frame, to);
+        attached_.emplace(xml_.name(part, inside), to.empty() ? frame : scoped(inside, to));
       } else if (name == "joint") {
-        add_frame(part, inside, frame, xml_.child_text(part, "child"));
+        const std::string child = xml_.child_text(part, "child");
+        add_frame(part, inside, frame, child);
+        attached_.emplace(xml_.name(part, inside), scoped(inside, child));
       } else if (name == "model") {
         read_model(part, inside, frame, model, depth + 1);
       } else if (part.type() == pugi::node_element && name != "pose" && name != "static") {
         ++description_.left_out[std::string(name)];
       }
     }
+    attached_.emplace(own, frame);
+    attached_.emplace(frame, canonical_link(node, inside, model, first_link));
     for (const pugi::xml_node part : node.children("joint")) read_joint(part, inside, model);
+    if (!is_static(node)) return;
+    for (std::size_t i = first_link; i < model.links.size(); ++i) model.links[i].stands = true;
+  }
+
+  // The link that a model's own frame is attached to: the one named, or its first.
+  [[nodiscard]] static std::string canonical_link(pugi::xml_node node, const std::string& inside, const Model& model,
+                                                  std::size_t first) {
+    if (const std::string_view named = node.attribute("canonical_link").value(); !named.empty()) {
+      return inside + std::string(named);
+    }
+    if (const pugi::xml_node own = node.child("link")) return inside + own.attribute("name").value();
+    return first < model.links.size() ? model.links[first].name : std::string();
   }
 
   [[nodiscard]] Link read_link(pugi::xml_node node, const std::string& scope) {
@@ -135,18 +158,32 @@ class SdfReader {
       if (name == "collision") {
         const math::Pose in_link = collision_pose(part);
         if (auto geometry = geometry_of(xml_.child(part, "geometry"))) {
-          link.collisions.push_back({in_link, std::move(*geometry), xml_.place_of(part)});
+          link.collisions.push_back({in_link, std::move(*geometry), xml_.place_of(part), density_of(part)});
         }
         read_friction(part);
       } else if (name == "inertial") {
-        if (const pugi::xml_node mass = part.child("mass")) {
-          link.mass_kg = xml_.positive(mass, mass.text().get(), "mass");
-        }
+        read_mass(part, link);
       } else if (part.type() == pugi::node_element && name != "pose") {
         ++description_.left_out[std::string(name)];
       }
     }
     return link;
+  }
+
+  // "auto" without a mass: of the shapes, by their densities, or the link's, or the format's default.
+  void read_mass(pugi::xml_node inertial, Link& link) const {
+    if (const pugi::xml_node mass = inertial.child("mass")) {
+      link.mass_kg = xml_.positive(mass, mass.text().get(), "mass");
+    } else if (xml_.flag(inertial, inertial.attribute("auto").value())) {
+      link.mass_kg.reset();
+      link.density_kg_per_m3 = density_of(inertial).value_or(1000.0);
+    }
+  }
+
+  [[nodiscard]] std::optional<double> density_of(pugi::xml_node owner) const {
+    const pugi::xml_node node = owner.child("density");
+    if (!node) return std::nullopt;
+    return xml_.positive(node, node.text().get(), "density");
   }
 
   [[nodiscard]] math::Pose collision_pose(pugi::xml_node node) const {
@@ -206,9 +243,16 @@ class SdfReader {
   [[nodiscard]] std::size_t joint_end(pugi::xml_node joint, const char* end, const std::string& scope,
                                       const Model& model) const {
     const pugi::xml_node node = xml_.child(joint, end);
-    const std::string name = node.text().get();
-    if (name == "world") return Joint::world;
-    if (const auto found = index_.find(scope + name); found != index_.end()) return found->second;
+    const std::string name = XmlReader::text_of(node);
+    // A link, or what is attached to one: a frame, a joint, a model.
+    std::string at = scoped(scope, name);
+    for (int steps = 0; steps < longest_chain; ++steps) {
+      if (at.empty()) return Joint::world;
+      if (const auto found = index_.find(at); found != index_.end()) return found->second;
+      const auto next = attached_.find(at);
+      if (next == attached_.end()) break;
+      at = next->second;
+    }
     std::vector<std::string_view> names;
     for (const Link& link : model.links) {
       if (link.name.starts_with(scope)) names.push_back(std::string_view(link.name).substr(scope.size()));
@@ -236,6 +280,7 @@ class SdfReader {
   SdfFrames frames_;
   Description description_;
   std::map<std::string, std::size_t, std::less<>> index_;  // of links, by full name
+  std::map<std::string, std::string> attached_;            // of other frames, by full name: what to; "": the world
   std::vector<std::string> link_frames_;                   // in the order of all models' links
 };
 

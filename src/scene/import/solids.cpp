@@ -1,6 +1,7 @@
 // Boxes, and solids of revolution about z.
 #include "scene/import/solids.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -77,6 +78,15 @@ void Soup::add(const std::vector<Vec3>& more, const std::vector<mesh::Triangle>&
   for (const mesh::Triangle& t : faces) {
     triangles.push_back({first + t[0], first + t[mirrors ? 2 : 1], first + t[mirrors ? 1 : 2]});
   }
+}
+
+double Soup::volume(std::size_t first, const Vec3& from) const {
+  double six_times = 0.0;
+  for (std::size_t i = first; i < triangles.size(); ++i) {
+    const auto& [a, b, c] = triangles[i];
+    six_times += (vertices[a] - from).dot((vertices[b] - from).cross(vertices[c] - from));
+  }
+  return std::max(0.0, six_times / 6.0);
 }
 
 Soup solid_of(const Geometry& geometry) {

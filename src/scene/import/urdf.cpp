@@ -45,8 +45,12 @@ class UrdfReader {
     if (const pugi::xml_attribute xyz = origin.attribute("xyz")) {
       pose.translation = xml_.vector(origin, xyz.value(), "xyz");
     }
-    if (const pugi::xml_attribute rpy = origin.attribute("rpy")) {
-      pose.rotation = rotation_of_rpy(xml_.vector(origin, rpy.value(), "rpy"));
+    const pugi::xml_attribute rpy = origin.attribute("rpy");
+    const pugi::xml_attribute quaternion = origin.attribute("quat_xyzw");
+    if (rpy && quaternion) xml_.fail(origin, "both 'rpy' and 'quat_xyzw' are given", "keep one of them");
+    if (rpy) pose.rotation = rotation_of_rpy(xml_.vector(origin, rpy.value(), "rpy"));
+    if (quaternion) {
+      pose.rotation = xml_.rotation_of_xyzw(origin, xml_.numbers(origin, quaternion.value(), 4, "quat_xyzw").data());
     }
     return pose;
   }
@@ -116,8 +120,14 @@ class UrdfReader {
       const char* value = mu.attribute("value").value();
       note_friction(mu, *value != '\0' ? value : mu.text().get());
     }
-    const std::string_view is_static = node.child("static").text().get();
-    if (is_static == "true" || is_static == "1") model_.is_static = true;
+    const pugi::xml_node is_static = node.child("static");
+    if (xml_.flag(is_static, is_static.text().get())) model_.is_static = true;
+    for (const pugi::xml_node part : node.children()) {
+      const std::string_view name = part.name();
+      if (part.type() == pugi::node_element && name != "mu1" && name != "static") {
+        ++description_.left_out[std::string(name)];
+      }
+    }
   }
 
   [[nodiscard]] std::size_t link_named(pugi::xml_node joint, const char* end) const {
@@ -172,13 +182,13 @@ class UrdfReader {
     if (order.size() != model_.links.size()) {
       xml_.fail(robot, "joints lead in a circle", "a URDF is a tree: remove one of them");
     }
-    const Link& root = model_.links[order.front()];
-    if (root.name == "world" && root.collisions.empty()) {
-      // The customary way to say that the rest is bolted down.
-      const std::size_t world = order.front();
-      for (Joint& joint : model_.joints) {
-        if (joint.parent == world) joint.parent = Joint::world;
-      }
+    Link& root = model_.links[order.front()];
+    if (root.name != "world") return;
+    // The customary way to say that the rest is bolted down; here and there to a table or a floor.
+    root.stands = !root.collisions.empty();
+    if (root.stands) return;
+    for (Joint& joint : model_.joints) {
+      if (joint.parent == order.front()) joint.parent = Joint::world;
     }
   }
 

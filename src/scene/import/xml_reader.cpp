@@ -40,6 +40,24 @@ haptics::Place place_at(const std::vector<std::size_t>& line_ends, std::size_t o
   return {static_cast<std::uint32_t>(line - line_ends.begin() + 1), static_cast<std::uint32_t>(offset - begin + 1)};
 }
 
+// Whether xacro has still to go through it. Many a robot that it has made keeps its namespace, but no element or
+// expression of it.
+bool is_for_xacro(pugi::xml_node node, bool with_expressions) {
+  if (std::string_view(node.name()).starts_with("xacro:")) return true;
+  if (!with_expressions) return false;
+  const auto attributes = node.attributes();
+  return std::any_of(attributes.begin(), attributes.end(), [](pugi::xml_attribute attribute) {
+    const std::string_view value = attribute.value();
+    return value.find("${") != std::string_view::npos || value.find("$(") != std::string_view::npos;
+  });
+}
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(" \t\r\n");
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(" \t\r\n") + 1 - begin);
+}
+
 }  // namespace
 
 XmlReader::XmlReader(const std::filesystem::path& path) : path_(path), text_(read_whole(path)) {
@@ -55,9 +73,11 @@ XmlReader::XmlReader(const std::filesystem::path& path) : path_(path), text_(rea
            "correct the syntax at this place");
   }
   if (!root()) refuse(path_, "1:1", "has no element", "give a URDF or SDFormat description");
-  if (text_.find("http://www.ros.org/wiki/xacro") != std::string::npos || text_.find("<xacro:") != std::string::npos) {
-    refuse(path_, place_of(root()).text(), "is a xacro file, which a preprocessor makes a URDF from",
-           "run it first: xacro FILE > robot.urdf");
+  const bool declared = text_.find("http://www.ros.org/wiki/xacro") != std::string::npos;
+  const auto is_unfinished = [&](pugi::xml_node node) { return is_for_xacro(node, declared); };
+  if (const pugi::xml_node unfinished = document_.find_node(is_unfinished)) {
+    fail(unfinished, "is a xacro file, which a preprocessor makes a URDF from",
+         "run it first: xacro FILE > robot.urdf");
   }
 }
 
@@ -99,8 +119,25 @@ pugi::xml_node XmlReader::child(pugi::xml_node node, const char* name) const {
   return found;
 }
 
-std::string XmlReader::child_text(pugi::xml_node node, const char* name) const {
-  return child(node, name).text().get();
+std::string XmlReader::child_text(pugi::xml_node node, const char* name) const { return text_of(child(node, name)); }
+
+std::string XmlReader::text_of(pugi::xml_node node) { return std::string(trimmed(node.text().get())); }
+
+bool XmlReader::flag(pugi::xml_node node, std::string_view text) const {
+  std::string word(trimmed(text));
+  std::transform(word.begin(), word.end(), word.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  const bool yes = word == "true" || word == "1";
+  if (!yes && word != "false" && word != "0" && !word.empty()) {
+    fail(node, fmt::format("'{}' is neither true nor false", word.substr(0, 40)), "give true or false");
+  }
+  return yes;
+}
+
+Mat3 XmlReader::rotation_of_xyzw(pugi::xml_node node, const double* xyzw) const {
+  const Quat q(xyzw[3], xyzw[0], xyzw[1], xyzw[2]);
+  if (!(std::abs(q.norm() - 1.0) <= 1e-3)) fail(node, "the quaternion is no rotation", "give x y z w, unit");
+  return math::Pose::from_quaternion(Vec3::Zero(), q).rotation;
 }
 
 double XmlReader::number(pugi::xml_node node, std::string_view word, std::string_view what) const {

@@ -35,7 +35,13 @@ class XmlReader {
   [[nodiscard]] std::string name(pugi::xml_node node, const std::string& scope = "") const;
   /// Refuses more than 256 bytes.
   void check_name(pugi::xml_node node, std::string_view full) const;
-  /// The text of a child element that must be there.
+  /// The text of an element, without blanks around it.
+  [[nodiscard]] static std::string text_of(pugi::xml_node node);
+  /// Whether the text says true, in letters of any size, or 1. Refuses what is neither that nor false, 0 or blank.
+  [[nodiscard]] bool flag(pugi::xml_node node, std::string_view text) const;
+  /// Of four numbers; refuses what is no rotation.
+  [[nodiscard]] Mat3 rotation_of_xyzw(pugi::xml_node node, const double* xyzw) const;
+  /// The text of a child element that must be there, without blanks around it.
   [[nodiscard]] std::string child_text(pugi::xml_node node, const char* child) const;
   [[nodiscard]] pugi::xml_node child(pugi::xml_node node, const char* name) const;
 

@@ -15,7 +15,7 @@ struct Plates {
   static constexpr std::string_view meaning = "a stack of thin plates or of sheets without thickness";
 
   double side = 0.2;          ///< of a square plate, metres, 1e-6 .. 1e4
-  double thickness = 0.0005;  ///< metres, 0 .. 1e3
+  double thickness = 0.0005;  ///< metres, 0 or 1e-9 .. 1e3
   double gap = 0.002;         ///< between neighbours, metres, 1e-9 .. 1e3
   double wave = 0.0;          ///< height of a wave that all plates share, metres, 0 .. 1e3
   std::uint32_t count = 8;    ///< plates, 1 .. 1000
