@@ -104,11 +104,12 @@ struct Points {
   [[nodiscard]] std::uint32_t farthest(const Vec3& from) const noexcept {
     return greatest([&](const Point& p) {
       const Vec3 d = p.position - from;
-      return (d - d.dot(normal) * normal).squaredNorm();
+      return (d - d.dot(normal) * normal).squaredNorm() + deeper_at_one_place * p.depth * p.depth;
     });
   }
   [[nodiscard]] std::uint32_t extreme(const Vec3& direction) const noexcept {
-    return greatest([&](const Point& p) { return direction.dot(p.position); });
+    const double for_depth = deeper_at_one_place * direction.norm();
+    return greatest([&](const Point& p) { return direction.dot(p.position) + for_depth * p.depth; });
   }
 };
 
