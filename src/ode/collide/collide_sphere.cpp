@@ -99,6 +99,10 @@ int collide_sphere(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, in
       // Without depth nothing pushes, and every triangle that is touched is told, as by ODE.
       const bool only_touches = nearest->distance == radius;
       for (std::size_t i = 0; i < found.count && found.complete && !writer.full(); ++i) {
+        if (limit.time_is_up()) {  // each of many places is compared with all before it
+          complete = false;
+          break;
+        }
         const Place& place = found.all[i];
         const bool written = only_touches ? place.triangle == nearest->triangle
                                           : (place.point - nearest->point).norm() <= same_place * radius;
