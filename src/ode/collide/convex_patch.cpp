@@ -73,9 +73,10 @@ double depth_along(const Vec3& direction, std::span<const Piece* const> patch, c
   return depth;
 }
 
-// Zero where they cancel each other, as those of a mesh wholly within the body do: what is left of them is rounding.
+// Zero where they nearly cancel each other, as those of a mesh wholly within the body do, or of a plate that goes
+// through it: what is left of them is rounding, or one side's being a little larger.
 Vec3 mean_normal(std::span<const Piece* const> patch) noexcept {
-  constexpr double cancelled = 1e-9;  // of the area
+  constexpr double cancelled = 0.2;  // of the area
   Vec3 sum = Vec3::Zero();
   double area = 0.0;
   for (const Piece* piece : patch) {
