@@ -368,10 +368,15 @@ void leave_sideways(const PreparedMesh& mesh, const math::Pose& body_in_mesh, co
 // two opposite ways the shorter at the surface nearest to its centre.
 void leave_by_the_near_side(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const ConvexBody& body,
                             Limit& limit, std::span<Patch> patches) noexcept {
-  if (!mesh.closed || limit.time_is_up()) return;
+  constexpr std::uint64_t most_units = 96;  // some ten microseconds: the search does not look at the clock
+  const auto is_long = [&](const Patch& p) { return p.exit.depth > body.box_half_extents().minCoeff(); };
+  if (!mesh.closed || std::none_of(patches.begin(), patches.end(), is_long) || limit.time_is_up()) return;
   const double size = body.box_half_extents().norm();
-  const auto nearest = nearest_surface(mesh, body_in_mesh * body.center(), size, limit.units);
-  if (!nearest || nearest->outward == Vec3::Zero()) return;
+  const std::uint64_t given = std::min(limit.units, most_units);
+  std::uint64_t left = given;
+  const auto nearest = nearest_surface(mesh, body_in_mesh * body.center(), size, left);
+  limit.units -= given - left;
+  if (!nearest || left == 0 || nearest->outward == Vec3::Zero()) return;
   const Vec3 out = body_in_mesh.rotation.transpose() * nearest->outward;
   const Vec3 place = body_in_mesh.inverse() * nearest->point;
   const double depth = out.dot(place) + body.reach(-out);
