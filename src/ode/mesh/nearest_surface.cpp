@@ -43,6 +43,12 @@ Vec3 pseudo_normal(const PreparedMesh& mesh, const Vec3& point, std::uint32_t at
 
 }  // namespace
 
+Vec3 outward_at(const PreparedMesh& mesh, const Vec3& point, std::uint32_t triangle, const Vec3& seen_from) noexcept {
+  const double far = std::max(mesh.mesh().lower().cwiseAbs().maxCoeff(), mesh.mesh().upper().cwiseAbs().maxCoeff());
+  const double tolerance = on_feature * mesh.mesh().size() + rounding * (far + seen_from.cwiseAbs().maxCoeff());
+  return pseudo_normal(mesh, point, triangle, tolerance);
+}
+
 std::optional<NearestSurface> nearest_surface(const PreparedMesh& mesh, const Vec3& point, double reach,
                                               std::uint64_t& units) noexcept {
   constexpr double nothing = -std::numeric_limits<double>::infinity();
@@ -62,9 +68,7 @@ std::optional<NearestSurface> nearest_surface(const PreparedMesh& mesh, const Ve
   nearest.triangle = triangle;
   nearest.point = closest_point(mesh.corners(triangle), point);
   nearest.distance = (nearest.point - point).norm();
-  const double far = std::max(mesh.mesh().lower().cwiseAbs().maxCoeff(), mesh.mesh().upper().cwiseAbs().maxCoeff());
-  const double tolerance = on_feature * mesh.mesh().size() + rounding * (far + point.cwiseAbs().maxCoeff());
-  nearest.outward = pseudo_normal(mesh, nearest.point, triangle, tolerance);
+  nearest.outward = outward_at(mesh, nearest.point, triangle, point);
   nearest.inside = mesh.closed && nearest.outward.dot(point - nearest.point) < 0.0;
   // Where the search was cut short there may be nearer triangles, and of one that is not the nearest the side tells
   // nothing: a ball in a cavity would be pushed out through its walls.
