@@ -32,8 +32,10 @@ struct Places {
 // The nearest point of every triangle that is no farther than the radius, nearest first.
 void find_places(const PreparedMesh& mesh, const Vec3& center, double radius, Limit& limit, Places& places) noexcept {
   std::array<std::uint32_t, most_near_triangles> near;
+  std::uint64_t visited = 0;
   const std::size_t count = query::triangles_in_box(*mesh.shape, center, Mat3::Identity(), Vec3::Constant(radius), near,
-                                                    limit.units, &places.complete);
+                                                    limit.units, &places.complete, &visited);
+  limit.spend(visited);
   for (std::size_t i = 0; i < count; ++i) {
     if (limit.time_is_up()) {
       places.complete = false;

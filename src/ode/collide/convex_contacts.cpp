@@ -134,17 +134,21 @@ void gather(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const Conv
     }
   };
   const Vec3& half = body.box_half_extents();
-  const std::size_t found = query::triangles_in_box(*mesh.shape, body_in_mesh * body.box_center(),
-                                                    body_in_mesh.rotation, half, near, limit.units, &pieces.complete);
+  std::uint64_t visited = 0;
+  const std::size_t found =
+      query::triangles_in_box(*mesh.shape, body_in_mesh * body.box_center(), body_in_mesh.rotation, half, near,
+                              limit.units, &pieces.complete, &visited);
+  limit.spend(visited);
   pieces.cut_off = !pieces.complete && found < near.size();
-  if (pieces.complete) return cut_all(found);
+  if (pieces.complete || limit.units == 0) return cut_all(found);  // or there is nothing left to look anew
   for (int octant = 0; octant < 8; ++octant) {
     const Vec3 center = body.box_center() +
                         0.5 * half.cwiseProduct(Vec3(octant & 1 ? 1 : -1, octant & 2 ? 1 : -1, octant & 4 ? 1 : -1));
     bool octant_complete = true;
     const std::size_t part =
         query::triangles_in_box(*mesh.shape, body_in_mesh * center, body_in_mesh.rotation, 0.5 * half,
-                                std::span(near).first(most_pieces / 8), limit.units, &octant_complete);
+                                std::span(near).first(most_pieces / 8), limit.units, &octant_complete, &visited);
+    limit.spend(visited);
     pieces.cut_off = pieces.cut_off || (!octant_complete && part < most_pieces / 8);
     cut_all(part);
   }
