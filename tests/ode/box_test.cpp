@@ -227,5 +227,26 @@ TEST_F(BoxTest, ManySmallTrianglesAreCutOffAndCountedYetHoldTheBox) {
   EXPECT_GT(spanned_area(contacts), 0.3 * 0.36);
 }
 
+// Its two sides are left in opposite directions: pushed both ways a body sticks in the plate.
+TEST_F(BoxTest, ThroughAPlateItIsPushedOneWay) {
+  for (const std::uint32_t cells : {1u, 4u, 8u}) {
+    const dGeomID plate = mesh_geom(box_shape(1.0, 0.8, 0.1, cells), space);
+    dGeomOddsMeshSetCarryMotion(plate, 0);
+    for (const dGeomID body : {dCreateBox(space, 0.4, 0.4, 0.4), dCreateCylinder(space, 0.2, 0.4)}) {
+      for (int round = 0; round < 300; ++round) {
+        const double side = round % 2 == 0 ? 1.0 : -1.0;
+        rotate(body, Vec3(uniform(random), uniform(random), 0.2 * uniform(random)), 0.3 * uniform(random));
+        dGeomSetPosition(body, 0.1 * uniform(random), 0.1 * uniform(random), side * (0.06 + 0.04 * uniform(random)));
+        const auto contacts = collide(plate, body);
+        ASSERT_FALSE(contacts.empty());
+        for (const dContactGeom& contact : contacts) {
+          ASSERT_GT(-side * contact.normal[2], 0.5)
+              << cells << " cells, class " << dGeomGetClass(body) << ", round " << round;
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace odds::test

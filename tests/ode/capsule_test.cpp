@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "odds/math/pose.hpp"
 #include "odds/mesh/made/terrain.hpp"
 #include "ode/ode_fixture.hpp"
 
@@ -232,6 +233,42 @@ TEST_F(CapsuleTest, BadPosesAndSmallBudgetsAreCounted) {
   EXPECT_TRUE(collide(mesh, capsule).empty());
   EXPECT_EQ(stats().bad_poses, 1u);
   dGeomDestroy(capsule);
+}
+
+// At corners one of several triangles, as near as each other but for rounding, said on which side the axis was.
+TEST_F(CapsuleTest, MovedWithItsMeshItHasTheSameContacts) {
+  std::vector<Vec3> vertices;
+  const auto ball = sphere_shape(1.0, 5);
+  for (const Vec3& v : ball->mesh().vertices()) {
+    vertices.push_back(v * (1.0 + 0.2 * std::sin(5.0 * v.x()) * std::sin(7.0 * v.y()) + 0.3 * uniform(random)));
+  }
+  auto bumpy = mesh::TriangleMesh::make(vertices, {ball->mesh().triangles().begin(), ball->mesh().triangles().end()});
+  const dGeomID mesh = mesh_geom(
+      query::Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(bumpy).value())).value(), space);
+  const dGeomID capsule = dCreateCapsule(space, 0.2, 0.6);
+  const auto place = [](dGeomID geom, const math::Pose& pose) {
+    dMatrix3 rotation = {};
+    for (int i = 0; i < 9; ++i) rotation[4 * (i / 3) + i % 3] = pose.rotation(i / 3, i % 3);
+    dGeomSetRotation(geom, rotation);
+    dGeomSetPosition(geom, pose.translation.x(), pose.translation.y(), pose.translation.z());
+  };
+  const auto any_pose = [&](double reach) {
+    const Vec3 axis = Vec3(uniform(random), uniform(random), 1.5).normalized();
+    return math::Pose{Eigen::AngleAxisd(3.0 * uniform(random), axis).toRotationMatrix(),
+                      reach * Vec3(uniform(random), uniform(random), uniform(random))};
+  };
+  for (int round = 0; round < 4000; ++round) {
+    const math::Pose pose = any_pose(1.2);
+    const math::Pose moved = any_pose(10.0);
+    place(mesh, {});
+    place(capsule, pose);
+    const auto before = collide(mesh, capsule);
+    place(mesh, moved);
+    place(capsule, moved * pose);
+    const auto after = collide(mesh, capsule);
+    ASSERT_EQ(before.size(), after.size()) << round;
+    for (std::size_t i = 0; i < before.size(); ++i) ASSERT_NEAR(before[i].depth, after[i].depth, 1e-9) << round;
+  }
 }
 
 }  // namespace

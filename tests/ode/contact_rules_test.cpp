@@ -3,6 +3,7 @@
 #include <cstdarg>
 #include <cstring>
 #include <functional>
+#include <random>
 
 #include "ode/ode_fixture.hpp"
 
@@ -102,6 +103,80 @@ TEST_F(ContactRules, UnimportantContactsAreNotFewer) {
     EXPECT_EQ(collide(mesh, partner, 16, CONTACTS_UNIMPORTANT).size(), collide(mesh, partner, 16).size());
     EXPECT_EQ(collide(partner, mesh, 16, CONTACTS_UNIMPORTANT).size(), collide(partner, mesh, 16).size());
     EXPECT_EQ(collide(mesh, partner, 1, CONTACTS_UNIMPORTANT).size(), 1u);
+  }
+}
+
+TEST_F(ContactRules, NoPlaceIsGivenTwice) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const dGeomID ball = mesh_geom(sphere_shape(0.8, 6), space);
+  dGeomOddsMeshSetCarryMotion(ball, 0);
+  int found = 0;
+  for (const dGeomID partner : {dCreateBox(space, 0.4, 0.5, 0.6), dCreateCylinder(space, 0.3, 0.6)}) {
+    for (int round = 0; round < 500; ++round) {
+      rotate(partner, Vec3(uniform(random), uniform(random), 1.5), 3.0 * uniform(random));
+      dGeomSetPosition(partner, uniform(random), uniform(random), uniform(random));
+      const auto contacts = collide(ball, partner);
+      found += static_cast<int>(contacts.size());
+      for (std::size_t i = 0; i < contacts.size(); ++i) {
+        for (std::size_t k = 0; k < i; ++k) {
+          if (normal_of(contacts[i]).dot(normal_of(contacts[k])) < 0.9999) continue;
+          ASSERT_GT((position_of(contacts[i]) - position_of(contacts[k])).norm(), 1e-9) << i << " and " << k;
+        }
+      }
+    }
+  }
+  EXPECT_GT(found, 2000);
+}
+
+// Each corner of the lower side of a plate has one of the upper side right above it.
+TEST_F(ContactRules, OfPlacesAboveEachOtherTheDeeperIsGiven) {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const dGeomID plate = mesh_geom(box_shape(1, 0.8, 0.2), space);
+  dGeomOddsMeshSetCarryMotion(plate, 0);
+  const dGeomID box = dCreateBox(space, 4, 4, 1);
+  for (int round = 0; round < 300; ++round) {
+    const Vec3 axis(uniform(random), uniform(random), 1.5);
+    const double angle = 3.0 * uniform(random);
+    for (const dGeomID geom : {plate, box}) rotate(geom, axis, angle);
+    const Vec3 place = Eigen::AngleAxisd(angle, axis.normalized()) * Vec3(uniform(random), uniform(random), 0.35);
+    dGeomSetPosition(plate, place.x(), place.y(), place.z());
+    const auto contacts = collide(plate, box);
+    EXPECT_FALSE(contacts.empty());
+    for (const dContactGeom& contact : contacts) EXPECT_NEAR(contact.depth, 0.25, 1e-9);
+  }
+}
+
+// The normals of all of its surface cancel each other: what rounding left of them chose the way out.
+TEST_F(ContactRules, AMeshWithinABodyIsLeftTheShortestWay) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const auto shape = sphere_shape(0.1, 2);
+  const dGeomID ball = mesh_geom(shape, space);
+  dGeomOddsMeshSetCarryMotion(ball, 0);
+  for (const dGeomID body : {dCreateBox(space, 4, 4, 1), dCreateCylinder(space, 2, 1)}) {
+    for (int round = 0; round < 200; ++round) {
+      const Mat3 turn =
+          Eigen::AngleAxisd(3.0 * uniform(random), Vec3(uniform(random), uniform(random), 1.5).normalized())
+              .toRotationMatrix();
+      dMatrix3 rotation = {};
+      for (int i = 0; i < 9; ++i) rotation[4 * (i / 3) + i % 3] = turn(i / 3, i % 3);
+      dGeomSetRotation(body, rotation);
+      const Vec3 place = turn * Vec3(0.5 * uniform(random), 0.5 * uniform(random), 0.3 * uniform(random));
+      dGeomSetPosition(ball, place.x(), place.y(), place.z());
+      double shortest = HUGE_VAL;
+      for (const double side : {-1.0, 1.0}) {
+        double way = 0.0;
+        for (const Vec3& vertex : shape->mesh().vertices()) {
+          way = std::max(way, 0.5 - side * turn.col(2).dot(place + vertex));
+        }
+        shortest = std::min(shortest, way);
+      }
+      const auto contacts = collide(ball, body);
+      ASSERT_FALSE(contacts.empty());
+      EXPECT_NEAR(contacts[0].depth, shortest, 1e-9) << "class " << dGeomGetClass(body) << ", round " << round;
+    }
   }
 }
 

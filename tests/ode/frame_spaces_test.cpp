@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <random>
 #include <string>
 #include <utility>
 
@@ -81,6 +82,39 @@ TEST_F(FrameSpaces, PrimitivesCostNoMemoryAndLeaveTheLastErrorAlone) {
   EXPECT_EQ(counter.allocations(), 0U);
   EXPECT_EQ(summary().served, 10);
   EXPECT_EQ(oddsGetLastError(), error);
+}
+
+// What they look at of the mesh was not counted: any number of boxes was one unit each.
+TEST_F(FrameSpaces, PrimitivesCostWork) {
+  const dGeomID mesh = mesh_geom(sphere_shape(1.0, 24), space);
+  dGeomSetCategoryBits(mesh, 1);
+  dGeomSetCollideBits(mesh, 2);
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 60; ++i) {
+    const dGeomID body = i % 3 == 0   ? dCreateBox(space, 0.2, 0.2, 0.2)
+                         : i % 3 == 1 ? dCreateCylinder(space, 0.1, 0.2)
+                                      : dCreateCapsule(space, 0.1, 0.1);
+    const Vec3 place = Vec3(normal(random), normal(random), normal(random)).normalized();
+    dGeomSetPosition(body, place.x(), place.y(), place.z());
+    dGeomSetCategoryBits(body, 2);
+    dGeomSetCollideBits(body, 1);
+  }
+  const oddsFrameBudgetID frame = oddsFrameBudgetCreate(100);
+  ASSERT_EQ(oddsFrameBudgetSetWork(frame, 500), 1);
+  int contacts = 0;
+  const auto near = [](void* found, dGeomID a, dGeomID b) {
+    *static_cast<int*>(found) += static_cast<int>(collide(a, b, 8).size());
+  };
+  ASSERT_EQ(oddsSpaceCollide(space, &contacts, near, frame), 1);
+  oddsFrameSummary summary;
+  oddsFrameBudgetGetSummary(frame, &summary);
+  EXPECT_GE(summary.pairs, 60);
+  EXPECT_GT(contacts, 0);
+  EXPECT_LT(summary.served, 40);
+  EXPECT_GT(summary.work, 250u);
+  EXPECT_LE(summary.work, 510u);
+  oddsFrameBudgetDestroy(frame);
 }
 
 }  // namespace

@@ -124,6 +124,51 @@ TEST_F(PlaneTest, EdgeTwoContactsCornerOne) {
   EXPECT_NEAR(contacts[0].depth, 0.01, 1e-9);
 }
 
+// The deepest vertex lies within the others' outline here; beyond its sides lay vertices that were taken already.
+TEST_F(PlaneTest, NoVertexIsGivenTwice) {
+  const dGeomID plane = dCreatePlane(space, 0, 0, 1, 0);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  int full = 0;
+  for (const dGeomID mesh : {mesh_geom(box_shape(1, 1.4, 1.8), space), mesh_geom(sphere_shape(0.9, 6), space)}) {
+    for (int round = 0; round < 300; ++round) {
+      rotate(mesh, random_direction(random), 3.0 * uniform(random));
+      dGeomSetPosition(mesh, 0, 0, uniform(random));
+      const auto contacts = collide(mesh, plane);
+      full += contacts.size() == 8 ? 1 : 0;
+      for (std::size_t i = 0; i < contacts.size(); ++i) {
+        for (std::size_t k = 0; k < i; ++k) {
+          ASSERT_GT((position_of(contacts[i]) - position_of(contacts[k])).norm(), 1e-6) << i << " and " << k;
+        }
+      }
+    }
+  }
+  EXPECT_GT(full, 100);
+}
+
+// Each corner of its lower side has one of the upper side right above it.
+TEST_F(PlaneTest, APlateWhollyBelowIsHeldByItsLowerSide) {
+  std::uniform_real_distribution<double> uniform(-3.0, 3.0);
+  for (int round = 0; round < 100; ++round) {
+    const math::Pose in_mesh = {Eigen::AngleAxisd(uniform(random), random_direction(random)).toRotationMatrix(),
+                                Vec3(uniform(random), uniform(random), uniform(random))};
+    const auto plate = box_shape(1, 0.8, 0.04);
+    std::vector<Vec3> vertices;
+    for (const Vec3& vertex : plate->mesh().vertices()) vertices.push_back(in_mesh * vertex);
+    auto turned =
+        mesh::TriangleMesh::make(vertices, {plate->mesh().triangles().begin(), plate->mesh().triangles().end()});
+    const dGeomID mesh =
+        mesh_geom(query::Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(turned).value())).value());
+    const Vec3 normal = in_mesh.rotation.col(2);
+    const dGeomID plane =
+        dCreatePlane(nullptr, normal.x(), normal.y(), normal.z(), normal.dot(in_mesh.translation) + 0.05);
+    const auto contacts = collide(mesh, plane);
+    EXPECT_EQ(contacts.size(), 4u);
+    for (const dContactGeom& contact : contacts) EXPECT_NEAR(contact.depth, 0.07, 1e-9);
+    dGeomDestroy(mesh);
+    dGeomDestroy(plane);
+  }
+}
+
 TEST_F(PlaneTest, VerticesThatNoTriangleUsesDoNotTouch) {
   auto mesh = mesh::TriangleMesh::make({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, -5}}, {{0, 1, 2}});
   ASSERT_TRUE(mesh.ok());

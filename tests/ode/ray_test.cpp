@@ -132,6 +132,25 @@ TEST_F(RayTest, NoneSlipsThroughEdgesAndCorners) {
   }
 }
 
+// As programs write them where an edge of a face has a corner of another in its middle.
+TEST_F(RayTest, TrianglesWithoutAnAreaHideNone) {
+  auto made = mesh::TriangleMesh::make({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 0}},
+                                       {{0, 4, 2}, {0, 2, 2}, {0, 1, 2}, {0, 2, 3}});
+  ASSERT_TRUE(made.ok());
+  const dGeomID mesh = mesh_geom(
+      query::Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(made).value())).value(), space);
+  for (int i = 0; i < 1000; ++i) {
+    const double x = 0.5 + 0.49 * uniform(random);
+    const Vec3 direction = Vec3(0.3 * uniform(random), 0.3 * uniform(random), -1).normalized();
+    const dGeomID ray = ray_of(5, Vec3(x, x, 0) - 2.0 * direction, direction);
+    const auto contacts = collide(ray, mesh);
+    ASSERT_EQ(contacts.size(), 1u) << x;
+    EXPECT_NEAR(contacts[0].normal[2], 1.0, 1e-12) << x;
+    EXPECT_NEAR(contacts[0].depth, 2.0, 1e-12) << x;
+    dGeomDestroy(ray);
+  }
+}
+
 TEST_F(RayTest, ItEndsAtItsLengthAndStartsAtItsOrigin) {
   const dGeomID mesh = mesh_geom(box_shape(1, 1, 1), space);
   const dGeomID ray = ray_of(1.4, Vec3(0.1, 0.2, 2), Vec3(0, 0, -1));

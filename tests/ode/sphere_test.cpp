@@ -3,6 +3,7 @@
 #include <random>
 
 #include "odds/mesh/made/terrain.hpp"
+#include "ode/budget_clock.hpp"
 #include "ode/ode_fixture.hpp"
 
 namespace odds::test {
@@ -276,6 +277,87 @@ TEST_F(SphereTest, UnderAFaceAnEarlyEndPushesNothingIn) {
     }
   }
   EXPECT_GT(found, 900);
+}
+
+// More triangles meet at the tip than a collision looks at: those of one side spoke for all.
+TEST_F(SphereTest, AboveTheTipOfAConeOfManySidesItIsOutside) {
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (const std::uint32_t sides : {16u, 65u, 96u, 200u, 1000u}) {
+    std::vector<Vec3> vertices = {{0, 0, 1}, {0, 0, 0}};
+    std::vector<mesh::Triangle> triangles;
+    for (std::uint32_t i = 0; i < sides; ++i) {
+      const double angle = 2.0 * M_PI * i / sides;
+      vertices.emplace_back(0.2 * std::cos(angle), 0.2 * std::sin(angle), 0.0);
+      const std::uint32_t next = 2 + (i + 1) % sides;
+      triangles.push_back({2 + i, next, 0});
+      triangles.push_back({next, 2 + i, 1});
+    }
+    const dGeomID mesh = mesh_geom(shape_from(std::move(vertices), std::move(triangles)), space);
+    const dGeomID sphere = dCreateSphere(space, 0.3);
+    for (int round = 0; round < 500; ++round) {
+      const Vec3 from_tip(0.1 * uniform(random), 0.1 * uniform(random), 0.06 + 0.04 * uniform(random));
+      if (from_tip.head<2>().norm() > 4.5 * from_tip.z()) continue;  // a side is nearer
+      dGeomSetPosition(sphere, from_tip.x(), from_tip.y(), 1.0 + from_tip.z());
+      const auto contacts = collide(mesh, sphere);
+      ASSERT_EQ(contacts.size(), 1u);
+      ASSERT_NEAR(contacts[0].depth, 0.3 - from_tip.norm(), 1e-9) << sides << " sides at " << from_tip.transpose();
+      ASSERT_LT((normal_of(contacts[0]) + from_tip.normalized()).norm(), 1e-9);
+    }
+  }
+}
+
+// As of a site in coordinates of a country: the point that is nearest is off an edge or a corner by rounding.
+TEST_F(SphereTest, FarFromTheOriginOfItsFrameAMeshHasTheSameInside) {
+  const std::vector<Vec3> corners = {{0, 0, 0}, {1, 0, 0}, {0, 0.3, 0}, {0.9, 0.9, 1}};
+  const std::vector<mesh::Triangle> triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  const dGeomID near = mesh_geom(shape_from(corners, triangles), space);
+  const dGeomID sphere = dCreateSphere(space, 0.2);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (const double far : {1e5, 1e6, 1e8}) {
+    const Vec3 offset = far * Vec3(0.731, 0.377, -0.211);
+    std::vector<Vec3> moved;
+    for (const Vec3& corner : corners) moved.push_back(corner + offset);
+    const dGeomID mesh = mesh_geom(shape_from(std::move(moved), triangles), space);
+    dGeomSetPosition(mesh, -offset.x(), -offset.y(), -offset.z());
+    int hits = 0;
+    for (int round = 0; round < 3000; ++round) {
+      dGeomSetPosition(sphere, uniform(random), uniform(random), uniform(random));
+      const auto expected = collide(near, sphere);
+      const auto contacts = collide(mesh, sphere);
+      hits += expected.empty() ? 0 : 1;
+      const double depth = expected.empty() ? 0.0 : expected[0].depth;
+      ASSERT_NEAR(contacts.empty() ? 0.0 : contacts[0].depth, depth, 1e-15 * far + 1e-6) << far << ", " << round;
+    }
+    EXPECT_GT(hits, 100);
+  }
+}
+
+// Each of many places is compared with all that are nearer.
+TEST_F(SphereTest, ManyPlacesKeepToTheBudget) {
+  std::vector<Vec3> vertices;
+  std::vector<mesh::Triangle> triangles;
+  for (int i = 0; i < 200; ++i) {  // apart from each other, and each as far away as it pleases
+    const double angle = 2.4 * i;
+    const double z = 1.0 - (i + 0.5) / 100.0;
+    const Vec3 out(std::sqrt(1.0 - z * z) * std::cos(angle), std::sqrt(1.0 - z * z) * std::sin(angle), z);
+    const Vec3 side = 0.02 * out.unitOrthogonal();
+    const Vec3 middle = (0.8 + 0.0005 * i) * out;
+    const auto first = static_cast<std::uint32_t>(vertices.size());
+    for (const Vec3& corner : {Vec3(middle + side), Vec3(middle + out.cross(side)), Vec3(middle - side)}) {
+      vertices.push_back(corner);
+    }
+    triangles.push_back({first, first + 1, first + 2});
+  }
+  const dGeomID mesh = mesh_geom(shape_from(std::move(vertices), std::move(triangles)), space);
+  const dGeomID sphere = dCreateSphere(space, 1.0);
+  EXPECT_EQ(collide(mesh, sphere).size(), 8u);
+  realtime::ManualClock clock(1000);  // a microsecond a look: one at the beginning, one for each triangle
+  ode::use_budget_clock(clock.clock());
+  ASSERT_EQ(dGeomOddsMeshSetBudget(mesh, 203), 1);
+  const auto contacts = collide(mesh, sphere);
+  ode::use_budget_clock({});
+  EXPECT_LT(contacts.size(), 4u);
+  EXPECT_EQ(stats().primitive_cut_off, 1u);
 }
 
 TEST_F(SphereTest, AnExhaustedBudgetIsCountedAndSound) {

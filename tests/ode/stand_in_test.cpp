@@ -2,6 +2,7 @@
 #include <cmath>
 #include <random>
 
+#include "ode/geom/partners.hpp"
 #include "ode/trimesh_fixture.hpp"
 
 namespace odds::test {
@@ -187,6 +188,54 @@ TEST_F(StandIn, AMeshRestsOnAHeightfieldWithAndWithoutAPose) {
   }
   oddsMeshDataDestroy(data);
   dGeomHeightfieldDataDestroy(odes);
+}
+
+TEST_F(StandIn, AMeshDoesNotStandInForOtherData) {
+  const auto shape = box_shape(1, 1, 1);
+  const TriMesh trimesh(shape->mesh(), space);
+  const TriMesh other(box_shape(0.1, 0.1, 0.1)->mesh(), space);
+  const oddsMeshDataID data = oddsMeshDataCreate();
+  ASSERT_EQ(oddsMeshDataBuildFromTriMesh(data, trimesh.geom, nullptr), 1);
+  ASSERT_EQ(oddsSetStandIn(trimesh.geom, data, 1), 1);
+  oddsMeshDataDestroy(data);
+  const dGeomID mesh = mesh_geom(shape, space);
+  dGeomSetPosition(mesh, 0.9, 0, 0);
+  EXPECT_FALSE(collide(mesh, trimesh.geom).empty());
+  dGeomTriMeshSetData(trimesh.geom, other.data);  // as of another geom at its address
+  EXPECT_TRUE(collide(mesh, trimesh.geom).empty());
+  EXPECT_EQ(stats().changed_partners, 1u);
+}
+
+// Two were destroyed and not forgotten, and geoms of other classes made at their addresses: ODE ended the program where
+// such a sphere was asked for its triangles.
+TEST_F(StandIn, AGeomOfAnotherClassAtAKnownAddressIsAnotherGeom) {
+  const auto shape = box_shape(1, 1, 1);
+  const dGeomID mesh = mesh_geom(shape, space);
+  const dGeomID sphere = dCreateSphere(space, 0.3);
+  {
+    const TriMesh gone(shape->mesh(), space);
+    ASSERT_EQ(oddsPrepareTriMesh(gone.geom, nullptr), 1);
+    auto known = ode::make_partner(gone.geom, ode::partner_table().find(gone.geom)->mesh->mesh);
+    known->trimesh_data = gone.data;
+    known->geom = sphere;
+    ode::partner_table().put(std::move(known));
+  }
+  EXPECT_EQ(oddsPreparePair(mesh, sphere), 1) << oddsGetLastError();
+  EXPECT_EQ(dGeomOddsMeshSetBudget(sphere, 20), 0) << "it has no mesh";
+  dGeomSetPosition(sphere, 0, 0, 0.7);
+  EXPECT_EQ(collide(mesh, sphere).size(), 1u);
+
+  const TriMesh late(shape->mesh(), space);
+  dGeomSetPosition(late.geom, 0.9, 0, 0);
+  auto known = ode::make_partner(sphere, nullptr);
+  known->geom = late.geom;
+  ode::partner_table().put(std::move(known));
+  EXPECT_TRUE(collide(mesh, late.geom).empty());
+  EXPECT_EQ(stats().changed_partners, 1u);
+  EXPECT_EQ(stats().lazy_partners, 0u);
+  EXPECT_EQ(oddsPreparePair(mesh, late.geom), 1) << "reads it";
+  EXPECT_FALSE(collide(mesh, late.geom).empty());
+  EXPECT_EQ(oddsForgetGeom(sphere), 1);
 }
 
 TEST_F(StandIn, HeightfieldsOutOfRangeAreRefused) {

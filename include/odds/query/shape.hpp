@@ -64,8 +64,8 @@ class Shape {
   [[nodiscard]] const ShapeSummary& summary() const noexcept;
   /// Closed, consistently wound, outwards: inside and outside are known. Otherwise the mesh is a two-sided sheet.
   [[nodiscard]] bool is_solid() const noexcept;
-  /// Looks for the large flat faces of a solid now, some 0.4 us a triangle, for contacts in short budgets; else the first
-  /// pair with PairOptions::late_contacts does it. Once; thread-safe. May throw std::bad_alloc.
+  /// Looks for the large flat faces of a solid now, some 0.4 us a triangle, for contacts in short budgets; else the
+  /// first pair with PairOptions::late_contacts does it. Once; thread-safe. May throw std::bad_alloc.
   void find_flat_faces() const;
   [[nodiscard]] const Data& data() const noexcept { return *data_; }
 
@@ -76,8 +76,10 @@ class Shape {
 
 /// Indices of triangles whose bounding boxes meet the oriented box {center + axes * x, |x_i| <= half_extents_i} given
 /// in the mesh's frame, written to `found` until it is full or `budget_nodes` nodes were visited. Returns how many were
-/// written. noexcept, no allocation. `complete` (if not null) says whether nothing was cut off.
+/// written. noexcept, no allocation. `complete` (if not null) says whether nothing was cut off, `visited` (likewise)
+/// how many nodes were visited.
 std::size_t triangles_in_box(const Shape& shape, const Vec3& center, const Mat3& axes, const Vec3& half_extents,
-                             std::span<std::uint32_t> found, std::uint64_t budget_nodes, bool* complete) noexcept;
+                             std::span<std::uint32_t> found, std::uint64_t budget_nodes, bool* complete,
+                             std::uint64_t* visited = nullptr) noexcept;
 
 }  // namespace odds::query

@@ -25,9 +25,11 @@ void add_part(const PreparedMesh& mesh, const Capsule& capsule, const Vec3& cent
               std::size_t share, Limit& limit, CapsulePlaces& places) noexcept {
   std::array<std::uint32_t, CapsulePlaces::most> near;
   bool complete = true;
+  std::uint64_t visited = 0;
   const std::size_t found =
       query::triangles_in_box(*mesh.shape, center, capsule.axes, Vec3(capsule.radius, capsule.radius, half_length),
-                              std::span(near).first(share), limit.units, &complete);
+                              std::span(near).first(share), limit.units, &complete, &visited);
+  limit.spend(visited);
   places.complete = places.complete && complete;
   for (std::size_t i = 0; i < found && places.count < CapsulePlaces::most; ++i) {
     if (limit.time_is_up()) {

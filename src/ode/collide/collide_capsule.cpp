@@ -125,10 +125,13 @@ void add_minima(const PreparedMesh& mesh, const Capsule& capsule, const CapsuleP
     if (place.distance <= same_place * capsule.radius) continue;
     const Vec3 out = (place.on_axis - place.on_surface) / place.distance;
     if (apart_from && out.dot(*apart_from) > same_patch) continue;
-    if (apart_from && mesh.closed && out.dot(unit_normal(mesh.corners(place.triangle))) < 0.0) continue;
     // Where triangles were left out, a rim of one of them would pass for a minimum.
     if (contacts.count > 0 && (!places.complete || limit.time_is_up())) return;
     if (contacts.count > 0 && !is_local_minimum(mesh, places, i, same_place * capsule.radius)) continue;
+    // On an edge or at a corner several triangles are as near: none of them alone says on which side the axis is.
+    if (apart_from && mesh.closed && out.dot(outward_at(mesh, place.on_surface, place.triangle, place.on_axis)) < 0.0) {
+      continue;
+    }
     contacts.add({place.on_surface, out, capsule.radius - place.distance, place.triangle});
   }
 }

@@ -62,8 +62,7 @@ int oddsRegisterConvex(dGeomID convex, const dReal* points, unsigned point_count
       set_last_error(shape.error());
       return 0;
     }
-    auto partner = std::make_unique<Partner>();
-    partner->geom = convex;
+    auto partner = std::make_unique<Partner>(convex);
     partner->convex = std::move(shape).value();
     if (!is_unchanged(*partner)) renew_bounds(convex);  // else it may be called from a callback
     partner_table().put(std::move(partner));

@@ -39,21 +39,25 @@ class VerticesBelow {
   }
   [[nodiscard]] std::uint32_t farthest(const Vec3& from) const noexcept { return farthest_below(from, 0.0); }
   [[nodiscard]] std::uint32_t extreme(const Vec3& direction) const noexcept {
+    const Vec3 downwards = direction - deeper_at_one_place * direction.norm() * normal_;
     return search(
-        0.0, [&](const Vec3& x) { return direction.dot(x); },
-        [&](const Vec3& center, const Vec3& half) { return direction.dot(center) + direction.cwiseAbs().dot(half); });
+        0.0, [&](const Vec3& x) { return downwards.dot(x); },
+        [&](const Vec3& center, const Vec3& half) { return downwards.dot(center) + downwards.cwiseAbs().dot(half); });
   }
 
  private:
   [[nodiscard]] std::uint32_t farthest_below(const Vec3& from, double least_depth) const noexcept {
+    const double for_depth = deeper_at_one_place * mesh_.mesh().size();
     const auto square_across = [&](const Vec3& x) {
       const Vec3 d = x - from;
       return (d - d.dot(normal_) * normal_).squaredNorm();
     };
-    return search(least_depth, square_across, [&](const Vec3& center, const Vec3& half) {
-      const double reach = std::sqrt(square_across(center)) + half.norm();
-      return reach * reach;
-    });
+    return search(
+        least_depth, [&](const Vec3& x) { return square_across(x) - for_depth * normal_.dot(x - from); },
+        [&](const Vec3& center, const Vec3& half) {
+          const double reach = std::sqrt(square_across(center)) + half.norm();
+          return reach * reach + for_depth * (normal_.cwiseAbs().dot(half) - normal_.dot(center - from));
+        });
   }
   template <class Value, class Bound>
   [[nodiscard]] std::uint32_t search(double least_depth, const Value& value, const Bound& bound) const noexcept {

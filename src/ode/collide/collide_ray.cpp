@@ -77,6 +77,20 @@ double crossing(const Corners& triangle, const Ray& ray) noexcept {
   return std::clamp((wa * a.ahead + wb * b.ahead + wc * c.ahead) / sum, nearest, farthest);
 }
 
+// The same; one without an area, which has no normal, counts as a little farther: wherever rounding does not part the
+// neighbours whose gap it closes, one of them is met first.
+double distance_to(const Corners& triangle, const Ray& ray) noexcept {
+  const double distance = crossing(triangle, ray);
+  const bool no_area = distance > 0.0 && unit_normal(triangle) == Vec3::Zero();
+  return no_area ? distance * (1.0 + 0.1 * same_crossing) : distance;
+}
+
+// Out of the surface; against the ray where nobody knows.
+Vec3 outward(const Corners& triangle, const Ray& ray) noexcept {
+  const Vec3 normal = unit_normal(triangle);
+  return normal == Vec3::Zero() ? Vec3(-ray.direction) : normal;
+}
+
 // Where the ray enters a box, or -infinity if it misses it within (`after`, length].
 double entry_bound(const Vec3& center, const Vec3& half, const Ray& ray, double after) noexcept {
   double enter = 0.0;
@@ -127,16 +141,16 @@ int collide_ray(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int s
   while (!writer.full() && !cut_off) {
     const std::uint32_t triangle = mesh.triangle_tree.greatest(
         [&](std::uint32_t t) {
-          const double distance = crossing(mesh.corners(t), ray);
+          const double distance = distance_to(mesh.corners(t), ray);
           return distance >= 0.0 && distance > after && distance <= ray.length ? -distance : nothing;
         },
         [&](const Vec3& center, const Vec3& half) { return entry_bound(center, half, ray, after); }, limit.units);
     cut_off = limit.units == 0 || limit.time_is_up();
     if (triangle == no_item) break;
-    const double distance = crossing(mesh.corners(triangle), ray);
+    const double distance = distance_to(mesh.corners(triangle), ray);
     // ODE's rule for rays: the depth is the distance; the normal is the face's, out of the mesh for g1 = ray.
-    writer.add(*pose * (ray.origin + distance * ray.direction), -(pose->rotation * unit_normal(mesh.corners(triangle))),
-               distance, triangle, query::no_feature);
+    writer.add(*pose * (ray.origin + distance * ray.direction),
+               -(pose->rotation * outward(mesh.corners(triangle), ray)), distance, triangle, query::no_feature);
     after = distance * (1.0 + same_crossing) + 1e-300;
   }
   return limit.finish(!cut_off, writer.count());

@@ -32,8 +32,10 @@ struct Places {
 // The nearest point of every triangle that is no farther than the radius, nearest first.
 void find_places(const PreparedMesh& mesh, const Vec3& center, double radius, Limit& limit, Places& places) noexcept {
   std::array<std::uint32_t, most_near_triangles> near;
+  std::uint64_t visited = 0;
   const std::size_t count = query::triangles_in_box(*mesh.shape, center, Mat3::Identity(), Vec3::Constant(radius), near,
-                                                    limit.units, &places.complete);
+                                                    limit.units, &places.complete, &visited);
+  limit.spend(visited);
   for (std::size_t i = 0; i < count; ++i) {
     if (limit.time_is_up()) {
       places.complete = false;
@@ -99,6 +101,10 @@ int collide_sphere(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, in
       // Without depth nothing pushes, and every triangle that is touched is told, as by ODE.
       const bool only_touches = nearest->distance == radius;
       for (std::size_t i = 0; i < found.count && found.complete && !writer.full(); ++i) {
+        if (limit.time_is_up()) {  // each of many places is compared with all before it
+          complete = false;
+          break;
+        }
         const Place& place = found.all[i];
         const bool written = only_touches ? place.triangle == nearest->triangle
                                           : (place.point - nearest->point).norm() <= same_place * radius;

@@ -104,11 +104,12 @@ struct Points {
   [[nodiscard]] std::uint32_t farthest(const Vec3& from) const noexcept {
     return greatest([&](const Point& p) {
       const Vec3 d = p.position - from;
-      return (d - d.dot(normal) * normal).squaredNorm();
+      return (d - d.dot(normal) * normal).squaredNorm() + deeper_at_one_place * p.depth * p.depth;
     });
   }
   [[nodiscard]] std::uint32_t extreme(const Vec3& direction) const noexcept {
-    return greatest([&](const Point& p) { return direction.dot(p.position); });
+    const double for_depth = deeper_at_one_place * direction.norm();
+    return greatest([&](const Point& p) { return direction.dot(p.position) + for_depth * p.depth; });
   }
 };
 
@@ -133,17 +134,21 @@ void gather(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const Conv
     }
   };
   const Vec3& half = body.box_half_extents();
-  const std::size_t found = query::triangles_in_box(*mesh.shape, body_in_mesh * body.box_center(),
-                                                    body_in_mesh.rotation, half, near, limit.units, &pieces.complete);
+  std::uint64_t visited = 0;
+  const std::size_t found =
+      query::triangles_in_box(*mesh.shape, body_in_mesh * body.box_center(), body_in_mesh.rotation, half, near,
+                              limit.units, &pieces.complete, &visited);
+  limit.spend(visited);
   pieces.cut_off = !pieces.complete && found < near.size();
-  if (pieces.complete) return cut_all(found);
+  if (pieces.complete || limit.units == 0) return cut_all(found);  // or there is nothing left to look anew
   for (int octant = 0; octant < 8; ++octant) {
     const Vec3 center = body.box_center() +
                         0.5 * half.cwiseProduct(Vec3(octant & 1 ? 1 : -1, octant & 2 ? 1 : -1, octant & 4 ? 1 : -1));
     bool octant_complete = true;
     const std::size_t part =
         query::triangles_in_box(*mesh.shape, body_in_mesh * center, body_in_mesh.rotation, 0.5 * half,
-                                std::span(near).first(most_pieces / 8), limit.units, &octant_complete);
+                                std::span(near).first(most_pieces / 8), limit.units, &octant_complete, &visited);
+    limit.spend(visited);
     pieces.cut_off = pieces.cut_off || (!octant_complete && part < most_pieces / 8);
     cut_all(part);
   }
@@ -272,19 +277,50 @@ void write_manifolds(std::span<Patch> patches, const ConvexBody& body, const mat
   }
 }
 
+Vec3 middle_of(const Piece& piece) noexcept {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < piece.count; ++i) sum += piece.corners[i];
+  return sum / static_cast<double>(piece.count);
+}
+
+// Whether the middle of the leading piece of `a` is not in front of that of `b`.
+bool lies_behind(const Patch& a, const Patch& b, double tolerance) noexcept {
+  return !(b.pieces[0]->normal.dot(middle_of(*a.pieces[0]) - middle_of(*b.pieces[0])) > tolerance);
+}
+
 // Whether no patch's leading piece lies in front of another's: then they bound a convex corner or edge.
 bool are_convex(std::span<const Patch> patches, double tolerance) noexcept {
-  const auto middle = [](const Piece& piece) {
-    Vec3 sum = Vec3::Zero();
-    for (std::size_t i = 0; i < piece.count; ++i) sum += piece.corners[i];
-    return Vec3(sum / static_cast<double>(piece.count));
-  };
-  for (const Patch& a : patches) {
-    for (const Patch& b : patches) {
-      if (a.pieces[0]->normal.dot(middle(*b.pieces[0]) - middle(*a.pieces[0])) > tolerance) return false;
+  return std::all_of(patches.begin(), patches.end(), [&](const Patch& a) {
+    return std::all_of(patches.begin(), patches.end(), [&](const Patch& b) { return lies_behind(b, a, tolerance); });
+  });
+}
+
+// How a patch is left, far enough to leave another one, too.
+Exit common_exit(const Patch& patch, const Patch& other, const ConvexBody& body) noexcept {
+  Exit exit = patch.exit;
+  const double lowest = -body.reach(-exit.direction);
+  for (const Piece* piece : other.span()) {
+    for (std::size_t i = 0; i < piece->count; ++i) {
+      exit.depth = std::max(exit.depth, exit.direction.dot(piece->corners[i]) - lowest);
     }
   }
-  return true;
+  return exit;
+}
+
+// The sides of a plate that goes through the body face away from each other: it cannot leave both ways, and goes the
+// shorter. (The walls of a groove face each other, and both push.)
+void leave_plates_one_way(std::span<Patch> patches, const ConvexBody& body, double tolerance) noexcept {
+  for (std::size_t i = 1; i < patches.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      Patch& a = patches[i];
+      Patch& b = patches[k];
+      const bool opposed = a.exit.direction.dot(b.exit.direction) < -same_patch;
+      if (!opposed || !lies_behind(a, b, tolerance) || !lies_behind(b, a, tolerance)) continue;
+      const Exit by_a = common_exit(a, b, body);
+      const Exit by_b = common_exit(b, a, body);
+      a.exit = b.exit = by_a.depth < by_b.depth ? by_a : by_b;
+    }
+  }
 }
 
 // The exits of all patches: one and the same if the body lies on a convex edge or corner, or if a common way is no
@@ -299,9 +335,9 @@ void find_exits(std::span<Patch> patches, const Pieces& pieces, const ConvexBody
   std::array<const Piece*, most_pieces> everything;
   for (std::size_t i = 0; i < pieces.count; ++i) everything[i] = &pieces.all[i];
   const Exit common = shortest_exit({everything.data(), pieces.count}, body, limit);
-  const bool is_common =
-      common.depth <= longest * (1.0 + 1e-6) || are_convex(patches, same_place * body.box_half_extents().norm());
-  if (!is_common || !(common.depth < dInfinity)) return;
+  const double tolerance = same_place * body.box_half_extents().norm();
+  const bool is_common = common.depth <= longest * (1.0 + 1e-6) || are_convex(patches, tolerance);
+  if (!is_common || !(common.depth < dInfinity)) return leave_plates_one_way(patches, body, tolerance);
   for (Patch& patch : patches) patch.exit = common;
 }
 
@@ -329,6 +365,29 @@ void leave_sideways(const PreparedMesh& mesh, const math::Pose& body_in_mesh, co
   const double depth = out.dot(body_in_mesh.inverse() * nearest->point) + body.reach(-out);
   for (Patch& patch : patches) {
     if (depth > 0.0 && depth < patch.exit.depth) patch.exit = {out, depth};
+  }
+}
+
+// There was no room for all of the surface, and so perhaps for one side only of a plate that goes through the body: of
+// two opposite ways the shorter at the surface nearest to its centre.
+void leave_by_the_near_side(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const ConvexBody& body,
+                            Limit& limit, std::span<Patch> patches) noexcept {
+  constexpr std::uint64_t most_units = 96;  // some ten microseconds: the search does not look at the clock
+  const auto is_long = [&](const Patch& p) { return p.exit.depth > body.box_half_extents().minCoeff(); };
+  if (!mesh.closed || std::none_of(patches.begin(), patches.end(), is_long) || limit.time_is_up()) return;
+  const double size = body.box_half_extents().norm();
+  const std::uint64_t given = std::min(limit.units, most_units);
+  std::uint64_t left = given;
+  const auto nearest = nearest_surface(mesh, body_in_mesh * body.center(), size, left);
+  limit.units -= given - left;
+  if (!nearest || left == 0 || nearest->outward == Vec3::Zero()) return;
+  const Vec3 out = body_in_mesh.rotation.transpose() * nearest->outward;
+  const Vec3 place = body_in_mesh.inverse() * nearest->point;
+  const double depth = out.dot(place) + body.reach(-out);
+  for (Patch& patch : patches) {
+    const bool opposed = out.dot(patch.exit.direction) < -same_patch;
+    const bool lies_behind = out.dot(middle_of(*patch.pieces[0]) - place) <= same_place * size;
+    if (opposed && lies_behind && depth > 0.0 && depth < patch.exit.depth) patch.exit = {out, depth};
   }
 }
 
@@ -400,6 +459,7 @@ Seen write_convex_contacts(const PreparedMesh& mesh, const math::Pose& mesh_in_w
     const std::size_t count = group(pieces, patches);
     find_exits(std::span(patches).first(count), pieces, body, limit);
     leave_sideways(mesh, body_in_mesh, pieces, body, limit, std::span(patches).first(count));
+    if (!pieces.complete) leave_by_the_near_side(mesh, body_in_mesh, body, limit, std::span(patches).first(count));
     write_manifolds(std::span(patches).first(count), body, body_in_world, limit, writer, room);
   }
   if (pieces.cut_off || limit.units == 0) return Seen::cut_off;

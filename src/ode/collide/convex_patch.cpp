@@ -73,11 +73,18 @@ double depth_along(const Vec3& direction, std::span<const Piece* const> patch, c
   return depth;
 }
 
+// Zero where they nearly cancel each other, as those of a mesh wholly within the body do, or of a plate that goes
+// through it: what is left of them is rounding, or one side's being a little larger.
 Vec3 mean_normal(std::span<const Piece* const> patch) noexcept {
+  constexpr double cancelled = 0.2;  // of the area
   Vec3 sum = Vec3::Zero();
-  for (const Piece* piece : patch) sum += piece->area * piece->normal;
+  double area = 0.0;
+  for (const Piece* piece : patch) {
+    sum += piece->area * piece->normal;
+    area += piece->area;
+  }
   const double length = sum.norm();
-  return length > 0.0 ? Vec3(sum / length) : patch.front()->normal;
+  return length > cancelled * area ? Vec3(sum / length) : Vec3(Vec3::Zero());
 }
 
 }  // namespace
@@ -104,9 +111,10 @@ bool cut_by_sides(const std::array<Vec3, 3>& triangle, const ConvexBody& body, P
 
 Exit shortest_exit(std::span<const Piece* const> patch, const ConvexBody& body, const Limit& limit) noexcept {
   const Vec3 mean = mean_normal(patch);
-  Exit best = {mean, std::numeric_limits<double>::infinity()};
+  const bool faces_all_ways = mean.isZero(0.0);
+  Exit best = {faces_all_ways ? patch.front()->normal : mean, std::numeric_limits<double>::infinity()};
   const auto consider = [&](const Vec3& direction) {
-    if (direction.dot(mean) < least_facing) return;
+    if (!faces_all_ways && direction.dot(mean) < least_facing) return;
     const double depth = depth_along(direction, patch, body, best.depth * clearly_shorter);
     if (depth < best.depth * clearly_shorter) best = {direction, depth};
   };

@@ -19,7 +19,8 @@ class Limit {
     const Settings settings = within_share(own);
     shared_time_ = settings.budget_us < own.budget_us;
     shared_units_ = settings.work_units != own.work_units;
-    if (settings.work_units > 0) units = settings.work_units;
+    in_units_ = settings.work_units > 0;
+    if (in_units_) units = settings.work_units;
     begun_with_ = units;
     const double ns = settings.budget_us * 1e3;
     timed_ = ns < 9e18;
@@ -39,25 +40,39 @@ class Limit {
     if (current_share != nullptr) {
       const bool more_would_help = !complete && (units == 0 ? shared_units_ : shared_time_);
       const Outcome cut_short = contacts > 0 ? Outcome::enough : Outcome::starved;
-      current_share->report(begun_with_ - units, contacts, more_would_help ? cut_short : Outcome::finished);
+      current_share->report(spent(), contacts, more_would_help ? cut_short : Outcome::finished);
     }
     return contacts;
   }
   /// The end of one that gave contacts of an earlier one.
   [[nodiscard]] int finish_carried(int contacts) const noexcept {
-    if (current_share != nullptr) current_share->report(begun_with_ - units, contacts, Outcome::carried);
+    if (current_share != nullptr) current_share->report(spent(), contacts, Outcome::carried);
     return contacts;
+  }
+
+  /// Nodes that a search has visited which does not take them from `units` itself. Where time is the limit, each search
+  /// may visit as many as that allows.
+  void spend(std::uint64_t nodes) noexcept {
+    if (in_units_) {
+      units -= std::min(units, nodes);
+    } else {
+      beside_ += nodes;
+    }
   }
 
  private:
   // Searches in a tree do not read the clock at each node; a node takes 10 to 50 ns where the cache holds it.
   static constexpr double nodes_per_us = 30.0;
   static constexpr std::uint64_t most_units = std::uint64_t{1} << 40;
+  [[nodiscard]] std::uint64_t spent() const noexcept { return begun_with_ - units + beside_; }
+
   realtime::Clock clock_;
   std::int64_t end_ns_ = 0;
   bool timed_ = false;
   bool shared_time_ = false;  // the frame's, not the geoms' own
   bool shared_units_ = false;
+  bool in_units_ = false;  // work is limited, not only time
+  std::uint64_t beside_ = 0;
   std::uint64_t begun_with_ = most_units;
 
  public:

@@ -11,11 +11,14 @@
 namespace odds::ode {
 
 constexpr std::size_t most_contacts = 8;
+/// So much, per metre of depth, a Source counts a deeper item for as if it were farther away: of two above each other
+/// the deeper is taken, and not whichever the last bit prefers.
+constexpr double deeper_at_one_place = 1e-9;
 
-/// Writes at most `chosen.size()` (and most_contacts) items, so that every prefix is a good set: the first, the
-/// farthest from it, then always the point that adds the largest triangle to the polygon so far. Points closer to the
-/// polygon than `separation` (metres, in the plane across `normal`, a unit vector) add nothing and end the choice.
-/// Returns how many were written. A Source has, of its items: `first()`, `farthest(point)` (in that plane),
+/// Writes at most `chosen.size()` (and most_contacts) items, no place twice, so that every prefix is a good set: the
+/// first, the farthest from it, then always the point that adds the largest triangle to the polygon so far. Points
+/// closer to the polygon than `separation` (metres, in the plane across `normal`, a unit vector) add nothing and end
+/// the choice. Returns how many were written. A Source has, of its items: `first()`, `farthest(point)` (in that plane),
 /// `extreme(direction)`, each an item or no_item, and `position(item)`.
 template <class Source>
 std::size_t select_manifold(const Source& source, const Vec3& normal, double separation,
@@ -47,20 +50,32 @@ std::size_t select_manifold(const Source& source, const Vec3& normal, double sep
     return {from, outermost, area > separation * edge.norm() ? area : 0.0};
   };
   std::array<Side, most_contacts> polygon;
+  std::size_t corners = 2;
   polygon[0] = side(first, second);
   polygon[1] = side(second, first);
   while (count < limit) {
     std::size_t best = 0;
-    for (std::size_t i = 1; i < count; ++i) {
+    for (std::size_t i = 1; i < corners; ++i) {
       if (polygon[i].area > polygon[best].area) best = i;
     }
     if (!(polygon[best].area > 0.0)) return count;
     const std::uint32_t added = polygon[best].outermost;
-    const std::uint32_t to = polygon[(best + 1) % count].from;
-    for (std::size_t i = count; i > best + 1; --i) polygon[i] = polygon[i - 1];
+    const std::uint32_t to = polygon[(best + 1) % corners].from;
+    for (std::size_t i = corners; i > best + 1; --i) polygon[i] = polygon[i - 1];
     polygon[best] = side(polygon[best].from, added);
     polygon[best + 1] = side(added, to);
+    ++corners;
     take(added);
+    // The deepest may lie within what the others span. As a corner that points inwards it would have sides beyond which
+    // other corners lie, which would be taken again.
+    if (polygon[0].from != first || corners < 4) continue;
+    const std::uint32_t last = polygon[corners - 1].from;
+    const Vec3 before = source.position(first) - source.position(last);
+    const Vec3 after = source.position(polygon[1].from) - source.position(first);
+    if (before.cross(after).dot(normal) >= 0.0) continue;
+    polygon[corners - 1] = side(last, polygon[1].from);
+    --corners;
+    for (std::size_t i = 0; i < corners; ++i) polygon[i] = polygon[i + 1];
   }
   return count;
 }

@@ -124,8 +124,7 @@ std::shared_ptr<const PreparedMesh> prepare(dGeomID trimesh, const oddsBuildPara
 
 // So that not every collision tries to read it again.
 void note_unreadable(dGeomID trimesh) {
-  auto partner = std::make_unique<Partner>();
-  partner->geom = trimesh;
+  auto partner = std::make_unique<Partner>(trimesh);
   partner->trimesh_data = dGeomTriMeshGetData(trimesh);
   partner_table().put_new(std::move(partner));
 }

@@ -34,14 +34,18 @@ class ExitList {
  public:
   static constexpr std::size_t most = 64;
 
+  /// `facing`: where the surface faces; zero: all ways.
   explicit ExitList(const Vec3& facing) noexcept : facing_(facing) {}
   /// As it is; not of unit length, zero: left out.
   void add(const Vec3& direction) noexcept {
     const double length = direction.norm();
     if (count_ < most && length > 1e-300) all_[count_++] = direction / length;
   }
-  /// With the sign that leads out of the surface.
-  void add_facing(const Vec3& direction) noexcept { add(direction.dot(facing_) < 0.0 ? Vec3(-direction) : direction); }
+  /// With the sign that leads out of the surface; with both if it faces all ways.
+  void add_facing(const Vec3& direction) noexcept {
+    add(direction.dot(facing_) < 0.0 ? Vec3(-direction) : direction);
+    if (facing_.isZero(0.0)) add(-direction);
+  }
   [[nodiscard]] std::span<const Vec3> all() const noexcept { return {all_.data(), count_}; }
 
  private:

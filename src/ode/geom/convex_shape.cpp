@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstdint>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -113,7 +115,8 @@ Vec3 ConvexShape::farthest(const Vec3& direction) const noexcept {
   return *best;
 }
 
-// Through the faces that the surface enters by, and the way that the refinement finds.
+// Through the faces that the surface enters by, and the way that the refinement finds. One that lies wholly within has
+// entered by none: the nearest ones are tried.
 void ConvexShape::add_exits(std::span<const Piece* const> patch, ExitList& exits) const noexcept {
   add_refined_exit(*this, patch, exits);
   std::array<std::int16_t, most_face_exits> used;
@@ -128,6 +131,16 @@ void ConvexShape::add_exits(std::span<const Piece* const> patch, ExitList& exits
       exits.add(-faces_[static_cast<std::size_t>(side)].normal);
     }
   }
+  if (count > 0 || patch.empty()) return;
+  const Vec3& within = patch.front()->corners[0];
+  const auto way = [&](std::uint16_t face) { return faces_[face].offset - faces_[face].normal.dot(within); };
+  std::array<std::uint16_t, most_faces> nearest;
+  const auto end = nearest.begin() + static_cast<std::ptrdiff_t>(faces_.size());
+  std::iota(nearest.begin(), end, std::uint16_t{0});
+  const auto last = nearest.begin() + static_cast<std::ptrdiff_t>(std::min(most_face_exits, faces_.size()));
+  std::partial_sort(nearest.begin(), last, end,
+                    [&](std::uint16_t a, std::uint16_t b) { return way(a) != way(b) ? way(a) < way(b) : a < b; });
+  std::for_each(nearest.begin(), last, [&](std::uint16_t face) { exits.add(-faces_[face].normal); });
 }
 
 // Of too many corners the lowest are kept.

@@ -40,7 +40,15 @@ std::uint64_t PartnerTable::key_of(dGeomID geom) noexcept {
   return mixed(static_cast<std::uint64_t>(reinterpret_cast<std::uintptr_t>(geom)));
 }
 
-Partner* PartnerTable::find(dGeomID geom) const noexcept { return partners_.find(key_of(geom)); }
+Partner* PartnerTable::find(dGeomID geom) const noexcept {
+  Partner* const known = partners_.find(key_of(geom));
+  return known != nullptr && known->geom_class == dGeomGetClass(geom) ? known : nullptr;
+}
+
+bool PartnerTable::knows_another(dGeomID geom) const noexcept {
+  const Partner* const known = partners_.find(key_of(geom));
+  return known != nullptr && known->geom_class != dGeomGetClass(geom);
+}
 
 void PartnerTable::free(Partner* partner) noexcept {
   if (partner == nullptr) return;
@@ -72,6 +80,7 @@ Partner* PartnerTable::put(std::unique_ptr<Partner> partner) {
 
 Partner* PartnerTable::put_new(std::unique_ptr<Partner> partner) {
   const std::lock_guard lock(writers_);
+  if (knows_another(partner->geom)) return nullptr;  // another thread may look at it now
   Partner* known = find(partner->geom);
   return known != nullptr ? known : insert(std::move(partner));
 }
@@ -134,8 +143,7 @@ void note_changed(dTriMeshDataID data) noexcept {
 }
 
 std::unique_ptr<Partner> make_partner(dGeomID geom, std::shared_ptr<const PreparedMesh> mesh) {
-  auto partner = std::make_unique<Partner>();
-  partner->geom = geom;
+  auto partner = std::make_unique<Partner>(geom);
   partner->mesh = std::make_unique<GeomData>();
   partner->mesh->mesh = std::move(mesh);
   partner->mesh->settings = partner_settings();
@@ -170,9 +178,10 @@ bool has_bounds_of(const ConvexShape& shape, dGeomID geom) noexcept {
 bool is_unchanged(Partner& partner) noexcept {
   if (partner.convex != nullptr) return has_bounds_of(*partner.convex, partner.geom);
   if (partner.trimesh_data == nullptr) return true;
+  if (dGeomTriMeshGetData(partner.geom) != partner.trimesh_data) return false;
+  if (partner.changes == nullptr) return true;  // what stands in need not be like it
   const mesh::TriangleMesh& mesh = partner.mesh->mesh->mesh();
   const std::size_t triangles = mesh.triangles().size();
-  if (dGeomTriMeshGetData(partner.geom) != partner.trimesh_data) return false;
   if (dGeomTriMeshGetTriangleCount(partner.geom) != static_cast<int>(triangles)) return false;
   // A mesh with one moved corner must not answer from what it was wherever the compared triangle is another's.
   if (partner.deformed.load(std::memory_order_relaxed)) return false;
@@ -200,6 +209,10 @@ bool is_unchanged(Partner& partner) noexcept {
 
 GeomData* mesh_of_partner(dGeomID geom, volume::Kind volume) noexcept {
   Partner* partner = partner_table().find(geom);
+  if (partner == nullptr && partner_table().knows_another(geom)) {
+    count(statistics().changed_partners);
+    return nullptr;
+  }
   if (partner == nullptr && dGeomGetClass(geom) == dTriMeshClass) {
     oddsBuildParams params;
     oddsBuildParamsInit(&params);
@@ -233,6 +246,7 @@ int oddsSetStandIn(dGeomID geom, oddsMeshDataID data, int placeable) noexcept {
   try {
     std::unique_ptr<Partner> partner = make_partner(geom, data->prepared);
     partner->placeable = number == dTriMeshClass || placeable != 0;
+    if (number == dTriMeshClass) partner->trimesh_data = dGeomTriMeshGetData(geom);
     partner_table().put(std::move(partner));
     return 1;
   } catch (...) {

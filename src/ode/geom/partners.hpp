@@ -13,26 +13,31 @@
 namespace odds::ode {
 
 struct Partner {
-  dGeomID geom = nullptr;
+  explicit Partner(dGeomID known) noexcept : geom(known), geom_class(dGeomGetClass(known)) {}
+
+  dGeomID geom;
   std::unique_ptr<GeomData> mesh;             ///< stands in for the geom
   std::shared_ptr<const ConvexShape> convex;  ///< null for a mesh; of a dTriMesh that cannot be read both are
-  dTriMeshDataID trimesh_data = nullptr;      ///< what `mesh` was read from, if it was read from the geom
+  dTriMeshDataID trimesh_data = nullptr;      ///< of a dTriMesh, when `mesh` was read from it or set to stand in for it
   /// How often the client has said that it changed that data, and how often it had when it was read; null: not read.
   const std::atomic<std::uint64_t>* changes = nullptr;
   std::uint64_t changes_seen = 0;
   bool placeable = true;                     ///< false: a geom without a pose (only heightfields can be)
   std::atomic<std::uint32_t> next_check{0};  ///< triangle to compare with ODE's at the next collision
   std::atomic<bool> deformed{false};         ///< one was found elsewhere
+  int geom_class;                            ///< of another, something else is at the geom's address by now
 };
 
-/// `find` runs in the loop, without a lock, also while another thread puts or forgets other geoms. `put` of a known geom,
-/// `forget` and `clear` must not run while another thread collides that geom.
+/// `find` runs in the loop, without a lock, also while another thread puts or forgets other geoms. `put` of a known
+/// geom, `forget` and `clear` must not run while another thread collides that geom.
 class PartnerTable {
  public:
   [[nodiscard]] Partner* find(dGeomID geom) const noexcept;
+  /// Whether something is known about a geom of another class that was at the address of this one, and not forgotten.
+  [[nodiscard]] bool knows_another(dGeomID geom) const noexcept;
   /// Takes the place of what is known about that geom, whose pair workspaces are freed. May throw.
   Partner* put(std::unique_ptr<Partner> partner);
-  /// As put, but leaves what is known about that geom and returns it. May throw.
+  /// As put, but leaves what is known about that geom and returns it; null if it is another's. May throw.
   Partner* put_new(std::unique_ptr<Partner> partner);
   /// False if nothing is known about the geom.
   bool forget(dGeomID geom) noexcept;

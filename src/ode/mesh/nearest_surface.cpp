@@ -11,20 +11,26 @@
 namespace odds::ode {
 namespace {
 
-// Relative to the mesh's size: what counts as on an edge or at a corner. Rounding of a closest point is some 1e-16 of
-// it.
+// Relative to the mesh's size: what counts as on an edge or at a corner.
 constexpr double on_feature = 1e-12;
+// Relative to how far from the origin of the mesh's frame mesh and point are: by so much rounding moves a closest
+// point.
+constexpr double rounding = 4e-15;
 
 // The angle-weighted mean of the normals of all triangles that meet at `point`, which lies on triangle `at`.
-Vec3 pseudo_normal(const PreparedMesh& mesh, const Vec3& point, std::uint32_t at) noexcept {
-  const double tolerance = on_feature * mesh.mesh().size();
+Vec3 pseudo_normal(const PreparedMesh& mesh, const Vec3& point, std::uint32_t at, double tolerance) noexcept {
   const Corners own = mesh.corners(at);
   const Vec3 own_normal = unit_normal(own);
   if (angle_at(own, point, tolerance) > 1.5 * std::numbers::pi && own_normal != Vec3::Zero()) return own_normal;
-  std::array<std::uint32_t, 64> touching;
+  std::array<std::uint32_t, PreparedMesh::most_touching> touching;
   constexpr std::uint64_t most_nodes = 4096;
   const std::size_t count = query::triangles_in_box(*mesh.shape, point, Mat3::Identity(), Vec3::Constant(tolerance),
                                                     touching, most_nodes, nullptr);
+  if (count == touching.size()) {
+    for (const PreparedMesh::Fan& fan : mesh.fans) {
+      if ((fan.tip - point).norm() <= tolerance) return fan.normal;
+    }
+  }
   Vec3 sum = Vec3::Zero();
   for (std::size_t i = 0; i < count; ++i) {
     const Corners corners = mesh.corners(touching[i]);
@@ -36,6 +42,12 @@ Vec3 pseudo_normal(const PreparedMesh& mesh, const Vec3& point, std::uint32_t at
 }
 
 }  // namespace
+
+Vec3 outward_at(const PreparedMesh& mesh, const Vec3& point, std::uint32_t triangle, const Vec3& seen_from) noexcept {
+  const double far = std::max(mesh.mesh().lower().cwiseAbs().maxCoeff(), mesh.mesh().upper().cwiseAbs().maxCoeff());
+  const double tolerance = on_feature * mesh.mesh().size() + rounding * (far + seen_from.cwiseAbs().maxCoeff());
+  return pseudo_normal(mesh, point, triangle, tolerance);
+}
 
 std::optional<NearestSurface> nearest_surface(const PreparedMesh& mesh, const Vec3& point, double reach,
                                               std::uint64_t& units) noexcept {
@@ -56,7 +68,7 @@ std::optional<NearestSurface> nearest_surface(const PreparedMesh& mesh, const Ve
   nearest.triangle = triangle;
   nearest.point = closest_point(mesh.corners(triangle), point);
   nearest.distance = (nearest.point - point).norm();
-  nearest.outward = pseudo_normal(mesh, nearest.point, triangle);
+  nearest.outward = outward_at(mesh, nearest.point, triangle, point);
   nearest.inside = mesh.closed && nearest.outward.dot(point - nearest.point) < 0.0;
   // Where the search was cut short there may be nearer triangles, and of one that is not the nearest the side tells
   // nothing: a ball in a cavity would be pushed out through its walls.

@@ -22,6 +22,10 @@ struct NearestSurface {
 [[nodiscard]] std::optional<NearestSurface> nearest_surface(const PreparedMesh& mesh, const Vec3& point, double reach,
                                                             std::uint64_t& units) noexcept;
 
+/// The pseudo-normal, as in NearestSurface, at a point of `triangle` that is nearest to `seen_from`.
+[[nodiscard]] Vec3 outward_at(const PreparedMesh& mesh, const Vec3& point, std::uint32_t triangle,
+                              const Vec3& seen_from) noexcept;
+
 /// Whether `point` is in the mesh's bounding box: a cheap necessary condition for being inside a closed mesh.
 [[nodiscard]] bool in_bounds(const PreparedMesh& mesh, const Vec3& point) noexcept;
 

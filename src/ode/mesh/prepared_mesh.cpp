@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
+#include <span>
 #include <utility>
 #include <vector>
+
+#include "ode/mesh/triangle_corners.hpp"
 
 namespace odds::ode {
 namespace {
@@ -30,8 +33,7 @@ std::vector<std::uint32_t> weld_equal_positions(const mesh::TriangleMesh& mesh) 
 }
 
 // Closed: as many edges u->v as v->u, for every u, v. Degenerate triangles have no area and do not count.
-bool closes(const mesh::TriangleMesh& mesh) {
-  const std::vector<std::uint32_t> representative = weld_equal_positions(mesh);
+bool closes(const mesh::TriangleMesh& mesh, std::span<const std::uint32_t> representative) {
   std::vector<std::pair<std::array<std::uint32_t, 2>, int>> edges;
   edges.reserve(3 * mesh.triangles().size());
   for (const mesh::Triangle& triangle : mesh.triangles()) {
@@ -52,6 +54,33 @@ bool closes(const mesh::TriangleMesh& mesh) {
     if (balance != 0) return false;
   }
   return !edges.empty();
+}
+
+std::vector<PreparedMesh::Fan> find_fans(const PreparedMesh& prepared, std::span<const std::uint32_t> representative) {
+  const mesh::TriangleMesh& mesh = prepared.mesh();
+  std::vector<std::uint32_t> users(mesh.vertices().size(), 0);
+  for (const mesh::Triangle& triangle : mesh.triangles()) {
+    for (const std::uint32_t v : triangle) ++users[representative[v]];
+  }
+  std::vector<PreparedMesh::Fan> fans;
+  std::vector<std::uint32_t> fan_of(users.size(), no_item);
+  for (std::size_t v = 0; v < users.size(); ++v) {
+    if (users[v] <= PreparedMesh::most_touching) continue;
+    fan_of[v] = static_cast<std::uint32_t>(fans.size());
+    fans.push_back({mesh.vertices()[v], Vec3::Zero()});
+  }
+  if (fans.empty()) return fans;
+  for (std::uint32_t t = 0; t < mesh.triangles().size(); ++t) {
+    for (const std::uint32_t v : mesh.triangles()[t]) {
+      const std::uint32_t number = fan_of[representative[v]];
+      if (number == no_item) continue;
+      const Corners corners = prepared.corners(t);
+      fans[number].normal += angle_at(corners, fans[number].tip, 0.0) * unit_normal(corners);
+    }
+  }
+  std::erase_if(fans, [](const PreparedMesh::Fan& fan) { return !(fan.normal.norm() > 0.0); });
+  for (PreparedMesh::Fan& fan : fans) fan.normal.normalize();
+  return fans;
 }
 
 std::vector<PreparedMesh::Vertex> used_vertices(const mesh::TriangleMesh& mesh) {
@@ -86,7 +115,9 @@ std::shared_ptr<const PreparedMesh> PreparedMesh::make(std::shared_ptr<const que
     boxes.push_back({c[0].cwiseMin(c[1]).cwiseMin(c[2]), c[0].cwiseMax(c[1]).cwiseMax(c[2])});
   }
   prepared->triangle_tree = BoxTree(boxes);
-  prepared->closed = closes(mesh);
+  const std::vector<std::uint32_t> representative = weld_equal_positions(mesh);
+  prepared->closed = closes(mesh, representative);
+  prepared->fans = find_fans(*prepared, representative);
   return prepared;
 }
 

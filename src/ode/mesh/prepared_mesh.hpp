@@ -17,12 +17,20 @@ struct PreparedMesh {
     Vec3 position;           ///< mesh frame, metres
     std::uint32_t triangle;  ///< one triangle that uses it
   };
+  /// So many triangles that meet at a point are looked at in a collision.
+  static constexpr std::size_t most_touching = 64;
+  /// A corner at which more meet, as at the tip of a cone.
+  struct Fan {
+    Vec3 tip;
+    Vec3 normal;  ///< unit: the mean of theirs, weighted by their angles there
+  };
 
   std::shared_ptr<const query::Shape> shape;  ///< never null
   std::vector<Vertex> vertices;               ///< those that triangles use
   BoxTree vertex_tree;                        ///< over `vertices`
   BoxTree triangle_tree;                      ///< over the mesh's triangles
   bool closed = false;                        ///< every edge has its opposite: inside and outside are defined
+  std::vector<Fan> fans;
 
   /// Precondition: `shape` is not null. May throw std::bad_alloc.
   static std::shared_ptr<const PreparedMesh> make(std::shared_ptr<const query::Shape> shape);

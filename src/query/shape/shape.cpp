@@ -120,7 +120,8 @@ struct Box {
 
 template <volume::BoundingVolume V>
 std::size_t collect(const mesh::TriangleMesh&, const tree::Hierarchy<V>& hierarchy, const Box& box,
-                    std::span<std::uint32_t> found, std::uint64_t budget_nodes, bool& complete) noexcept {
+                    std::span<std::uint32_t> found, std::uint64_t budget_nodes, bool& complete,
+                    std::uint64_t& visited) noexcept {
   const std::array<Vec3, 8> corners = box.corners();
   const V enclosing = V::fit(corners, box.axes);
   const double reach = hierarchy.reach() + box.center.norm() + box.half_extents.norm();
@@ -129,10 +130,10 @@ std::size_t collect(const mesh::TriangleMesh&, const tree::Hierarchy<V>& hierarc
   std::size_t size = 0;
   stack[size++] = 0;
   std::size_t count = 0;
-  std::uint64_t visited = 0;
   complete = false;
   while (size != 0) {
-    if (visited++ >= budget_nodes) return count;
+    if (visited >= budget_nodes) return count;
+    ++visited;
     const auto& node = hierarchy.nodes()[stack[--size]];
     if (!overlap(node.volume, enclosing, same_frame)) continue;
     if (!node.is_leaf()) {
@@ -151,7 +152,8 @@ std::size_t collect(const mesh::TriangleMesh&, const tree::Hierarchy<V>& hierarc
 }
 
 std::size_t collect(const mesh::TriangleMesh& mesh, const tree::WideTree& tree, const Box& box,
-                    std::span<std::uint32_t> found, std::uint64_t budget_nodes, bool& complete) noexcept {
+                    std::span<std::uint32_t> found, std::uint64_t budget_nodes, bool& complete,
+                    std::uint64_t& visited) noexcept {
   const Vec3f center = box.center.cast<float>();
   const Mat3f axes = box.axes.cast<float>();
   const double largest = box.half_extents.maxCoeff();
@@ -161,10 +163,10 @@ std::size_t collect(const mesh::TriangleMesh& mesh, const tree::WideTree& tree, 
   std::size_t size = 0;
   stack[size++] = tree.nodes()[0].child[0];
   std::size_t count = 0;
-  std::uint64_t visited = 0;
   complete = false;
   while (size != 0) {
-    if (visited++ >= budget_nodes) return count;
+    if (visited >= budget_nodes) return count;
+    ++visited;
     const tree::ChildRef child = stack[--size];
     if (!child.is_leaf()) {
       const tree::WideNode& node = tree.nodes()[child.index()];
@@ -254,19 +256,22 @@ bool Shape::is_solid() const noexcept { return data_->solid; }
 void Shape::find_flat_faces() const { static_cast<void>(data_->flat_faces()); }
 
 std::size_t triangles_in_box(const Shape& shape, const Vec3& center, const Mat3& axes, const Vec3& half_extents,
-                             std::span<std::uint32_t> found, std::uint64_t budget_nodes, bool* complete) noexcept {
+                             std::span<std::uint32_t> found, std::uint64_t budget_nodes, bool* complete,
+                             std::uint64_t* visited) noexcept {
   bool all = false;
+  std::uint64_t nodes = 0;
   std::size_t count = 0;
   const bool usable = center.allFinite() && axes.allFinite() && half_extents.allFinite() && !found.empty();
   if (usable && shape.has_polygons()) {
     count = std::visit(
         [&](const auto& tree) {
           return collect(shape.mesh(), tree, Box{center - tree.origin(), axes, half_extents.cwiseMax(0.0)}, found,
-                         budget_nodes, all);
+                         budget_nodes, all, nodes);
         },
         shape.data().tree);
   }
   if (complete != nullptr) *complete = all;
+  if (visited != nullptr) *visited = nodes;
   return count;
 }
 
