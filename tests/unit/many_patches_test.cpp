@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -76,6 +77,38 @@ TEST_P(BedOnManyFeet, IsHeldByThoseAllAround) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Feet, BedOnManyFeet, ::testing::Values(4, 6, 8));
+
+TEST(TwoFeet, EachKeepsItsOwnDepthFromRunToRun) {
+  // One is longer; its deepest corner is as near to the other as that one is wide.
+  constexpr double apart = 0.12;
+  constexpr double longer = 2e-3;
+  Soup body = made("box:x=0.3,y=0.1,z=0.1");
+  const Soup foot = made("box:x=0.1,y=0.1,z=0.2");
+  add(body, foot, {-0.5 * apart, 0.0, -0.1});
+  add(body, foot, {0.5 * apart, 0.0, -0.1 - longer});
+  const auto floor = shape_of(made("box:x=2,y=2,z=0.4,cells=8"));
+  const auto table = shape_of(body);
+  for (const double tilt : {0.002, 0.005, 0.01}) {
+    math::Pose pose;
+    pose.rotation = (Eigen::AngleAxisd(0.02, Vec3::UnitZ()) * Eigen::AngleAxisd(-tilt, Vec3::UnitY())).matrix();
+    pose.translation = Vec3(0.013, 0.021, 0.2 + 0.2 - 0.004);
+    Pair pair = Pair::make(floor, table).value();
+    Request request;
+    request.max_contacts = 8;
+    for (int run = 0; run < 3; ++run) {
+      std::array<double, 2> depth{};
+      std::array<int, 2> under{};
+      for (const Contact& contact : pair.run(pose, request).contacts) {
+        const std::size_t of = (pose.inverse() * contact.position).x() > 0.0 ? 1 : 0;
+        depth[of] = std::max(depth[of], contact.depth);
+        ++under[of];
+      }
+      EXPECT_NEAR(depth[1] - depth[0], longer - apart * tilt, 1e-4) << tilt << ", " << run;
+      EXPECT_EQ(under[0], 4) << tilt << ", " << run;
+      EXPECT_EQ(under[1], 4) << tilt << ", " << run;
+    }
+  }
+}
 
 class ThroughAPlate : public ::testing::TestWithParam<const char*> {};
 

@@ -177,9 +177,9 @@ void PatchBuilder::Scratch::find_witnesses(Indices indices, const patch::Frame& 
 /// Measures the overlap inside the rim: at the centre and a little inside of the points that span the patch. A deep
 /// overlap's rim triangles reach only as far as they are large. Where the overlap is round (a ball), leaves out all but
 /// its depth: what lies at its rim bears nothing.
-std::size_t PatchBuilder::Scratch::probe(const PatchInput& input, const Vec3& centre, double reach,
-                                         const patch::Frame& frame, const patch::Chosen& spread, Measured& measured,
-                                         Watch& watch) noexcept {
+std::size_t PatchBuilder::Scratch::probe(const PatchInput& input, const patch::RimSums& sums, const Vec3& centre,
+                                         double reach, const patch::Frame& frame, const patch::Chosen& spread,
+                                         Measured& measured, Watch& watch) noexcept {
   const auto measure = [&](const Vec3& place, Witness& found) noexcept {
     return !watch.late() && patch::probe_overlap(input, place, frame.normal, reach, watch, found);
   };
@@ -198,10 +198,15 @@ std::size_t PatchBuilder::Scratch::probe(const PatchInput& input, const Vec3& ce
   }
   Witness deepest = patch::deepest_of({measured.data(), count}, frame, centre, 0.25 * reach);
   // The last run's summit is near this one's; starting from it, the climb follows one summit and does not flicker. That
-  // of another side is not in this overlap.
-  if (input.previous_position != nullptr && (*input.previous_position - centre).norm() < 0.5 * reach &&
-      input.previous_normal != nullptr && input.previous_normal->dot(frame.normal) > tolerances::same_as_before &&
-      measure(*input.previous_position, inside) && inside.depth > deepest.depth) {
+  // of another patch, of another side or beside this one, is not in this overlap, which lies within its rim but for its
+  // depth.
+  const auto is_within = [&sums](const Vec3& place, double beside) noexcept {
+    return ((place - sums.lower).array() >= -beside).all() && ((sums.upper - place).array() >= -beside).all();
+  };
+  if (input.previous_position != nullptr && input.previous_normal != nullptr &&
+      input.previous_normal->dot(frame.normal) > tolerances::same_as_before &&
+      is_within(*input.previous_position, deepest.depth) && measure(*input.previous_position, inside) &&
+      inside.depth > deepest.depth) {
     deepest = inside;
     measured[count++] = inside;
   }
@@ -270,7 +275,7 @@ Patch PatchBuilder::Scratch::patch_along(const Vec3& normal, const PatchInput& i
   std::size_t count = made.chosen.count;
   if (input.probe_a && input.probe_b && sums.length > 0.0 && !watch.late()) {
     const double reach = 2.0 * (sums.diagonal() + made.depth);
-    count = probe(input, centre, reach, frame, made.chosen, measured, watch);
+    count = probe(input, sums, centre, reach, frame, made.chosen, measured, watch);
     if (watch.late()) return made;
     for (std::size_t i = 0; i < count; ++i) made.depth = std::max(made.depth, measured[i].depth);
   } else {
