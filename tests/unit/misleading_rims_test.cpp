@@ -97,5 +97,61 @@ TEST(MisleadingRims, ASmallBoxOnTheInnerEdgeOfAHugeFloorIsPushedUp) {
   }
 }
 
+// The rim ends where the sheet does, and spans a piece of the sheet.
+TEST(MisleadingRims, TheBorderOfASheetIsPushedOutSideways) {
+  const auto box = made("box:x=1,y=1,z=1");
+  const auto ball = made("icosphere:radius=0.5,frequency=8");
+  for (const char* name : {"terrain:side=0.6,height=0,cells=1", "terrain:side=0.6,height=0,cells=16"}) {
+    const auto sheet = made(name);
+    ASSERT_FALSE(sheet->is_solid());
+    for (const double tilt : {0.0, 0.2, 0.6}) {
+      for (const double depth : {1e-2, 3e-2, 5e-2}) {
+        for (const bool round : {false, true}) {
+          if (round && tilt > 0.0) continue;
+          math::Pose pose;
+          pose.rotation =
+              (Eigen::AngleAxisd(tilt, Vec3::UnitY()) * Eigen::AngleAxisd(0.01, Vec3::UnitZ())).toRotationMatrix();
+          double lowest = INFINITY;
+          for (const Vec3& vertex : sheet->mesh().vertices()) lowest = std::min(lowest, (pose.rotation * vertex).x());
+          pose.translation = Vec3(0.5 - lowest - depth, 0.021, round ? 0.013 : 0.1);
+          Pair pair = Pair::make(round ? ball : box, sheet).value();
+          const Answer& answer = contacts_of(pair, pose);
+          SCOPED_TRACE(testing::Message() << name << ", " << tilt << ", " << depth << ", " << round);
+          ASSERT_FALSE(answer.contacts.empty());
+          EXPECT_LT(answer.contacts.front().normal.x(), -0.9);
+          EXPECT_LT(answer.contacts.front().depth, 1.2 * depth);
+        }
+      }
+    }
+  }
+}
+
+// A scanned body has holes, so that it counts as a sheet. One at the rim is not a border that has come in from a side,
+// which would be the shorter way out here.
+TEST(MisleadingRims, AHoleInABodyTakesNoDirectionFromIt) {
+  constexpr double depth = 0.06;
+  const auto rod = mesh::made::make_shape("made:box:x=0.05,y=0.05,z=0.3,cells=6").value();
+  const Vec3 at_rim(0.025, 0.0, depth - 0.15);
+  std::vector<mesh::Triangle> triangles;
+  for (const mesh::Triangle& t : rod.triangles()) {
+    const auto v = rod.vertices();
+    if (((v[t[0]] + v[t[1]] + v[t[2]]) / 3.0 - at_rim).norm() > 0.02) triangles.push_back(t);
+  }
+  ASSERT_LT(triangles.size(), rod.triangles().size());
+  const auto body =
+      shape_of(mesh::TriangleMesh::make({rod.vertices().begin(), rod.vertices().end()}, triangles).value());
+  ASSERT_FALSE(body->is_solid());
+  Pair pair = Pair::make(made("terrain:side=1,height=0,cells=16"), body).value();
+  math::Random random(3);
+  for (int i = 0; i < 60; ++i) {
+    math::Pose pose;
+    pose.rotation = Eigen::AngleAxisd(random.uniform(0, 6), Vec3::UnitZ()).toRotationMatrix();
+    pose.translation = Vec3(random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), 0.15 - depth);
+    const Answer& answer = contacts_of(pair, pose);
+    ASSERT_FALSE(answer.contacts.empty());
+    EXPECT_LT(answer.contacts.front().normal.z(), -0.9) << i;
+  }
+}
+
 }  // namespace
 }  // namespace odds::query

@@ -72,6 +72,10 @@ inline constexpr double same_as_before = 0.9;
 inline constexpr double hysteresis = 0.8;  ///< see same_as_before
 /// By how much the vector area of a whole rim is preferred to a face's normal where it is small.
 inline constexpr double area_preferred = 0.5;
+/// A rim that ends where a sheet does tells no direction by its vector area, if its ends are farther apart than this
+/// part of its length: the border came in from one side. Of a mesh with small holes they are near each other. Tests:
+/// MisleadingRims.TheBorderOfASheetIsPushedOutSideways, MisleadingRims.AHoleInABodyTakesNoDirectionFromIt.
+inline constexpr double gap_of_a_border = 0.5;
 /// Vector area below this part of (coordinates x length of the rim) is rounding.
 inline constexpr double rim_noise = 1e-12;
 /// Rays that measure an overlap start this part of the coordinates inside of a rim: on it they may miss both bodies.
@@ -117,14 +121,14 @@ inline constexpr double hasty_spacing = 0.02;
 /// flush overlap by nothing along each other's normals, but neither is a way out. Test:
 /// Vote.OfFlushFacesIsWhatIsExpected.
 inline constexpr double hasty_alike = 0.003;
-/// Of the smaller body's size: by how much a contact that is guessed may be deeper than the one guessed before it, while
-/// bodies sink in, and how deep it may become. Starved gears pass through each other without; bolts shake with three
-/// times the first, or with all of the second at once (`odds_ode_scenes --only gears --ours --counted 280 --budgets
-/// 5,10`). Test: GuessedDepth.RisesWhileBodiesSinkIn.
+/// Of the smaller body's size: by how much a contact that is guessed may be deeper than the one guessed before it,
+/// while bodies sink in, and how deep it may become. Starved gears pass through each other without; bolts shake with
+/// three times the first, or with all of the second at once (`odds_ode_scenes --only gears --ours --counted 280
+/// --budgets 5,10`). Test: GuessedDepth.RisesWhileBodiesSinkIn.
 inline constexpr double hasty_rise = 6e-6;
 inline constexpr double hasty_deepest = 2e-3;  ///< see hasty_rise
-/// Of the smaller body's size: bodies meet in one part of them where their places of contact are spread (PlaceSpread) by
-/// no more than this. Of gears that is .06 to .1, of a bolt in its nut .16 to .19. Test:
+/// Of the smaller body's size: bodies meet in one part of them where their places of contact are spread (PlaceSpread)
+/// by no more than this. Of gears that is .06 to .1, of a bolt in its nut .16 to .19. Test:
 /// PlaceSpread.TellsGearsFromABoltInItsNut.
 inline constexpr double one_place = 0.13;
 /// Of the smaller body's size: centres no farther from each other have no direction that one could go by. Test:
