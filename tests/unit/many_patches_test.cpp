@@ -48,13 +48,10 @@ double support(std::span<const Contact> contacts, const Vec3& center) {
   return least;
 }
 
-class BedOnManyFeet : public ::testing::TestWithParam<int> {};
-
-TEST_P(BedOnManyFeet, IsHeldByThoseAllAround) {
-  const int feet = GetParam();
+/// A bed on so many feet times so many, a millimetre deep in a floor, whose top is at z = 0.5, more or less level.
+void expect_all_around(const Soup& foot, int feet, double lowest) {
   Soup bed = made("box:x=1,y=1,z=0.1");
   for (Vec3& vertex : bed.first) vertex.z() += 0.25;
-  const Soup foot = made("box:x=0.05,y=0.05,z=0.25");
   for (int i = 0; i < feet * feet; ++i) {
     const auto place = [&](int k) { return -0.45 + 0.9 * k / (feet - 1); };
     add(bed, foot, {place(i % feet), place(i / feet), 0.1});
@@ -65,7 +62,7 @@ TEST_P(BedOnManyFeet, IsHeldByThoseAllAround) {
     for (const int most : {3, 4, 8}) {
       math::Pose pose;
       pose.rotation = (Eigen::AngleAxisd(0.37, Vec3::UnitZ()) * Eigen::AngleAxisd(tilt, Vec3(0.6, 0.8, 0))).matrix();
-      pose.translation = Vec3(0.03, 0.02, 0.5 + 0.025 - 1e-3);
+      pose.translation = Vec3(0.03, 0.02, 0.5 - lowest - 1e-3);
       Request request;
       request.max_contacts = most;
       Pair pair = Pair::make(floor, body).value();
@@ -76,7 +73,27 @@ TEST_P(BedOnManyFeet, IsHeldByThoseAllAround) {
   }
 }
 
+class BedOnManyFeet : public ::testing::TestWithParam<int> {};
+
+TEST_P(BedOnManyFeet, IsHeldByThoseAllAround) {
+  expect_all_around(made("box:x=0.05,y=0.05,z=0.25"), GetParam(), -0.025);
+}
+
 INSTANTIATE_TEST_SUITE_P(Feet, BedOnManyFeet, ::testing::Values(4, 6, 8));
+
+// More of them than patches are kept, and to rounding all rims are as long.
+TEST(BedOnManySpikes, IsHeldByThoseAllAround) {
+  constexpr std::uint32_t sides = 8;
+  Soup spike{{Vec3(0.0, 0.0, 0.12), Vec3(0.0, 0.0, -0.13)}, {}};
+  for (std::uint32_t i = 0; i < sides; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / sides;
+    spike.first.emplace_back(0.04 * std::cos(angle), 0.04 * std::sin(angle), 0.12);
+    const std::uint32_t next = 2 + (i + 1) % sides;
+    spike.second.push_back({0, 2 + i, next});
+    spike.second.push_back({1, next, 2 + i});
+  }
+  expect_all_around(spike, 8, -0.03);
+}
 
 TEST(TwoFeet, EachKeepsItsOwnDepthFromRunToRun) {
   // One is longer; its deepest corner is as near to the other as that one is wide.

@@ -32,6 +32,8 @@ inline constexpr double hole_rim = 0.2;
 inline constexpr double neighbour_share = 0.05;
 /// Cosine of the angle (1.8 degrees) below which their directions are one. Test: ContactPatch.FlushBoxesMakeOnePatch.
 inline constexpr double same_normal = 0.9995;
+/// Curves whose lengths differ by less than this part are as long as each other. Test: BedOnManySpikes.
+inline constexpr double equal_curves = 0.1;
 /// Seen along a direction, a triangle or a side at less than this sine is seen edge-on: its corners and crossings say
 /// all. Test: ContactPatch.BoxOnBoxInManyRotations.
 inline constexpr double edge_on = 1e-6;
