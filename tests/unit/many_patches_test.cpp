@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "odds/math/random.hpp"
@@ -123,6 +124,32 @@ TEST(TwoFeet, EachKeepsItsOwnDepthFromRunToRun) {
       EXPECT_NEAR(depth[1] - depth[0], longer - apart * tilt, 1e-4) << tilt << ", " << run;
       EXPECT_EQ(under[0], 4) << tilt << ", " << run;
       EXPECT_EQ(under[1], 4) << tilt << ", " << run;
+    }
+  }
+}
+
+// A rod lies across the edge of a box, deeper than it is thick: it goes in at one side of the edge and comes out at the
+// other.
+TEST(TwoRimsOfOneOverlap, GiveEachContactOnce) {
+  constexpr double lean = 0.3;
+  const auto box = shape_of(made("box:x=1,y=1,z=1"));
+  const auto rod = shape_of(made("box:x=0.02,y=0.02,z=3"));
+  for (const double roll : {0.0, 0.2, 0.4}) {
+    const Vec3 out(std::sin(lean), 0.0, std::cos(lean));
+    math::Pose pose;
+    pose.rotation =
+        (Eigen::AngleAxisd(0.5 * std::numbers::pi + lean, Vec3::UnitY()) * Eigen::AngleAxisd(roll, Vec3::UnitZ()))
+            .toRotationMatrix();
+    pose.translation = Vec3(0.5, 0.013, 0.5) + (0.01 * (std::cos(roll) + std::sin(roll)) - 0.03) * out;
+    Request request;
+    request.max_contacts = 8;
+    Pair pair = Pair::make(box, rod).value();
+    const std::span<const Contact> contacts = pair.run(pose, request).contacts;
+    ASSERT_GE(contacts.size(), 2U);
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      for (std::size_t k = 0; k < i; ++k) {
+        EXPECT_GT((contacts[i].position - contacts[k].position).norm(), 1e-6) << roll << ": " << i << ", " << k;
+      }
     }
   }
 }

@@ -32,7 +32,8 @@ inline constexpr double hole_rim = 0.2;
 inline constexpr double neighbour_share = 0.05;
 /// Cosine of the angle (1.8 degrees) below which their directions are one. Test: ContactPatch.FlushBoxesMakeOnePatch.
 inline constexpr double same_normal = 0.9995;
-/// Curves whose lengths differ by less than this part are as long as each other. Test: BedOnManySpikes.
+/// Curves whose lengths differ by less than this part are as long as each other.
+/// Test: BedOnManySpikes.IsHeldByThoseAllAround.
 inline constexpr double equal_curves = 0.1;
 /// Seen along a direction, a triangle or a side at less than this sine is seen edge-on: its corners and crossings say
 /// all. Test: ContactPatch.BoxOnBoxInManyRotations.
@@ -223,6 +224,9 @@ inline constexpr double level_overlap = 0.01;
 /// Contacts of a patch nearer to each other than this part of the depth, or of the lever arm, are one.
 inline constexpr double spacing_by_depth = 0.5;
 inline constexpr double spacing_by_lever = 1e-3;  ///< see spacing_by_depth
+/// Contacts of two patches of one direction nearer to each other than this part of the depth are one.
+/// Test: TwoRimsOfOneOverlap.GiveEachContactOnce.
+inline constexpr double same_contact = 1e-3;
 
 /// Contacts of two runs that lie nearer to each other than this part of the smaller body's size, and whose normals'
 /// cosine is above same_contact_side, are one; a surface at a greater slant is not what a contact was with.

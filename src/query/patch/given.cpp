@@ -12,6 +12,12 @@ namespace {
 using patch::Patch;
 using patch::Watch;
 
+/// A rod that lies across an edge has a rim on either side of it; along one direction both lead to one summit.
+bool are_one(const Contact& c, const Contact& d) noexcept {
+  return (c.position - d.position).norm() <= tolerances::same_contact * d.depth &&
+         c.normal.dot(d.normal) > tolerances::same_face;
+}
+
 /// Of more patches than contacts are wanted, puts first, behind the deepest, those that are far from each other in
 /// place or in direction, the deeper ones rather: a body on many feet must not be held by those of one side.
 void spread_out(std::span<Patch*> order, std::size_t wanted, Watch& watch) noexcept {
@@ -112,7 +118,11 @@ void PatchBuilder::Scratch::write(const PatchInput& input, Watch& watch) noexcep
     for (std::size_t i = 0; i < count && contact_count < wanted; ++i) {
       if (round >= order[i]->chosen.count) continue;
       const patch::Witness& w = order[i]->chosen.witnesses[round];
-      contacts[contact_count++] = {w.middle(), order[i]->normal, w.depth, w.triangle_a, w.triangle_b};
+      const Contact contact{w.middle(), order[i]->normal, w.depth, w.triangle_a, w.triangle_b};
+      const std::span<const Contact> given(contacts.data(), contact_count);
+      if (std::none_of(given.begin(), given.end(), [&](const Contact& c) noexcept { return are_one(c, contact); })) {
+        contacts[contact_count++] = contact;
+      }
     }
   }
 }
