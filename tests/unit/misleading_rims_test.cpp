@@ -153,5 +153,28 @@ TEST(MisleadingRims, AHoleInABodyTakesNoDirectionFromIt) {
   }
 }
 
+// Their tips lie aside of their rims, and the ground's triangles at the rim are small.
+TEST(LeaningSpikes, AreAsDeepAsTheirTips) {
+  const mesh::TriangleMesh mesh = cone(0.02, 0.6, 8);
+  Pair pair = Pair::make(made("box:x=2,y=2,z=0.3,cells=100"), shape_of(mesh)).value();
+  math::Random random(2);
+  int shallow = 0;
+  for (int i = 0; i < 300; ++i) {
+    const double depth = std::pow(10.0, random.uniform(-3.0, -1.5));
+    math::Pose pose;
+    do {
+      pose.rotation = random.rotation().toRotationMatrix();
+    } while (pose.rotation(2, 2) > -0.1);
+    const double lowest = (pose.rotation * Vec3(0.0, 0.0, 0.6)).z();
+    pose.translation = Vec3(random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3), 0.15 - lowest - depth);
+    const Answer& answer = contacts_of(pair, pose);
+    ASSERT_FALSE(answer.contacts.empty());
+    ASSERT_LT(answer.contacts.front().normal.z(), -0.9) << i;
+    EXPECT_LT(answer.contacts.front().depth, 1.01 * depth) << i;
+    shallow += answer.contacts.front().depth < 0.7 * depth ? 1 : 0;
+  }
+  EXPECT_LT(shallow, 125);  // 98; it was 156 when what lay beside the middle was not followed
+}
+
 }  // namespace
 }  // namespace odds::query

@@ -219,6 +219,11 @@ inline constexpr double leaning_gap = 0.1;  ///< see leaning_faces
 inline constexpr double flush_probability = 0.99;
 /// Cosine below which a surface is a wall, whose slope tells nothing of where an overlap gets deeper.
 inline constexpr double steep = 0.05;
+/// An overlap whose depth is below this part of its reach is flat: it is not one of a spike.
+/// Test: LeaningSpikes.AreAsDeepAsTheirTips.
+inline constexpr double flat_overlap = 0.05;
+/// How far inside of a spike's surface the next place is looked for, as a part of the step.
+inline constexpr double inside_surface = 1e-3;  ///< see flat_overlap
 /// An overlap that changes by less than this part of itself across the patch is level.
 inline constexpr double level_overlap = 0.01;
 /// Contacts of a patch nearer to each other than this part of the depth, or of the lever arm, are one.
@@ -226,7 +231,7 @@ inline constexpr double spacing_by_depth = 0.5;
 inline constexpr double spacing_by_lever = 1e-3;  ///< see spacing_by_depth
 /// Contacts of two patches of one direction nearer to each other than this part of the depth are one.
 /// Test: TwoRimsOfOneOverlap.GiveEachContactOnce.
-inline constexpr double same_contact = 1e-3;
+inline constexpr double same_contact = 0.05;
 
 /// Contacts of two runs that lie nearer to each other than this part of the smaller body's size, and whose normals'
 /// cosine is above same_contact_side, are one; a surface at a greater slant is not what a contact was with.

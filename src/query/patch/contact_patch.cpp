@@ -186,6 +186,7 @@ std::size_t PatchBuilder::Scratch::probe(const PatchInput& input, const patch::R
   std::size_t count = 0;
   Witness inside;
   if (measure(centre, inside)) measured[count++] = inside;
+  const bool has_centre = count > 0;
   for (std::size_t i = 0; i < spread.count; ++i) {
     Witness w = spread.witnesses[i];
     const Vec3 place = w.middle();
@@ -210,7 +211,8 @@ std::size_t PatchBuilder::Scratch::probe(const PatchInput& input, const patch::R
     deepest = inside;
     measured[count++] = inside;
   }
-  const Witness higher = patch::climb(input, deepest, frame.normal, 0.25 * reach, reach, watch);
+  const Witness higher =
+      patch::climb(input, deepest, has_centre ? measured[0] : deepest, frame.normal, 0.25 * reach, reach, watch);
   if (higher.depth > (1.0 + tolerances::level_overlap) * deepest.depth) measured[count++] = deepest = higher;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < count; ++i) {
