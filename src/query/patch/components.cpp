@@ -235,6 +235,8 @@ void Components::keep_the_longest(Watch& watch) noexcept {
 void Components::spread_equals(std::span<std::uint32_t> sorted, Watch& watch) noexcept {
   const auto length = [this](std::uint32_t curve) noexcept { return curves_[curve].length; };
   const double last = length(sorted[most - 1]);
+  // Of a rim in crumbs, or of points, lengths say nothing of who is equal.
+  if (!curves_[sorted[most - 1]].closed() || last == 0.0) return;
   std::size_t taken = 0;
   while (length(sorted[taken]) > (1.0 + tolerances::equal_curves) * last) ++taken;
   std::size_t end = most;
