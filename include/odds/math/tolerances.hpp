@@ -32,6 +32,9 @@ inline constexpr double hole_rim = 0.2;
 inline constexpr double neighbour_share = 0.05;
 /// Cosine of the angle (1.8 degrees) below which their directions are one. Test: ContactPatch.FlushBoxesMakeOnePatch.
 inline constexpr double same_normal = 0.9995;
+/// Curves whose lengths differ by less than this part are as long as each other.
+/// Test: BedOnManySpikes.IsHeldByThoseAllAround.
+inline constexpr double equal_curves = 0.1;
 /// Seen along a direction, a triangle or a side at less than this sine is seen edge-on: its corners and crossings say
 /// all. Test: ContactPatch.BoxOnBoxInManyRotations.
 inline constexpr double edge_on = 1e-6;
@@ -72,6 +75,10 @@ inline constexpr double same_as_before = 0.9;
 inline constexpr double hysteresis = 0.8;  ///< see same_as_before
 /// By how much the vector area of a whole rim is preferred to a face's normal where it is small.
 inline constexpr double area_preferred = 0.5;
+/// A rim that ends where a sheet does tells no direction by its vector area, if its ends are farther apart than this
+/// part of its length: the border came in from one side. Of a mesh with small holes they are near each other. Tests:
+/// MisleadingRims.TheBorderOfASheetIsPushedOutSideways, MisleadingRims.AHoleInABodyTakesNoDirectionFromIt.
+inline constexpr double gap_of_a_border = 0.5;
 /// Vector area below this part of (coordinates x length of the rim) is rounding.
 inline constexpr double rim_noise = 1e-12;
 /// Rays that measure an overlap start this part of the coordinates inside of a rim: on it they may miss both bodies.
@@ -117,14 +124,14 @@ inline constexpr double hasty_spacing = 0.02;
 /// flush overlap by nothing along each other's normals, but neither is a way out. Test:
 /// Vote.OfFlushFacesIsWhatIsExpected.
 inline constexpr double hasty_alike = 0.003;
-/// Of the smaller body's size: by how much a contact that is guessed may be deeper than the one guessed before it, while
-/// bodies sink in, and how deep it may become. Starved gears pass through each other without; bolts shake with three
-/// times the first, or with all of the second at once (`odds_ode_scenes --only gears --ours --counted 280 --budgets
-/// 5,10`). Test: GuessedDepth.RisesWhileBodiesSinkIn.
+/// Of the smaller body's size: by how much a contact that is guessed may be deeper than the one guessed before it,
+/// while bodies sink in, and how deep it may become. Starved gears pass through each other without; bolts shake with
+/// three times the first, or with all of the second at once (`odds_ode_scenes --only gears --ours --counted 280
+/// --budgets 5,10`). Test: GuessedDepth.RisesWhileBodiesSinkIn.
 inline constexpr double hasty_rise = 6e-6;
 inline constexpr double hasty_deepest = 2e-3;  ///< see hasty_rise
-/// Of the smaller body's size: bodies meet in one part of them where their places of contact are spread (PlaceSpread) by
-/// no more than this. Of gears that is .06 to .1, of a bolt in its nut .16 to .19. Test:
+/// Of the smaller body's size: bodies meet in one part of them where their places of contact are spread (PlaceSpread)
+/// by no more than this. Of gears that is .06 to .1, of a bolt in its nut .16 to .19. Test:
 /// PlaceSpread.TellsGearsFromABoltInItsNut.
 inline constexpr double one_place = 0.13;
 /// Of the smaller body's size: centres no farther from each other have no direction that one could go by. Test:
@@ -212,11 +219,19 @@ inline constexpr double leaning_gap = 0.1;  ///< see leaning_faces
 inline constexpr double flush_probability = 0.99;
 /// Cosine below which a surface is a wall, whose slope tells nothing of where an overlap gets deeper.
 inline constexpr double steep = 0.05;
+/// An overlap whose depth is below this part of its reach is flat: it is not one of a spike.
+/// Test: LeaningSpikes.AreAsDeepAsTheirTips.
+inline constexpr double flat_overlap = 0.05;
+/// How far inside of a spike's surface the next place is looked for, as a part of the step.
+inline constexpr double inside_surface = 1e-3;  ///< see flat_overlap
 /// An overlap that changes by less than this part of itself across the patch is level.
 inline constexpr double level_overlap = 0.01;
 /// Contacts of a patch nearer to each other than this part of the depth, or of the lever arm, are one.
 inline constexpr double spacing_by_depth = 0.5;
 inline constexpr double spacing_by_lever = 1e-3;  ///< see spacing_by_depth
+/// Contacts of two patches of one direction nearer to each other than this part of the depth are one.
+/// Test: TwoRimsOfOneOverlap.GiveEachContactOnce.
+inline constexpr double same_contact = 0.05;
 
 /// Contacts of two runs that lie nearer to each other than this part of the smaller body's size, and whose normals'
 /// cosine is above same_contact_side, are one; a surface at a greater slant is not what a contact was with.

@@ -76,9 +76,11 @@ struct Answer {
   double probability = 0.0;           ///< of a hit, in [0, 1]; exactly 1 or 0 where proved
   std::span<const Contact> contacts;  ///< in A's mesh frame, best first; valid until the pair's next run
   /// False if the time ended before the contacts were made with care: they come from some of the pairs of triangles
-  /// that meet, have one direction, and a depth that is bounded by what earlier runs proved, not measured. Where more
-  /// pairs meet than are kept (PairOptions::hit_capacity), depths are at most twice what earlier runs at nearby poses
-  /// say; runs at one pose come to what they find there.
+  /// that meet, have one direction, and a depth that is bounded by what earlier runs proved, not measured. It is about
+  /// time only: where more pairs meet than are kept (PairOptions::hit_capacity), it stays true for contacts of a sample
+  /// of that many, whose directions may differ from those of the whole rim where bodies are curved or serrated;
+  /// Pair::crossings() is then as long as hit_capacity. Their depths are at most twice what earlier runs at nearby
+  /// poses say; runs at one pose come to what they find there.
   bool contacts_complete = true;
   /// Pairs of triangles that the contacts were made from. Where they are not complete, some twenty tell a direction; of
   /// fewer than that it is a guess, and a caller that has good contacts of the last tick may prefer those. 0 for the

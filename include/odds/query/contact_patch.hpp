@@ -67,6 +67,7 @@ struct PatchInput {
   math::Pose pose_b_in_a;
   bool solid_a = false;                     ///< closed and consistently oriented outwards; otherwise a two-sided sheet
   bool solid_b = false;                     ///< the same for B
+  bool found_all = false;                   ///< the hits are all pairs that meet: a rim ends only where a sheet does
   Vec3 reference_a = Vec3::Zero();          ///< centre of A's body; says on which side of a sheet the bodies are
   Vec3 reference_b = Vec3::Zero();          ///< centre of B's body, in A's frame
   const Vec3* previous_normal = nullptr;    ///< unit; the first contact's normal of the last run, in A's frame, or null

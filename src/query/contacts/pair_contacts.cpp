@@ -233,6 +233,7 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
                     ((ended == Progressed::enough && !as_many_as_kept) || pair.hits.size() > input.most_pairs);
   const bool all = ended != Progressed::spent && !part;
   if (!all) input.believed_depth = believed_depth(meshes, pose_b_in_a, known_normal, pair);
+  input.found_all = ended == Progressed::finished && pair.hits.size() <= input.most_pairs;
   const Deadline deadline{[](void* state) noexcept { return !static_cast<Spending*>(state)->may_make_contacts(); },
                           &spending};
   const Deadline last{[](void* state) noexcept { return !static_cast<Spending*>(state)->may_finish_contacts(); },

@@ -83,7 +83,8 @@ std::span<const RimSums> Components::group(const Rim& rim, bool solid_a, bool so
   if (watch.late()) return {};
   sum_up(rim, watch);
   if (watch.late()) return {};
-  keep_the_longest();
+  keep_the_longest(watch);
+  if (watch.late()) return {};
   join_open_curves(rim, watch);
   if (watch.late()) return {};
   join_holes(rim, solid_a, solid_b, watch);
@@ -213,18 +214,54 @@ void Components::sum_up(const Rim& rim, Watch& watch) noexcept {
 }
 
 /// The longest curves stay, the longest first.
-void Components::keep_the_longest() noexcept {
+void Components::keep_the_longest(Watch& watch) noexcept {
   for (std::uint32_t i = 0; i < curve_count_; ++i) {
     order_[i] = i;
     curve_parents_[i] = i;
   }
   kept_ = std::min(curve_count_, most);
+  const std::size_t sorted = std::min(curve_count_, most_compared);
   const auto longer = [this](std::uint32_t i, std::uint32_t j) {
     if (curves_[i].length != curves_[j].length) return curves_[i].length > curves_[j].length;
     return i < j;
   };
-  std::partial_sort(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(kept_),
+  std::partial_sort(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(sorted),
                     order_.begin() + static_cast<std::ptrdiff_t>(curve_count_), longer);
+  if (sorted > most) spread_equals({order_.data(), sorted}, watch);
+}
+
+/// Of curves that are about as long as the last that stays, those stay that are far from each other and from what is
+/// longer: or rounding would leave a body on many feet those of one side.
+void Components::spread_equals(std::span<std::uint32_t> sorted, Watch& watch) noexcept {
+  const auto length = [this](std::uint32_t curve) noexcept { return curves_[curve].length; };
+  const double last = length(sorted[most - 1]);
+  // Of a rim in crumbs, or of points, lengths say nothing of who is equal.
+  if (!curves_[sorted[most - 1]].closed() || last == 0.0) return;
+  std::size_t taken = 0;
+  while (length(sorted[taken]) > (1.0 + tolerances::equal_curves) * last) ++taken;
+  std::size_t end = most;
+  while (end < sorted.size() && length(sorted[end]) >= (1.0 - tolerances::equal_curves) * last) ++end;
+  if (end == most) return;
+  const auto middle = [this](std::uint32_t curve) noexcept {
+    return Vec3(0.5 * (curves_[curve].lower + curves_[curve].upper));
+  };
+  std::array<double, most_compared> nearest;  // of those that are taken
+  nearest.fill(std::numeric_limits<double>::infinity());
+  const auto note = [&](std::uint32_t curve) noexcept {
+    const Vec3 place = middle(curve);
+    for (std::size_t i = taken; i < end; ++i) {
+      nearest[i] = std::min(nearest[i], (middle(sorted[i]) - place).squaredNorm());
+    }
+  };
+  for (std::size_t i = 0; i < taken; ++i) note(sorted[i]);
+  for (; taken < most && !watch.late(); ++taken) {
+    const auto first = nearest.begin() + static_cast<std::ptrdiff_t>(taken);
+    const auto best = static_cast<std::size_t>(
+        std::max_element(first, nearest.begin() + static_cast<std::ptrdiff_t>(end)) - nearest.begin());
+    std::swap(sorted[taken], sorted[best]);
+    std::swap(nearest[taken], nearest[best]);
+    note(sorted[taken]);
+  }
 }
 
 /// The curves that stand for what was kept and joined, each once.

@@ -52,6 +52,8 @@ class Components {
   static constexpr std::uint32_t left_out = 0xffffffffU;
   static constexpr std::size_t most = 32;  ///< curves that are kept apart; of more, the shortest are left out
 
+  static constexpr std::size_t most_compared = 4 * most;  ///< of the longest, that may be as long as one that is kept
+
   Components(std::size_t most_pieces, std::size_t most_pairs);
 
   /// Sets `component` of every piece to the index of its patch (or `left_out`) and `counts` of copies to false. Returns
@@ -96,7 +98,8 @@ class Components {
   bool is_copy(std::uint32_t from, std::uint32_t to) noexcept;
   bool is_another_copy(std::uint32_t from, std::uint32_t to) noexcept;
   void sum_up(const Rim& rim, Watch& watch) noexcept;
-  void keep_the_longest() noexcept;
+  void keep_the_longest(Watch& watch) noexcept;
+  void spread_equals(std::span<std::uint32_t> sorted, Watch& watch) noexcept;
   std::span<const std::uint32_t> roots() noexcept;
   void join_open_curves(const Rim& rim, Watch& watch) noexcept;
   void join_holes(const Rim& rim, bool solid_a, bool solid_b, Watch& watch) noexcept;

@@ -1,4 +1,4 @@
-// Puts the steps together: rim, patches, normal, depth, choice. Every loop looks at the deadline.
+// Puts the steps together: rim, patches, normal, depth. Every loop looks at the deadline.
 #include "odds/query/contact_patch.hpp"
 
 #include <algorithm>
@@ -22,47 +22,6 @@ using patch::Patch;
 using patch::thorough;
 using patch::Watch;
 using patch::Witness;
-
-/// Whether a ray along the direction says that solids overlap by no more than `depth` at the patch's first contact. Its
-/// faces may lean away all the same, as of a cone whose foot hangs over an edge by a trifle.
-bool is_seen_through(const patch::PatchView& view, const Patch& made, const Vec3& direction, double depth,
-                     Watch& watch) noexcept {
-  if (!view.input.solid_a || !view.input.solid_b || made.chosen.count == 0) return false;
-  const double reach = 2.0 * (view.sums.diagonal() + made.depth);
-  Witness through;
-  return patch::probe_overlap(view.input, made.chosen.witnesses[0].middle(), direction, reach, watch, through) &&
-         through.depth <= depth;
-}
-
-/// Of more patches than contacts are wanted, puts first, behind the deepest, those that are far from each other in
-/// place or in direction, the deeper ones rather: a body on many feet must not be held by those of one side.
-void spread_out(std::span<Patch*> order, std::size_t wanted, Watch& watch) noexcept {
-  Vec3 lower = order[0]->centre;
-  Vec3 upper = lower;
-  for (const Patch* p : order) {
-    lower = lower.cwiseMin(p->centre);
-    upper = upper.cwiseMax(p->centre);
-  }
-  const double lever = 0.5 * (upper - lower).norm();
-  const double deepest = order[0]->depth;
-  std::array<double, patch::Components::most> nearest;  // of those that are taken
-  nearest.fill(std::numeric_limits<double>::infinity());
-  for (std::size_t taken = 1; taken < wanted && !watch.late(); ++taken) {
-    const Patch& last = *order[taken - 1];
-    std::size_t best = taken;
-    double most = -1.0;
-    for (std::size_t i = taken; i < order.size(); ++i) {
-      const Patch& p = *order[i];
-      nearest[i] = std::min(nearest[i], (p.centre - last.centre).norm() + lever * (p.normal - last.normal).norm());
-      const double worth = (deepest > 0.0 ? 0.5 + 0.5 * p.depth / deepest : 1.0) * nearest[i];
-      if (!(worth > most)) continue;
-      most = worth;
-      best = i;
-    }
-    std::swap(order[taken], order[best]);
-    std::swap(nearest[taken], nearest[best]);
-  }
-}
 
 /// Centroid of the surface that the rim spans, which unlike the mean of the rim does not care how finely it is cut.
 Vec3 span_centre(const patch::Rim& rim, std::span<const std::uint32_t> indices, const Vec3& middle, const Vec3& normal,
@@ -176,49 +135,6 @@ bool PatchBuilder::Scratch::make_patches(const PatchInput& input, Watch& watch) 
   return true;
 }
 
-/// A few pieces that a search without time has left of a rim, say along the side of a brick that stands flush on
-/// another, span an area of their own: where a brick hangs over by as little as it is deep, that points anywhere. Nor
-/// has a crumb that rounding has left of a whole rim a direction of its own. What is no deeper than is believed, or
-/// else than the rest is, along the direction that is known, or else that on which most of the rim agrees, belongs to
-/// that.
-void PatchBuilder::Scratch::straighten(const PatchInput& input, std::span<const patch::RimSums> sums,
-                                       Watch& watch) noexcept {
-  const double rounding = tolerances::rim_noise * rim.origin.cwiseAbs().maxCoeff();
-  const std::span<const Patch> made(patches.data(), patch_count);
-  const auto agree = [](const Vec3& x, const Vec3& y) noexcept { return x.dot(y) > tolerances::same_face; };
-  const Vec3* chosen = input.known_normal;
-  double longest = 0.0;
-  for (std::size_t p = 0; p < patch_count && input.known_normal == nullptr; ++p) {
-    double agreeing = 0.0;
-    for (const Patch& other : made) agreeing += agree(other.normal, made[p].normal) ? other.length + rounding : 0.0;
-    if (!(agreeing > longest)) continue;
-    chosen = &made[p].normal;
-    longest = agreeing;
-  }
-  if (chosen == nullptr) return;
-  const Vec3 direction = *chosen;
-  double deepest = 0.0;
-  for (const Patch& patch : made) deepest = agree(patch.normal, direction) ? std::max(deepest, patch.depth) : deepest;
-  const double limit = input.believed_depth > 0.0 ? input.believed_depth : deepest + rounding;
-  for (std::size_t i = 0, next = 0; i < sums.size() && !watch.late(); ++i) {
-    const Indices indices = pieces_of(i);
-    if (indices.empty()) continue;
-    Patch& own = patches[next++];
-    if (agree(own.normal, direction)) continue;
-    // A whole rim has a direction of its own, unless this is by far the shorter way out: as of a lump between faces
-    // that are flush to within rounding, which overlaps from one end of them to the other.
-    const bool is_whole = sums[i].closed() && sums[i].length > 0.0;
-    const double most =
-        is_whole ? std::min(tolerances::flush_lump * limit, tolerances::by_far_shorter * own.depth) : limit;
-    const patch::PatchView view{input, *kernels, rim, sums[i], indices, thorough.sample};
-    const bool is_of_it = is_whole && is_seen_through(view, own, direction, most, watch);
-    if (!is_of_it && !patch::is_of_direction(view, direction, most, watch)) continue;
-    const Patch straight = patch_along(direction, input, sums[i], indices, thorough, watch);
-    if (watch.late()) return;  // it was not measured to its end
-    if (straight.depth <= most) own = straight;
-  }
-}
-
 /// The overlap's corners of up to eight pairs, one pair after the other.
 void PatchBuilder::Scratch::add_witnesses(std::span<const patch::PlacedPair* const> asked,
                                           const patch::Frame& frame) noexcept {
@@ -261,15 +177,16 @@ void PatchBuilder::Scratch::find_witnesses(Indices indices, const patch::Frame& 
 /// Measures the overlap inside the rim: at the centre and a little inside of the points that span the patch. A deep
 /// overlap's rim triangles reach only as far as they are large. Where the overlap is round (a ball), leaves out all but
 /// its depth: what lies at its rim bears nothing.
-std::size_t PatchBuilder::Scratch::probe(const PatchInput& input, const Vec3& centre, double reach,
-                                         const patch::Frame& frame, const patch::Chosen& spread, Measured& measured,
-                                         Watch& watch) noexcept {
+std::size_t PatchBuilder::Scratch::probe(const PatchInput& input, const patch::RimSums& sums, const Vec3& centre,
+                                         double reach, const patch::Frame& frame, const patch::Chosen& spread,
+                                         Measured& measured, Watch& watch) noexcept {
   const auto measure = [&](const Vec3& place, Witness& found) noexcept {
     return !watch.late() && patch::probe_overlap(input, place, frame.normal, reach, watch, found);
   };
   std::size_t count = 0;
   Witness inside;
   if (measure(centre, inside)) measured[count++] = inside;
+  const bool has_centre = count > 0;
   for (std::size_t i = 0; i < spread.count; ++i) {
     Witness w = spread.witnesses[i];
     const Vec3 place = w.middle();
@@ -282,14 +199,20 @@ std::size_t PatchBuilder::Scratch::probe(const PatchInput& input, const Vec3& ce
   }
   Witness deepest = patch::deepest_of({measured.data(), count}, frame, centre, 0.25 * reach);
   // The last run's summit is near this one's; starting from it, the climb follows one summit and does not flicker. That
-  // of another side is not in this overlap.
-  if (input.previous_position != nullptr && (*input.previous_position - centre).norm() < 0.5 * reach &&
-      input.previous_normal != nullptr && input.previous_normal->dot(frame.normal) > tolerances::same_as_before &&
-      measure(*input.previous_position, inside) && inside.depth > deepest.depth) {
+  // of another patch, of another side or beside this one, is not in this overlap, which lies within its rim but for its
+  // depth.
+  const auto is_within = [&sums](const Vec3& place, double beside) noexcept {
+    return ((place - sums.lower).array() >= -beside).all() && ((sums.upper - place).array() >= -beside).all();
+  };
+  if (input.previous_position != nullptr && input.previous_normal != nullptr &&
+      input.previous_normal->dot(frame.normal) > tolerances::same_as_before &&
+      is_within(*input.previous_position, deepest.depth) && measure(*input.previous_position, inside) &&
+      inside.depth > deepest.depth) {
     deepest = inside;
     measured[count++] = inside;
   }
-  const Witness higher = patch::climb(input, deepest, frame.normal, 0.25 * reach, reach, watch);
+  const Witness higher =
+      patch::climb(input, deepest, has_centre ? measured[0] : deepest, frame.normal, 0.25 * reach, reach, watch);
   if (higher.depth > (1.0 + tolerances::level_overlap) * deepest.depth) measured[count++] = deepest = higher;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -354,7 +277,7 @@ Patch PatchBuilder::Scratch::patch_along(const Vec3& normal, const PatchInput& i
   std::size_t count = made.chosen.count;
   if (input.probe_a && input.probe_b && sums.length > 0.0 && !watch.late()) {
     const double reach = 2.0 * (sums.diagonal() + made.depth);
-    count = probe(input, centre, reach, frame, made.chosen, measured, watch);
+    count = probe(input, sums, centre, reach, frame, made.chosen, measured, watch);
     if (watch.late()) return made;
     for (std::size_t i = 0; i < count; ++i) made.depth = std::max(made.depth, measured[i].depth);
   } else {
@@ -376,79 +299,6 @@ Patch PatchBuilder::Scratch::patch_along(const Vec3& normal, const PatchInput& i
     made.high = std::max(made.high, made.normal.dot(w.on_b - rim.origin));
   }
   return made;
-}
-
-/// Faces that are flush to within rounding leave crumbs of a rim between them, closed ones too, whose normals are those
-/// of the faces. Beside a patch that bears they are left out.
-void PatchBuilder::Scratch::drop_crumbs() noexcept {
-  double deepest = 0.0;
-  Vec3 lower = Vec3::Constant(std::numeric_limits<double>::infinity());
-  Vec3 upper = -lower;
-  for (std::size_t i = 0; i < patch_count; ++i) {
-    deepest = std::max(deepest, patches[i].depth);
-    lower = lower.cwiseMin(patches[i].lower);
-    upper = upper.cwiseMax(patches[i].upper);
-  }
-  const double limit =
-      std::min(tolerances::shallow_patch * deepest, tolerances::bears_nothing * (upper - lower).maxCoeff());
-  for (std::size_t i = 0; i < patch_count; ++i) patches[i].dropped = patches[i].depth < limit;
-}
-
-/// Two patches that push against each other through the same stuff (a rod that has run through a plate) cannot both be
-/// obeyed: the shorter way out stays.
-void PatchBuilder::Scratch::drop_opposed(const Vec3* previous) noexcept {
-  const auto cost = [previous](const Patch& p) noexcept {
-    return p.depth *
-           (previous != nullptr && previous->dot(p.normal) > tolerances::same_as_before ? tolerances::hysteresis : 1.0);
-  };
-  for (std::size_t i = 0; i < patch_count; ++i) {
-    for (std::size_t j = i + 1; j < patch_count; ++j) {
-      Patch& p = patches[i];
-      Patch& q = patches[j];
-      if (p.dropped || q.dropped || p.normal.dot(q.normal) > tolerances::opposed) continue;
-      if ((p.lower.array() - p.depth > q.upper.array() + q.depth).any()) continue;
-      if ((q.lower.array() - q.depth > p.upper.array() + p.depth).any()) continue;
-      // Along p's normal p's overlap reaches down from its rim, q's up from its own.
-      const double q_low = -q.high;
-      const double q_high = -q.low;
-      if (p.low > q_high || q_low > p.high) continue;
-      (cost(q) < cost(p) ? p : q).dropped = true;
-    }
-  }
-}
-
-/// Deals the contacts out: every patch its first, the deepest patch first, then every patch its second, and so on.
-void PatchBuilder::Scratch::write(const PatchInput& input, Watch& watch) noexcept {
-  std::array<Patch*, patch::Components::most> order{};
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < patch_count; ++i) {
-    if (!patches[i].dropped && patches[i].chosen.count > 0) order[count++] = &patches[i];
-  }
-  const auto rank = [&input](const Patch* p) noexcept {
-    const bool before =
-        input.previous_normal != nullptr && input.previous_normal->dot(p->normal) > tolerances::same_as_before;
-    return before ? p->depth * tolerances::keep_first : p->depth;
-  };
-  std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count),
-            [&rank](const Patch* p, const Patch* q) { return rank(p) != rank(q) ? rank(p) > rank(q) : p < q; });
-  const std::size_t wanted = most_wanted;
-  if (count > wanted) spread_out({order.data(), count}, wanted, watch);
-  if (count >= wanted) {
-    count = wanted;  // one contact a patch: at its middle, so that it bears without tipping
-    for (std::size_t i = 0; i < count; ++i) {
-      if (order[i]->chosen.count > 1)
-        order[i]->chosen.witnesses[0] = patch::merged(order[i]->chosen, order[i]->normal, order[i]->centre);
-      order[i]->chosen.count = 1;
-    }
-  }
-  contact_count = 0;
-  for (std::size_t round = 0; round < most_contacts; ++round) {
-    for (std::size_t i = 0; i < count && contact_count < wanted; ++i) {
-      if (round >= order[i]->chosen.count) continue;
-      const patch::Witness& w = order[i]->chosen.witnesses[round];
-      contacts[contact_count++] = {w.middle(), order[i]->normal, w.depth, w.triangle_a, w.triangle_b};
-    }
-  }
 }
 
 PatchBuilder::PatchBuilder(std::size_t hit_capacity)

@@ -12,6 +12,7 @@ void PatchBuilder::Scratch::make_hasty_contacts(const PatchInput& input, const D
   patch::Watch watch(last);
   PatchInput blind = input;
   blind.probe_a = blind.probe_b = {};
+  blind.found_all = false;
   if (piece_count < patch::least_pairs) make_rim(blind, patch::least_pairs, watch);
   patch_count = 0;
   const std::size_t stride = (piece_count + patch::hasty_pieces - 1) / patch::hasty_pieces;

@@ -252,6 +252,7 @@ class LeastOverlap {
   /// inside of a few of its pieces, first where the triangles overlap most. The middle of a crescent is not in it.
   void find_places(const Frame& pressing) noexcept {
     places_[place_count_++] = view_.sums.centre(view_.rim.origin);
+    if (ends_at_a_border(view_)) return find_places_on_sheet();
     if (!view_.input.solid_a || !view_.input.solid_b) return;
     // A quarter of the mean width of the surface that the rim spans; no less than what rays tell apart.
     const double reach = view_.rim.origin.cwiseAbs().maxCoeff() + view_.sums.diagonal();
@@ -281,6 +282,21 @@ class LeastOverlap {
     add(view_.pieces.size() / 5);
     add(view_.pieces.size() / 2);
     add(view_.pieces.size() * 4 / 5);
+  }
+
+  /// Places of a sheet beyond the rim of a solid: all that is there goes no farther in than to the sheet's border.
+  void find_places_on_sheet() noexcept {
+    if (!view_.input.solid_a && !view_.input.solid_b) return;
+    for (const std::size_t part : {1U, 3U, 5U, 7U}) {
+      const RimPiece& piece = view_.rim.pieces[view_.pieces[view_.pieces.size() * part / 8]];
+      const PlacedPair& placed = view_.rim.pairs[piece.pair];
+      const Vec3& outwards = view_.input.solid_a ? placed.normal_a : placed.normal_b;
+      const std::array<Vec3, 3>& corners = view_.input.solid_a ? placed.b : placed.a;
+      const Vec3& inmost =
+          *std::min_element(corners.begin(), corners.end(),
+                            [&](const Vec3& p, const Vec3& q) noexcept { return outwards.dot(p) < outwards.dot(q); });
+      places_[place_count_++] = 0.5 * (piece.middle() + inmost);
+    }
   }
 
   /// The rim's triangles reach only as far as they are large: a direction that seems the shortest is measured right
@@ -373,7 +389,9 @@ Vec3 least_overlap(const PatchView& view, const Vec3& area, Watch& watch) noexce
     if (!solid) search.offer(-direction, factor);  // a sheet's normal may point either way
   };
   // The area of a rim of which pieces are missing is one candidate of many: where it is small, so may be what is left.
-  offer(area, is_part_of_a_rim(view) ? 1.0 : tolerances::area_preferred);
+  // Of one that ends with a sheet it is along the sheet's normal, whichever way the border came in.
+  const bool is_open = is_part_of_a_rim(view) || ends_at_a_border(view);
+  offer(area, is_open ? 1.0 : tolerances::area_preferred);
   Directions faces;
   const bool in_part = view.input.believed_depth > 0.0;
   for (std::size_t i = 0; i < view.pieces.size() && !watch.late(i); ++i) {
@@ -415,7 +433,7 @@ PatchNormal patch_normal(const PatchView& view, Watch& watch) noexcept {
   Vec3& normal = made.into_a;
   // Above 1 more is missing of a rim than is there: what its pieces seem to span is where they lie.
   const bool round = roundness > (sums.closed() ? tolerances::round_closed_rim : tolerances::round_open_rim) &&
-                     !(roundness > 1.0 && is_part_of_a_rim(view));
+                     !(roundness > 1.0 && is_part_of_a_rim(view)) && !ends_at_a_border(view);
   if (noticeable && round) {
     normal = area.normalized();
     if (normal.dot(side_of_bodies(view)) < 0.0) normal = -normal;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include "odds/math/tolerances.hpp"
 #include "query/patch/components.hpp"
 
 namespace odds::query::patch {
@@ -21,6 +22,12 @@ struct PatchView {
 /// Whether some of the rim is missing. Solids cross in closed curves; a sheet's rim ends where the sheet does.
 [[nodiscard]] inline bool is_part_of_a_rim(const PatchView& view) noexcept {
   return view.input.solid_a && view.input.solid_b && !view.sums.closed();
+}
+
+/// Whether a sheet's border has come into a body from one side, so that the rim ends where the sheet does.
+[[nodiscard]] inline bool ends_at_a_border(const PatchView& view) noexcept {
+  return view.input.found_all && !(view.input.solid_a && view.input.solid_b) && !view.sums.closed() &&
+         view.sums.gap.norm() > tolerances::gap_of_a_border * view.sums.length;
 }
 
 struct PatchNormal {

@@ -124,8 +124,9 @@ enum class Probing : std::uint8_t {
 
 /// Walks from a witness of probe_overlap uphill to where the overlap is deepest, by the slopes of the two triangles and
 /// a few more probes, no step longer than `radius`. The overlap of a ring or a crescent is deepest along a ridge that
-/// its centre misses. Returns the deepest found, at least `start`.
-[[nodiscard]] Witness climb(const PatchInput& input, const Witness& start, const Vec3& normal, double radius,
-                            double reach, Watch& watch) noexcept;
+/// its centre misses. Where no way leads on from `start`, goes on from another witness, `beside` it. Returns the
+/// deepest found, at least `start`.
+[[nodiscard]] Witness climb(const PatchInput& input, const Witness& start, const Witness& beside, const Vec3& normal,
+                            double radius, double reach, Watch& watch) noexcept;
 
 }  // namespace odds::query::patch

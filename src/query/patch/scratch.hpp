@@ -82,8 +82,9 @@ struct PatchBuilder::Scratch {
                            const patch::Effort& effort, patch::Watch& watch) noexcept;
   void find_witnesses(Indices indices, const patch::Frame& frame, patch::Watch& watch) noexcept;
   void add_witnesses(std::span<const patch::PlacedPair* const> asked, const patch::Frame& frame) noexcept;
-  std::size_t probe(const PatchInput& input, const Vec3& centre, double reach, const patch::Frame& frame,
-                    const patch::Chosen& spread, Measured& measured, patch::Watch& watch) noexcept;
+  std::size_t probe(const PatchInput& input, const patch::RimSums& sums, const Vec3& centre, double reach,
+                    const patch::Frame& frame, const patch::Chosen& spread, Measured& measured,
+                    patch::Watch& watch) noexcept;
   void drop_crumbs() noexcept;
   void drop_opposed(const Vec3* previous) noexcept;
   void write(const PatchInput& input, patch::Watch& watch) noexcept;
