@@ -5,6 +5,8 @@
 #include <random>
 
 #include "odds/mesh/made/terrain.hpp"
+#include "odds/realtime/clock.hpp"
+#include "ode/budget_clock.hpp"
 #include "ode/ode_fixture.hpp"
 
 namespace odds::test {
@@ -245,6 +247,27 @@ TEST_F(BoxTest, ThroughAPlateItIsPushedOneWay) {
         }
       }
     }
+  }
+}
+
+// What the time leaves of many pieces of surface is from all around: on those of one side a body would tip over.
+TEST_F(BoxTest, InShortTimeItIsHeldOnAllSides) {
+  const dGeomID floor = mesh_geom(box_shape(1.0, 1.0, 0.1, 40), space);
+  const dGeomID body = dCreateBox(space, 0.4, 0.4, 0.2);
+  dGeomSetPosition(body, 0.003, 0.002, 0.149);
+  realtime::ManualClock clock(1000);  // a microsecond a look
+  for (const double microseconds : {5.0, 12.0, 30.0}) {
+    ASSERT_EQ(dGeomOddsMeshSetBudget(floor, microseconds), 1);
+    ode::use_budget_clock(clock.clock());
+    const auto contacts = collide(floor, body);
+    ode::use_budget_clock({});
+    bool sides[4] = {};
+    for (const dContactGeom& contact : contacts) {
+      EXPECT_LT(contact.normal[2], -0.99);
+      EXPECT_NEAR(contact.depth, 0.001, 1e-9);
+      sides[(contact.pos[0] > 0.0 ? 1 : 0) + (contact.pos[1] > 0.0 ? 2 : 0)] = true;
+    }
+    for (const bool side : sides) EXPECT_TRUE(side) << microseconds << " us, " << contacts.size() << " contacts";
   }
 }
 

@@ -11,7 +11,7 @@
 #include "odds/primitive/triangle_distance.hpp"
 #include "query/wide/encounter.hpp"
 #include "query/wide/lanes.hpp"
-#include "support/instruction_sets.hpp"
+#include "support/lanes_built_here.hpp"
 
 namespace odds::query::wide {
 namespace {

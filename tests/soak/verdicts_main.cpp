@@ -57,8 +57,8 @@ class Engine {
   Engine(const soak::MeshPair& meshes, const Variant& variant, std::size_t rotate, volume::Kind kind,
          InstructionSet set)
       : variant_(variant),
-        name_(std::string(volume::name(kind)) +
-              (set == InstructionSet::best ? "" : " " + std::string(testing::name(set)))),
+        name_(std::string(volume::name(kind)) + (set == InstructionSet::best ? "" : " ") +
+              std::string(testing::name(set))),
         a_(testing::changed(*meshes.a, variant.scale, variant.move_a, rotate)),
         b_(testing::changed(*meshes.b, variant.scale, variant.move_b, rotate / 2)),
         ab_(pair_of(a_, b_, kind, set)),

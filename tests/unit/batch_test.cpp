@@ -94,7 +94,9 @@ TEST_F(BatchTest, APoseThatCannotBeUsedIsUndecided) {
 }
 
 TEST_F(BatchTest, RefusesPlacesOfAnotherNumber) {
-  std::vector<BatchAnswer> answers(poses.size() - 1, {.probability = 7.0});
+  BatchAnswer untouched;
+  untouched.probability = 7.0;
+  std::vector<BatchAnswer> answers(poses.size() - 1, untouched);
   Batch some = batch(1);
   ASSERT_TRUE(some.run(poses, {}, answers).has_value());
   EXPECT_EQ(answers[0].probability, 7.0);

@@ -12,7 +12,7 @@
 #include "odds/math/random.hpp"
 #include "odds/tree/wide_tree.hpp"
 #include "query/wide/doubles.hpp"
-#include "support/instruction_sets.hpp"
+#include "support/lanes_built_here.hpp"
 
 namespace odds::query::wide {
 namespace {

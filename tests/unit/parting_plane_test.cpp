@@ -16,7 +16,7 @@
 #include "query/wide/kinetic_front.hpp"
 #include "query/wide/lanes.hpp"
 #include "query/wide/part_leaves.hpp"
-#include "support/instruction_sets.hpp"
+#include "support/lanes_built_here.hpp"
 
 namespace odds::query::wide {
 namespace {

@@ -1,4 +1,4 @@
-// Gathering the surface inside a convex body, grouping it, choosing points.
+// The surface inside a convex body, grouped, and the points chosen.
 #include "ode/collide/convex_contacts.hpp"
 
 #include <algorithm>
@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "ode/collide/convex_patch.hpp"
+#include "ode/collide/gather_pieces.hpp"
 #include "ode/collide/manifold.hpp"
 #include "ode/geom/geom_data.hpp"
 #include "ode/mesh/nearest_surface.hpp"
@@ -15,7 +16,7 @@
 namespace odds::ode {
 namespace {
 
-constexpr std::size_t most_pieces = 128;
+constexpr std::size_t most_pieces = Pieces::most;
 constexpr std::size_t most_patches = 6;
 constexpr std::size_t most_points = 256;
 constexpr double same_patch = 0.85;   // cosine of the largest angle to a patch's first normal, 32 degrees
@@ -24,13 +25,6 @@ constexpr double equally_deep = 1.0 - 1e-6;
 constexpr double clearly_shallower = 0.99;
 constexpr double same_direction = 0.999;  // patches that leave the same way are one manifold
 constexpr double same_place = 1e-6;       // of the body's size
-
-struct Pieces {
-  std::array<Piece, most_pieces> all;
-  std::size_t count = 0;
-  bool complete = true;
-  bool cut_off = false;  // by the limit; else only the room for pieces was too small
-};
 
 struct Patch {
   std::array<const Piece*, most_pieces> pieces;
@@ -113,47 +107,6 @@ struct Points {
   }
 };
 
-// Cuts every triangle near the body. Many small ones are gathered octant by octant, so that those kept are spread
-// evenly.
-void gather(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const ConvexBody& body, Limit& limit,
-            Pieces& pieces) noexcept {
-  std::array<std::uint32_t, most_pieces> near;
-  const math::Pose mesh_in_body = body_in_mesh.inverse();
-  const auto cut_all = [&](std::size_t count) {
-    for (std::size_t i = 0; i < count && pieces.count < most_pieces; ++i) {
-      if (limit.time_is_up()) {
-        pieces.complete = false;
-        pieces.cut_off = true;
-        return;
-      }
-      Corners corners = mesh.corners(near[i]);
-      for (Vec3& corner : corners) corner = mesh_in_body * corner;
-      Piece& piece = pieces.all[pieces.count];
-      piece.triangle = near[i];
-      if (cut_by_sides(corners, body, piece)) ++pieces.count;
-    }
-  };
-  const Vec3& half = body.box_half_extents();
-  std::uint64_t visited = 0;
-  const std::size_t found =
-      query::triangles_in_box(*mesh.shape, body_in_mesh * body.box_center(), body_in_mesh.rotation, half, near,
-                              limit.units, &pieces.complete, &visited);
-  limit.spend(visited);
-  pieces.cut_off = !pieces.complete && found < near.size();
-  if (pieces.complete || limit.units == 0) return cut_all(found);  // or there is nothing left to look anew
-  for (int octant = 0; octant < 8; ++octant) {
-    const Vec3 center = body.box_center() +
-                        0.5 * half.cwiseProduct(Vec3(octant & 1 ? 1 : -1, octant & 2 ? 1 : -1, octant & 4 ? 1 : -1));
-    bool octant_complete = true;
-    const std::size_t part =
-        query::triangles_in_box(*mesh.shape, body_in_mesh * center, body_in_mesh.rotation, 0.5 * half,
-                                std::span(near).first(most_pieces / 8), limit.units, &octant_complete, &visited);
-    limit.spend(visited);
-    pieces.cut_off = pieces.cut_off || (!octant_complete && part < most_pieces / 8);
-    cut_all(part);
-  }
-}
-
 // Greedy, largest piece first: a piece joins the first patch whose leader's normal is close, or leads a new one.
 std::size_t group(Pieces& pieces, std::array<Patch, most_patches>& patches) noexcept {
   std::sort(pieces.all.begin(), pieces.all.begin() + pieces.count, [](const Piece& a, const Piece& b) {
@@ -222,22 +175,32 @@ bool is_flat(const Patch& patch) noexcept {
                      [&](const Piece* piece) { return piece->normal.dot(patch.pieces[0]->normal) > 1.0 - 1e-9; });
 }
 
+void add_corners(const Piece& piece, const Vec3& direction, const ConvexBody& body, Points& points) noexcept {
+  for (std::size_t i = 0; i < piece.count; ++i) {
+    const Vec3 corner = body.pull_in(piece.corners[i]);
+    points.add(corner, body.way_through(corner, -direction), piece.triangle);
+  }
+}
+
 void add_points(const Patch& patch, const Vec3& direction, const ConvexBody& body, bool ridges, const Limit& limit,
                 Points& points) noexcept {
   Features features;
   body.add_features(direction, patch.exit.depth, features);
-  for (const Piece* piece : patch.span()) {
-    if (points.count > 0 && limit.time_is_up()) return;
-    add_corners_below(*piece, direction, features, points);
-    if (ridges) add_edge_crossings(*piece, direction, features, points);
+  const std::span<const Piece* const> pieces = patch.span();
+  bool is_late = false;
+  for (std::size_t i = 0; i < pieces.size() && !is_late; ++i) {
+    add_corners_below(*pieces[i], direction, features, points);
+    if (ridges) add_edge_crossings(*pieces[i], direction, features, points);
+    is_late = limit.time_is_up();
   }
-  for (const Piece* piece : patch.span()) {
-    if (points.count > 0 && limit.time_is_up()) return;
-    for (std::size_t i = 0; i < piece->count; ++i) {
-      const Vec3 corner = body.pull_in(piece->corners[i]);
-      points.add(corner, body.way_through(corner, -direction), piece->triangle);
-    }
+  for (std::size_t i = 0; i < pieces.size() && !is_late; ++i) {
+    add_corners(*pieces[i], direction, body, points);
+    is_late = limit.time_is_up();
   }
+  if (!is_late) return;
+  // Neighbours stand beside each other: a few from all over hold the body, the next ones on one side only.
+  constexpr std::size_t few = 8;
+  for (std::size_t i = 0; i < few; ++i) add_corners(*pieces[i * pieces.size() / few], direction, body, points);
 }
 
 // Patches whose exits lead the same way are one manifold; the room left is shared among the manifolds still to come.
@@ -451,7 +414,7 @@ Seen write_convex_contacts(const PreparedMesh& mesh, const math::Pose& mesh_in_w
                            const ConvexBody& body, Limit& limit, ContactWriter& writer, int room) noexcept {
   const math::Pose body_in_mesh = mesh_in_world.inverse() * body_in_world;
   Pieces pieces;
-  gather(mesh, body_in_mesh, body, limit, pieces);
+  gather_pieces(mesh, body_in_mesh, body, limit, pieces);
   if (pieces.count == 0) {
     push_out(mesh, mesh_in_world, body_in_mesh, body, limit, writer);
   } else {

@@ -25,7 +25,9 @@ class Limit {
     const double ns = settings.budget_us * 1e3;
     timed_ = ns < 9e18;
     if (!timed_) return;
-    end_ns_ = clock_() + static_cast<std::int64_t>(ns);
+    const std::int64_t now = clock_();
+    half_ns_ = now + static_cast<std::int64_t>(0.5 * ns);
+    end_ns_ = now + static_cast<std::int64_t>(ns);
     const auto units_of_time = static_cast<std::uint64_t>(std::ceil(settings.budget_us * nodes_per_us));
     if (units_of_time < units) shared_units_ = shared_time_;
     units = std::min(units, units_of_time);
@@ -33,6 +35,19 @@ class Limit {
   }
 
   [[nodiscard]] bool time_is_up() const noexcept { return timed_ && clock_() >= end_ns_; }
+
+  /// Whether half of the time is over: what is found until then has to be worked on.
+  [[nodiscard]] bool half_time_is_up() const noexcept { return timed_ && clock_() >= half_ns_; }
+
+  /// How many nodes a search in the first half may visit that does not take them from `units` itself, nor look at the
+  /// clock: what is left of the units, and of that time, but always some.
+  [[nodiscard]] std::uint64_t nodes_in_half_time() const noexcept {
+    constexpr double least = 16.0;
+    constexpr double with_leaves_per_us = 12.0;
+    if (!timed_) return units;
+    const auto in_time = static_cast<double>(half_ns_ - clock_()) * 1e-3 * with_leaves_per_us;
+    return std::min(units, static_cast<std::uint64_t>(std::clamp(in_time, least, 1e15)));
+  }
 
   /// The collision's end: counts it if it was cut off, tells the frame. Gives `contacts` back.
   [[nodiscard]] int finish(bool complete, int contacts) const noexcept {
@@ -67,6 +82,7 @@ class Limit {
   [[nodiscard]] std::uint64_t spent() const noexcept { return begun_with_ - units + beside_; }
 
   realtime::Clock clock_;
+  std::int64_t half_ns_ = 0;
   std::int64_t end_ns_ = 0;
   bool timed_ = false;
   bool shared_time_ = false;  // the frame's, not the geoms' own

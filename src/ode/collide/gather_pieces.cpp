@@ -1,0 +1,82 @@
+#include "ode/collide/gather_pieces.hpp"
+
+#include <cstdint>
+#include <span>
+
+#include "ode/collide/convex_patch.hpp"
+#include "ode/mesh/triangle_corners.hpp"
+
+namespace odds::ode {
+namespace {
+
+constexpr std::size_t octants = 8;
+constexpr std::size_t each = Pieces::most / octants;
+/// Cut whatever the time: without any a body falls through what it has just found.
+constexpr std::size_t least_cut = octants;
+
+/// Triangles near the body by octants of it, or all in the first.
+struct Near {
+  std::array<std::uint32_t, Pieces::most> triangles;
+  std::array<std::size_t, octants> counts = {};
+  bool by_octants = false;
+};
+
+void find_near(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const ConvexBody& body, Limit& limit,
+               Pieces& pieces, Near& near) noexcept {
+  const Vec3& half = body.box_half_extents();
+  std::uint64_t visited = 0;
+  const std::size_t found =
+      query::triangles_in_box(*mesh.shape, body_in_mesh * body.box_center(), body_in_mesh.rotation, half,
+                              near.triangles, limit.nodes_in_half_time(), &pieces.complete, &visited);
+  limit.spend(visited);
+  near.counts[0] = found;
+  pieces.cut_off = !pieces.complete && found < near.triangles.size();
+  // Nothing is left to look anew, or no time.
+  if (pieces.complete || limit.units == 0 || limit.half_time_is_up()) return;
+  near.by_octants = true;
+  near.counts[0] = 0;
+  for (std::size_t octant = 0; octant < octants; ++octant) {
+    if (octant > 0 && limit.half_time_is_up()) {
+      pieces.cut_off = true;
+      return;
+    }
+    const Vec3 signs(octant & 1U ? 0.5 : -0.5, octant & 2U ? 0.5 : -0.5, octant & 4U ? 0.5 : -0.5);
+    const Vec3 center = body.box_center() + half.cwiseProduct(signs);
+    bool octant_complete = true;
+    near.counts[octant] = query::triangles_in_box(*mesh.shape, body_in_mesh * center, body_in_mesh.rotation, 0.5 * half,
+                                                  std::span(near.triangles).subspan(octant * each, each),
+                                                  limit.nodes_in_half_time(), &octant_complete, &visited);
+    limit.spend(visited);
+    pieces.cut_off = pieces.cut_off || (!octant_complete && near.counts[octant] < each);
+  }
+}
+
+}  // namespace
+
+void gather_pieces(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const ConvexBody& body, Limit& limit,
+                   Pieces& pieces) noexcept {
+  Near near;
+  find_near(mesh, body_in_mesh, body, limit, pieces, near);
+  const math::Pose mesh_in_body = body_in_mesh.inverse();
+  const std::size_t groups = near.by_octants ? octants : 1;
+  const std::size_t rounds = near.by_octants ? each : near.counts[0];
+  std::size_t cut = 0;
+  for (std::size_t round = 0; round < rounds; ++round) {
+    for (std::size_t group = 0; group < groups; ++group) {
+      if (round >= near.counts[group]) continue;
+      if (cut++ >= least_cut && limit.half_time_is_up()) {
+        pieces.complete = false;
+        pieces.cut_off = true;
+        return;
+      }
+      const std::uint32_t triangle = near.triangles[group * each + round];
+      Corners corners = mesh.corners(triangle);
+      for (Vec3& corner : corners) corner = mesh_in_body * corner;
+      Piece& piece = pieces.all[pieces.count];
+      piece.triangle = triangle;
+      if (cut_by_sides(corners, body, piece)) ++pieces.count;
+    }
+  }
+}
+
+}  // namespace odds::ode

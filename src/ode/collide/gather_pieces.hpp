@@ -1,0 +1,27 @@
+// The pieces of a mesh's surface inside a convex body, as many as there is room and time for.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "odds/math/pose.hpp"
+#include "ode/collide/limit.hpp"
+#include "ode/geom/convex_body.hpp"
+#include "ode/mesh/prepared_mesh.hpp"
+
+namespace odds::ode {
+
+struct Pieces {
+  static constexpr std::size_t most = 128;
+  std::array<Piece, most> all;
+  std::size_t count = 0;
+  bool complete = true;
+  bool cut_off = false;  ///< by the limit; else only the room for pieces was too small
+};
+
+/// Cuts every triangle near the body. Many small ones are gathered octant by octant, and cut in turn, so that those
+/// kept are spread evenly, also where the time ends. noexcept, no allocation.
+void gather_pieces(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const ConvexBody& body, Limit& limit,
+                   Pieces& pieces) noexcept;
+
+}  // namespace odds::ode
