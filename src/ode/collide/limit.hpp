@@ -25,27 +25,24 @@ class Limit {
     const double ns = settings.budget_us * 1e3;
     timed_ = ns < 9e18;
     if (!timed_) return;
-    const std::int64_t now = clock_();
-    half_ns_ = now + static_cast<std::int64_t>(0.5 * ns);
-    end_ns_ = now + static_cast<std::int64_t>(ns);
+    time_ns_ = ns;
+    start_ns_ = clock_();
     const auto units_of_time = static_cast<std::uint64_t>(std::ceil(settings.budget_us * nodes_per_us));
     if (units_of_time < units) shared_units_ = shared_time_;
     units = std::min(units, units_of_time);
     begun_with_ = units;
   }
 
-  [[nodiscard]] bool time_is_up() const noexcept { return timed_ && clock_() >= end_ns_; }
+  /// `share` of the time, in (0, 1]: less for what has to be worked on afterwards.
+  [[nodiscard]] bool time_is_up(double share = 1.0) const noexcept { return timed_ && clock_() >= end_ns(share); }
 
-  /// Whether half of the time is over: what is found until then has to be worked on.
-  [[nodiscard]] bool half_time_is_up() const noexcept { return timed_ && clock_() >= half_ns_; }
-
-  /// How many nodes a search in the first half may visit that does not take them from `units` itself, nor look at the
+  /// How many nodes a search may visit within that share that does not take them from `units` itself, nor look at the
   /// clock: what is left of the units, and of that time, but always some.
-  [[nodiscard]] std::uint64_t nodes_in_half_time() const noexcept {
+  [[nodiscard]] std::uint64_t nodes_in_time(double share) const noexcept {
     constexpr double least = 16.0;
     constexpr double with_leaves_per_us = 12.0;
     if (!timed_) return units;
-    const auto in_time = static_cast<double>(half_ns_ - clock_()) * 1e-3 * with_leaves_per_us;
+    const auto in_time = static_cast<double>(end_ns(share) - clock_()) * 1e-3 * with_leaves_per_us;
     return std::min(units, static_cast<std::uint64_t>(std::clamp(in_time, least, 1e15)));
   }
 
@@ -79,11 +76,14 @@ class Limit {
   // Searches in a tree do not read the clock at each node; a node takes 10 to 50 ns where the cache holds it.
   static constexpr double nodes_per_us = 30.0;
   static constexpr std::uint64_t most_units = std::uint64_t{1} << 40;
+  [[nodiscard]] std::int64_t end_ns(double share) const noexcept {
+    return start_ns_ + static_cast<std::int64_t>(share * time_ns_);
+  }
   [[nodiscard]] std::uint64_t spent() const noexcept { return begun_with_ - units + beside_; }
 
   realtime::Clock clock_;
-  std::int64_t half_ns_ = 0;
-  std::int64_t end_ns_ = 0;
+  std::int64_t start_ns_ = 0;
+  double time_ns_ = 0.0;
   bool timed_ = false;
   bool shared_time_ = false;  // the frame's, not the geoms' own
   bool shared_units_ = false;
