@@ -306,5 +306,14 @@ TEST(NestedShells, AreAWallBetweenTwoSurfaces) {
   EXPECT_NEAR(hollow, full * (1.0 - 0.125), 1e-12);
 }
 
+/// Also by a compiler that evaluates arguments from the left.
+TEST(MadeShapes, BoxesAreNumberedInOneWay) {
+  const TriangleMesh box = made("box:x=2,y=2,z=2,cells=1");
+  const std::vector<Vec3> expected = {{-1, 1, -1}, {-1, 1, 1}, {-1, -1, 1}, {-1, -1, -1},
+                                      {1, -1, 1},  {1, 1, 1},  {1, 1, -1},  {1, -1, -1}};
+  ASSERT_EQ(box.vertices().size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(box.vertices()[i], expected[i]) << i;
+}
+
 }  // namespace
 }  // namespace odds::mesh::made

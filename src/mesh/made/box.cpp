@@ -46,8 +46,11 @@ Result<TriangleMesh> make(const Box& shape) {
             at[v] = j + dj;
             return vertex(at);
           };
-          if (side == n) surface.quad(corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1));
-          if (side == 0) surface.quad(corner(0, 0), corner(0, 1), corner(1, 1), corner(1, 0));
+          // One after the other: compilers differ in the order of arguments, which would number the vertices.
+          const std::uint32_t last = side == n ? corner(0, 1) : corner(1, 0);
+          const std::uint32_t far = corner(1, 1);
+          const std::uint32_t next = side == n ? corner(1, 0) : corner(0, 1);
+          surface.quad(corner(0, 0), next, far, last);
         }
       }
     }
