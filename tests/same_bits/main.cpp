@@ -1,5 +1,6 @@
-// odds_same_bits: prints one number for each bounding volume, made of every bit of many answers within work units. Two
-// builds that print the same gave the same answers; tests/same_bits/run compares compilers and optimisation levels.
+// odds_same_bits: prints one number for each bounding volume, made of every bit of many answers within work units, and
+// one of those with a proof. Two builds that print the same gave the same answers; tests/same_bits/run compares
+// compilers and optimisation levels, tests/arm64/run another family of processors.
 #include <bit>
 #include <cstdint>
 #include <cstdio>
@@ -50,6 +51,7 @@ class Digest {
 
 struct Tally {
   Digest digest;
+  Digest proofs;  ///< of answers with a proof alone
   std::uint64_t answers = 0, unproved = 0, hits = 0;
 };
 
@@ -88,6 +90,7 @@ bool add_answers(const std::string& name_a, const std::string& name_b, volume::K
           if (i % 5 == 4) request.p_min = 0.9;
           const query::Answer& answer = pair.value().run(pose, request);
           tally.digest.add(answer);
+          if (answer.basis == query::Basis::proved) tally.proofs.add(answer);
           ++tally.answers;
           tally.unproved += answer.basis == query::Basis::proved ? 0 : 1;
           tally.hits += answer.verdict == query::Verdict::hit ? 1 : 0;
@@ -111,9 +114,10 @@ int run(int poses) {
       std::fprintf(stderr, "odds_same_bits: a mesh or a pair could not be made\n");
       return 1;
     }
-    std::printf("%-8s %016llx  %llu answers, %llu without a proof, %llu hits\n", volume::name(volume).data(),
-                static_cast<unsigned long long>(tally.digest.value()), static_cast<unsigned long long>(tally.answers),
-                static_cast<unsigned long long>(tally.unproved), static_cast<unsigned long long>(tally.hits));
+    std::printf("%-8s %016llx  %llu answers, %llu without a proof, %llu hits, %016llx of proofs\n",
+                volume::name(volume).data(), static_cast<unsigned long long>(tally.digest.value()),
+                static_cast<unsigned long long>(tally.answers), static_cast<unsigned long long>(tally.unproved),
+                static_cast<unsigned long long>(tally.hits), static_cast<unsigned long long>(tally.proofs.value()));
   }
   return 0;
 }
