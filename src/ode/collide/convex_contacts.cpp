@@ -191,11 +191,11 @@ void add_points(const Patch& patch, const Vec3& direction, const ConvexBody& bod
   for (std::size_t i = 0; i < pieces.size() && !is_late; ++i) {
     add_corners_below(*pieces[i], direction, features, points);
     if (ridges) add_edge_crossings(*pieces[i], direction, features, points);
-    is_late = limit.time_is_up();
+    is_late = limit.time_is_up(time_for_points);
   }
   for (std::size_t i = 0; i < pieces.size() && !is_late; ++i) {
     add_corners(*pieces[i], direction, body, points);
-    is_late = limit.time_is_up();
+    is_late = limit.time_is_up(time_for_points);
   }
   if (!is_late) return;
   // Neighbours stand beside each other: a few from all over hold the body, the next ones on one side only.
@@ -310,7 +310,7 @@ void leave_sideways(const PreparedMesh& mesh, const math::Pose& body_in_mesh, co
                     const ConvexBody& body, Limit& limit, std::span<Patch> patches) noexcept {
   double deepest = 0.0;
   for (const Patch& patch : patches) deepest = std::max(deepest, patch.exit.depth);
-  if (!mesh.closed || !(deepest > 2.0 * body.box_half_extents().minCoeff()) || limit.time_is_up(0.8)) return;
+  if (!mesh.closed || !(deepest > 2.0 * body.box_half_extents().minCoeff()) || limit.time_is_up(time_for_exits)) return;
   Vec3 middle = Vec3::Zero();
   double area = 0.0;
   for (std::size_t i = 0; i < pieces.count; ++i) {
@@ -337,9 +337,9 @@ void leave_by_the_near_side(const PreparedMesh& mesh, const math::Pose& body_in_
                             Limit& limit, std::span<Patch> patches) noexcept {
   constexpr std::uint64_t most_units = 96;  // some ten microseconds: the search does not look at the clock
   const auto is_long = [&](const Patch& p) { return p.exit.depth > body.box_half_extents().minCoeff(); };
-  if (!mesh.closed || std::none_of(patches.begin(), patches.end(), is_long) || limit.time_is_up(0.8)) return;
+  if (!mesh.closed || std::none_of(patches.begin(), patches.end(), is_long) || limit.time_is_up(time_for_exits)) return;
   const double size = body.box_half_extents().norm();
-  const std::uint64_t given = std::min(limit.units, most_units);
+  const std::uint64_t given = std::min(limit.nodes_in_time(time_for_exits), most_units);
   std::uint64_t left = given;
   const auto nearest = nearest_surface(mesh, body_in_mesh * body.center(), size, left);
   limit.units -= given - left;

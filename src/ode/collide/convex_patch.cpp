@@ -10,7 +10,6 @@
 namespace odds::ode {
 namespace {
 
-constexpr double time_share = 0.8;  // points are still to be made
 // Directions that the surface faces at less than this (cosine) do not lead out of it.
 constexpr double least_facing = 0.05;
 // A relative margin, so that among equal ways the first one considered wins whatever the rounding.
@@ -125,15 +124,15 @@ Exit shortest_exit(std::span<const Piece* const> patch, const ConvexBody& body, 
   for (const Piece* piece : patch) {
     const auto seen = [piece](const Vec3& normal) { return normal.dot(piece->normal) > 1.0 - 1e-9; };
     if (std::any_of(tried.begin(), tried.begin() + tried_count, seen)) continue;
-    if (tried_count > 0 && limit.time_is_up(time_share)) break;
+    if (tried_count > 0 && limit.time_is_up(time_for_exits)) break;
     consider(piece->normal);
     if (tried_count < tried.size()) tried[tried_count++] = piece->normal;
   }
-  if (limit.time_is_up(time_share)) return best;
+  if (limit.time_is_up(time_for_exits)) return best;
   ExitList exits(mean);
   body.add_exits(patch, exits);
   for (const Vec3& direction : exits.all()) {
-    if (limit.time_is_up(time_share)) break;
+    if (limit.time_is_up(time_for_exits)) break;
     consider(direction);
   }
   return best;

@@ -9,6 +9,12 @@
 
 namespace odds::ode {
 
+/// Shares of a collision's time after which a part of its work ends, so that what it found can be worked on: pieces are
+/// gathered, ways out are looked for, points are made; then contacts are chosen.
+constexpr double time_for_pieces = 0.5;
+constexpr double time_for_exits = 0.75;
+constexpr double time_for_points = 0.9;
+
 /// Cuts a triangle (body frame) by the sides of the body. False if nothing with an area is left, or what is left does
 /// not meet the body.
 [[nodiscard]] bool cut_by_sides(const std::array<Vec3, 3>& triangle, const ConvexBody& body, Piece& piece) noexcept;

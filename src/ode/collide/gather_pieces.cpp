@@ -14,8 +14,6 @@ constexpr std::size_t each = Pieces::most / octants;
 /// Cut whatever the time: without any a body falls through what it has just found.
 constexpr std::size_t least_cut = octants;
 
-/// What is found has to be worked on.
-constexpr double time_share = 0.5;
 /// Those of a tetrahedron first: any face of the body has two of them, opposite each other.
 constexpr std::array<std::size_t, octants> in_order = {0, 3, 5, 6, 7, 4, 2, 1};
 
@@ -32,16 +30,16 @@ void find_near(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const C
   std::uint64_t visited = 0;
   const std::size_t found =
       query::triangles_in_box(*mesh.shape, body_in_mesh * body.box_center(), body_in_mesh.rotation, half,
-                              near.triangles, limit.nodes_in_time(time_share), &pieces.complete, &visited);
+                              near.triangles, limit.nodes_in_time(time_for_pieces), &pieces.complete, &visited);
   limit.spend(visited);
   near.counts[0] = found;
   pieces.cut_off = !pieces.complete && found < near.triangles.size();
   // Nothing is left to look anew, or no time.
-  if (pieces.complete || limit.units == 0 || limit.time_is_up(time_share)) return;
+  if (pieces.complete || limit.units == 0 || limit.time_is_up(time_for_pieces)) return;
   near.by_octants = true;
   near.counts[0] = 0;
   for (const std::size_t octant : in_order) {
-    if (octant != in_order.front() && limit.time_is_up(time_share)) {
+    if (octant != in_order.front() && limit.time_is_up(time_for_pieces)) {
       pieces.cut_off = true;
       return;
     }
@@ -50,7 +48,7 @@ void find_near(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const C
     bool octant_complete = true;
     near.counts[octant] = query::triangles_in_box(*mesh.shape, body_in_mesh * center, body_in_mesh.rotation, 0.5 * half,
                                                   std::span(near.triangles).subspan(octant * each, each),
-                                                  limit.nodes_in_time(time_share), &octant_complete, &visited);
+                                                  limit.nodes_in_time(time_for_pieces), &octant_complete, &visited);
     limit.spend(visited);
     pieces.cut_off = pieces.cut_off || (!octant_complete && near.counts[octant] < each);
   }
@@ -70,7 +68,7 @@ void gather_pieces(const PreparedMesh& mesh, const math::Pose& body_in_mesh, con
     for (std::size_t i = 0; i < groups; ++i) {
       const std::size_t group = in_order[i];
       if (round >= near.counts[group]) continue;
-      if (cut++ >= least_cut && limit.time_is_up(time_share)) {
+      if (cut++ >= least_cut && limit.time_is_up(time_for_pieces)) {
         pieces.complete = false;
         pieces.cut_off = true;
         return;

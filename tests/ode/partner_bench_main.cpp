@@ -1,0 +1,108 @@
+// odds_bench_partners: how long boxes, cylinders and capsules on a mesh take within budgets of microseconds, and how
+// many of them have contacts. Poses are about vertices of the mesh, turned anyhow, the same for every budget.
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "odds/math/random.hpp"
+#include "odds/mesh/made/by_name.hpp"
+#include "odds/ode/geom.hpp"
+#include "odds/query/shape.hpp"
+#include "odds/realtime/clock.hpp"
+
+namespace {
+
+using odds::Vec3;
+
+struct Body {
+  const char* name;
+  dGeomID geom;
+};
+
+struct Measured {
+  std::vector<double> us;  // sorted
+  int hits = 0;
+  int contacts = 0;
+
+  [[nodiscard]] double at(double share) const {
+    return us[static_cast<std::size_t>(share * static_cast<double>(us.size() - 1))];
+  }
+};
+
+Measured measure(dGeomID mesh, const Body& body, const odds::mesh::TriangleMesh& shape, double size, int poses,
+                 std::uint64_t seed) {
+  const odds::realtime::Clock clock = odds::realtime::fastest_clock();
+  Measured measured;
+  for (int i = 0; i < poses; ++i) {
+    odds::math::Random random(seed, static_cast<std::uint64_t>(i));
+    const Vec3 vertex = shape.vertices()[random.below(shape.vertices().size())];
+    const Vec3 away = random.direction();
+    const Vec3 place = vertex + random.uniform(0.0, 0.5) * size * away;
+    const odds::Quat turn = random.rotation();
+    const dQuaternion q = {turn.w(), turn.x(), turn.y(), turn.z()};
+    dGeomSetPosition(body.geom, place.x(), place.y(), place.z());
+    dGeomSetQuaternion(body.geom, q);
+    std::array<dContactGeom, 8> contacts;
+    const std::int64_t begin = clock();
+    const int count = dCollide(mesh, body.geom, 8, contacts.data(), sizeof contacts[0]);
+    measured.us.push_back(1e-3 * static_cast<double>(clock() - begin));
+    measured.hits += count > 0 ? 1 : 0;
+    measured.contacts += count;
+  }
+  std::sort(measured.us.begin(), measured.us.end());
+  return measured;
+}
+
+int run(std::string_view name, int poses, std::uint64_t seed) {
+  auto mesh = odds::mesh::made::make_shape(name);
+  auto library = odds::ode::Library::open();
+  if (!mesh.ok() || !library.ok()) {
+    std::fprintf(stderr, "%s\n", mesh.ok() ? library.error().message().c_str() : mesh.error().message().c_str());
+    return 1;
+  }
+  const auto shared = std::make_shared<const odds::mesh::TriangleMesh>(std::move(mesh).value());
+  const auto geom = odds::ode::Geom::make(nullptr, odds::query::Shape::build(shared).value()).value();
+  const double size = 0.5 * shared->size();
+  dGeomOddsMeshSetCarryMotion(geom.id(), 0);  // every pose stands alone
+  std::printf("%s, %zu triangles, %d poses each; bodies of half its size\n", shared->name().c_str(),
+              shared->triangles().size(), poses);
+  std::printf("%-10s %10s %8s %8s %8s %8s %10s\n", "body", "budget us", "p50", "p90", "p99", "hits", "contacts");
+  const Body bodies[] = {{"box", dCreateBox(nullptr, size, size, size)},
+                         {"cylinder", dCreateCylinder(nullptr, 0.5 * size, size)},
+                         {"capsule", dCreateCapsule(nullptr, 0.25 * size, 0.5 * size)}};
+  for (const Body& body : bodies) {
+    for (const double us : {5.0, 10.0, 20.0, 50.0, 100.0, std::numeric_limits<double>::infinity()}) {
+      dGeomOddsMeshSetBudget(geom.id(), std::min(us, 1e12));
+      const Measured m = measure(geom.id(), body, *shared, size, poses, seed);
+      std::printf("%-10s %10.0f %8.1f %8.1f %8.1f %8d %10d\n", body.name, us, m.at(0.5), m.at(0.9), m.at(0.99), m.hits,
+                  m.contacts);
+    }
+    dGeomDestroy(body.geom);
+  }
+  return 0;
+}
+
+bool number(std::string_view text, int& to) {
+  return std::from_chars(text.data(), text.data() + text.size(), to).ec == std::errc();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  int poses = 3000;
+  int seed = 3;
+  std::string_view name = "made:torus_knot:along=600,across=50";
+  if (argc > 1) name = argv[1];
+  if (argc > 4 || (argc > 2 && (!number(argv[2], poses) || poses < 100)) || (argc > 3 && !number(argv[3], seed))) {
+    std::fprintf(stderr, "usage: odds_bench_partners [made:NAME... [POSES, >= 100 [SEED]]]\n");
+    return 2;
+  }
+  return run(name, poses, static_cast<std::uint64_t>(seed));
+}
