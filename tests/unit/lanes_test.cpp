@@ -85,21 +85,36 @@ bool same(T x, T y) {
   return x == y || (std::isnan(x) && std::isnan(y));
 }
 
-TYPED_TEST(Lanes, CalculateAsOneNumberDoes) {
-  math::Random random(5);
-  alignas(64) float a[wide_lanes];
-  alignas(64) float b[wide_lanes];
-  const auto is_as = [&](const auto& lanes, const auto& one) {
-    alignas(64) float made[wide_lanes];
-    TypeParam::store(made, lanes);
-    for (unsigned i = 0; i < wide_lanes; ++i) {
+/// Eight numbers and eight others, and whether what became of them is what one number by itself becomes.
+template <class T>
+struct TwoEights {
+  alignas(64) T a[8];
+  alignas(64) T b[8];
+
+  void draw(math::Random& random) {
+    for (T& number : a) number = any_number<T>(random);
+    for (T& number : b) number = any_number<T>(random);
+  }
+  template <class One>
+  [[nodiscard]] bool make(const T (&made)[8], const One& one) const {
+    for (unsigned i = 0; i < 8; ++i) {
       if (!same(made[i], one(a[i], b[i]))) return false;
     }
     return true;
+  }
+};
+
+TYPED_TEST(Lanes, CalculateAsOneNumberDoes) {
+  math::Random random(5);
+  TwoEights<float> eights;
+  const auto& [a, b] = eights;
+  const auto is_as = [&](const auto& lanes, const auto& one) {
+    alignas(64) float made[8];
+    TypeParam::store(made, lanes);
+    return eights.make(made, one);
   };
   for (int i = 0; i < 5000; ++i) {
-    for (float& number : a) number = any_number<float>(random);
-    for (float& number : b) number = any_number<float>(random);
+    eights.draw(random);
     const auto x = TypeParam::load(a);
     const auto y = TypeParam::load(b);
     ASSERT_TRUE(is_as(x + y, [](float p, float q) { return p + q; })) << i;
@@ -145,19 +160,15 @@ TYPED_TEST(Lanes, SplitExponentsOff) {
 TYPED_TEST(Lanes, OfDoublesCalculateAsOneNumberDoes) {
   using Eight = lanes::Doubles<typename lanes::DoublesOf<TypeParam>::Register>;
   math::Random random(7);
-  alignas(64) double a[8];
-  alignas(64) double b[8];
+  TwoEights<double> eights;
+  const auto& [a, b] = eights;
   const auto is_as = [&](const Eight& eight, const auto& one) {
     alignas(64) double made[8];
     eight.store(made);
-    for (unsigned i = 0; i < 8; ++i) {
-      if (!same(made[i], one(a[i], b[i]))) return false;
-    }
-    return true;
+    return eights.make(made, one);
   };
   for (int i = 0; i < 5000; ++i) {
-    for (double& number : a) number = any_number<double>(random);
-    for (double& number : b) number = any_number<double>(random);
+    eights.draw(random);
     const Eight x = Eight::load(a);
     const Eight y = Eight::load(b);
     ASSERT_TRUE(is_as(x + y, [](double p, double q) { return p + q; })) << i;

@@ -5,10 +5,15 @@ namespace odds::query::wide {
 
 namespace {
 
+template <class L>
+const Searches* searches_on() noexcept {
+  static constexpr Searches searches = searches_of<L>();
+  return &searches;
+}
+
 const Searches* sse2_searches() noexcept {
 #if defined(__SSE2__)
-  static constexpr Searches searches = searches_of<lanes::Sse2>();
-  return &searches;
+  return searches_on<lanes::Sse2>();
 #else
   return nullptr;
 #endif
@@ -16,16 +21,10 @@ const Searches* sse2_searches() noexcept {
 
 const Searches* neon_searches() noexcept {
 #if defined(__aarch64__)
-  static constexpr Searches searches = searches_of<lanes::Neon>();
-  return &searches;
+  return searches_on<lanes::Neon>();
 #else
   return nullptr;
 #endif
-}
-
-const Searches* portable_searches() noexcept {
-  static constexpr Searches searches = searches_of<lanes::Portable>();
-  return &searches;
 }
 
 const Searches* avx2_searches_here() noexcept {
@@ -60,7 +59,7 @@ const Searches* searches_for(InstructionSet set) noexcept {
     case InstructionSet::neon:
       return neon_searches();
     case InstructionSet::portable:
-      return portable_searches();
+      return searches_on<lanes::Portable>();
     case InstructionSet::best:
       break;
   }
@@ -68,7 +67,7 @@ const Searches* searches_for(InstructionSet set) noexcept {
   if (const Searches* searches = avx2_searches_here()) return searches;
   if (const Searches* searches = sse2_searches()) return searches;
   if (const Searches* searches = neon_searches()) return searches;
-  return portable_searches();
+  return searches_on<lanes::Portable>();
 }
 
 }  // namespace odds::query::wide
