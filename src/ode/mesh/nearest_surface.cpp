@@ -27,8 +27,10 @@ Vec3 pseudo_normal(const PreparedMesh& mesh, const Vec3& point, std::uint32_t at
   const std::size_t count = query::triangles_in_box(*mesh.shape, point, Mat3::Identity(), Vec3::Constant(tolerance),
                                                     touching, most_nodes, nullptr);
   if (count == touching.size()) {
-    for (const PreparedMesh::Fan& fan : mesh.fans) {
-      if ((fan.tip - point).norm() <= tolerance) return fan.normal;
+    const auto before = [](const PreparedMesh::Fan& fan, double x) { return fan.tip.x() < x; };
+    auto fan = std::lower_bound(mesh.fans.begin(), mesh.fans.end(), point.x() - tolerance, before);
+    for (; fan != mesh.fans.end() && fan->tip.x() <= point.x() + tolerance; ++fan) {
+      if ((fan->tip - point).norm() <= tolerance) return fan->normal;
     }
   }
   Vec3 sum = Vec3::Zero();

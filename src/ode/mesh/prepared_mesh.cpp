@@ -80,6 +80,7 @@ std::vector<PreparedMesh::Fan> find_fans(const PreparedMesh& prepared, std::span
   }
   std::erase_if(fans, [](const PreparedMesh::Fan& fan) { return !(fan.normal.norm() > 0.0); });
   for (PreparedMesh::Fan& fan : fans) fan.normal.normalize();
+  std::sort(fans.begin(), fans.end(), [](const auto& a, const auto& b) { return a.tip.x() < b.tip.x(); });
   return fans;
 }
 

@@ -30,7 +30,7 @@ struct PreparedMesh {
   BoxTree vertex_tree;                        ///< over `vertices`
   BoxTree triangle_tree;                      ///< over the mesh's triangles
   bool closed = false;                        ///< every edge has its opposite: inside and outside are defined
-  std::vector<Fan> fans;
+  std::vector<Fan> fans;  ///< by the x of their tips
 
   /// Precondition: `shape` is not null. May throw std::bad_alloc.
   static std::shared_ptr<const PreparedMesh> make(std::shared_ptr<const query::Shape> shape);
