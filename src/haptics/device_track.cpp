@@ -13,6 +13,7 @@
 
 #include "mesh/byte_order_mark.hpp"
 #include "mesh/output_file.hpp"
+#include "mesh/trimmed.hpp"
 #include "odds/haptics/settings.hpp"
 
 namespace odds::haptics {
@@ -40,17 +41,11 @@ constexpr std::array<ColumnName, 21> column_names = {
      {"vz_m_per_s", vz, 1.0},  {"wx_rad_per_s", wx, 1.0}, {"wy_rad_per_s", wy, 1.0}, {"wz_rad_per_s", wz, 1.0},
      {"buttons", buttons, 1.0}}};
 
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r')) text.remove_suffix(1);
-  return text;
-}
-
 std::vector<std::string_view> split(std::string_view line) {
   std::vector<std::string_view> cells;
   while (true) {
     const std::size_t comma = line.find(',');
-    cells.push_back(trimmed(line.substr(0, comma)));
+    cells.push_back(mesh::trimmed(line.substr(0, comma)));
     if (comma == std::string_view::npos) return cells;
     line.remove_prefix(comma + 1);
   }
@@ -186,7 +181,7 @@ Result<DeviceTrack> parse_track(std::string_view text, const std::string& name) 
   text = mesh::without_byte_order_mark(text);
   while (!text.empty()) {
     const std::size_t end = text.find('\n');
-    const std::string_view line = trimmed(text.substr(0, end));
+    const std::string_view line = mesh::trimmed(text.substr(0, end));
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
     ++line_number;
     if (line.empty() || line.front() == '#') continue;

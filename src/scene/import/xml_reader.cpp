@@ -9,6 +9,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "mesh/trimmed.hpp"
+
 namespace odds::scene {
 namespace {
 
@@ -50,12 +52,6 @@ bool is_for_xacro(pugi::xml_node node, bool with_expressions) {
     const std::string_view value = attribute.value();
     return value.find("${") != std::string_view::npos || value.find("$(") != std::string_view::npos;
   });
-}
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t begin = text.find_first_not_of(" \t\r\n");
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(" \t\r\n") + 1 - begin);
 }
 
 }  // namespace
@@ -121,10 +117,10 @@ pugi::xml_node XmlReader::child(pugi::xml_node node, const char* name) const {
 
 std::string XmlReader::child_text(pugi::xml_node node, const char* name) const { return text_of(child(node, name)); }
 
-std::string XmlReader::text_of(pugi::xml_node node) { return std::string(trimmed(node.text().get())); }
+std::string XmlReader::text_of(pugi::xml_node node) { return std::string(mesh::trimmed(node.text().get())); }
 
 bool XmlReader::flag(pugi::xml_node node, std::string_view text) const {
-  std::string word(trimmed(text));
+  std::string word(mesh::trimmed(text));
   std::transform(word.begin(), word.end(), word.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
   const bool yes = word == "true" || word == "1";
