@@ -102,6 +102,12 @@ struct TwoEights {
     }
     return true;
   }
+  template <class One>
+  [[nodiscard]] unsigned mask(const One& one) const {
+    unsigned mask = 0;
+    for (unsigned i = 0; i < 8; ++i) mask |= (one(a[i], b[i]) ? 1U : 0U) << i;
+    return mask;
+  }
 };
 
 TYPED_TEST(Lanes, CalculateAsOneNumberDoes) {
@@ -126,14 +132,8 @@ TYPED_TEST(Lanes, CalculateAsOneNumberDoes) {
     // Of what is not a number the second one, as SSE has it.
     ASSERT_TRUE(is_as(TypeParam::min(x, y), [](float p, float q) { return p < q ? p : q; })) << i;
     ASSERT_TRUE(is_as(TypeParam::max(x, y), [](float p, float q) { return p > q ? p : q; })) << i;
-    unsigned mask = 0;
-    unsigned signs = 0;
-    for (unsigned lane = 0; lane < wide_lanes; ++lane) {
-      mask |= (a[lane] <= b[lane] ? 1U : 0U) << lane;
-      signs |= (std::signbit(a[lane]) ? 1U : 0U) << lane;
-    }
-    ASSERT_EQ(TypeParam::less_equal(x, y), mask) << i;
-    ASSERT_EQ(TypeParam::highest_bits(a), signs) << i;
+    ASSERT_EQ(TypeParam::less_equal(x, y), eights.mask([](float p, float q) { return p <= q; })) << i;
+    ASSERT_EQ(TypeParam::highest_bits(a), eights.mask([](float p, float) { return std::signbit(p); })) << i;
   }
 }
 
@@ -180,19 +180,12 @@ TYPED_TEST(Lanes, OfDoublesCalculateAsOneNumberDoes) {
     ASSERT_TRUE(is_as(min(x, y), [](double p, double q) { return p < q ? p : q; })) << i;
     ASSERT_TRUE(is_as(max(x, y), [](double p, double q) { return p > q ? p : q; })) << i;
     ASSERT_TRUE(is_as(choose(x < y, x, y), [](double p, double q) { return p < q ? p : q; })) << i;
-    const double* rows[8];
-    for (unsigned lane = 0; lane < 8; ++lane) rows[lane] = a + 7 - lane;
+    const double* const rows[8] = {a + 7, a + 6, a + 5, a + 4, a + 3, a + 2, a + 1, a};
     alignas(64) double turned[8];
     Eight::from(rows, 0).store(turned);
-    unsigned less = 0;
-    unsigned either = 0;
-    for (unsigned lane = 0; lane < 8; ++lane) {
-      ASSERT_TRUE(same(turned[lane], a[7 - lane])) << i;
-      less |= (a[lane] < b[lane] ? 1U : 0U) << lane;
-      either |= (a[lane] < b[lane] || b[lane] <= a[lane] ? 1U : 0U) << lane;
-    }
-    ASSERT_EQ((x < y).bits(), less) << i;
-    ASSERT_EQ(((x < y) | (y <= x)).bits(), either) << i;
+    ASSERT_TRUE(std::equal(std::rbegin(turned), std::rend(turned), a, same<double>)) << i;
+    ASSERT_EQ((x < y).bits(), eights.mask([](double p, double q) { return p < q; })) << i;
+    ASSERT_EQ(((x < y) | (y <= x)).bits(), eights.mask([](double p, double q) { return p < q || q <= p; })) << i;
     ASSERT_EQ(((x < y) & (y <= x)).bits(), 0U) << i;
   }
 }
