@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "odds/math/float_sums.hpp"
 #include "odds/volume/kdop.hpp"
 #include "volume/point_to_hull.hpp"
 
@@ -164,7 +165,7 @@ Hull Hull::fit(std::span<const Vec3> points, const PrincipalAxes& axes) {
   const double radius = static_cast<double>(hull.box_.radius());
   const double left = add_farthest(points, distances, radius / 256.0, vertices);
   // Distances are rounded relative to the coordinates.
-  const double coordinates = radius + static_cast<double>(hull.box_.center_.norm());
+  const double coordinates = radius + static_cast<double>(math::length(hull.box_.center_));
   hull.inflation_ = rounded_up(left + 1e-14 * coordinates);
 
   std::array<Vec3, most_vertices> local;

@@ -2,6 +2,7 @@
 // 2001).
 #pragma once
 
+#include "odds/math/float_sums.hpp"
 #include "odds/math/rounding.hpp"
 #include "odds/volume/box_overlap.hpp"
 #include "odds/volume/concept.hpp"
@@ -32,7 +33,7 @@ struct Aabb {
   }
 
   [[nodiscard]] double volume() const noexcept { return box_volume(half_); }
-  [[nodiscard]] float radius() const noexcept { return half_.norm(); }
+  [[nodiscard]] float radius() const noexcept { return math::length(half_); }
   [[nodiscard]] OrientedBox cell_box() const {
     return {center_.cast<double>(), Mat3::Identity(), half_.cast<double>()};
   }

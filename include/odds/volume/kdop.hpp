@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "odds/math/float_sums.hpp"
 #include "odds/math/rounding.hpp"
 #include "odds/volume/box_overlap.hpp"
 #include "odds/volume/concept.hpp"
@@ -75,7 +76,7 @@ struct Kdop {
   [[nodiscard]] Vec3f box_half() const noexcept { return {half_[0], half_[1], half_[2]}; }
 
   [[nodiscard]] double volume() const noexcept { return box_volume(box_half()) * static_cast<double>(fill_); }
-  [[nodiscard]] float radius() const noexcept { return box_half().norm(); }
+  [[nodiscard]] float radius() const noexcept { return math::length(box_half()); }
   [[nodiscard]] OrientedBox cell_box() const {
     const Vec3f center = box_center();
     const Vec3f half = box_half();
@@ -89,7 +90,7 @@ struct Kdop {
     // Where the box's centre stands in the other slabs; differences of like numbers, so small errors are let pass.
     std::array<float, slabs> middle{};
     for (std::size_t i = 3; i < slabs; ++i) middle[i] = along(i, box_center()) - center_[i];
-    const float slack = 1e-6F * (half.sum() + box_center().cwiseAbs().sum());
+    const float slack = 1e-6F * (math::dot(Vec3f::Ones(), half) + math::dot(Vec3f::Ones(), box_center().cwiseAbs()));
     int inside = 0;
     for (int cell = 0; cell < 512; ++cell) {
       const Vec3f offset =

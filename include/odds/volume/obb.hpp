@@ -1,6 +1,7 @@
 // Oriented box, aligned with the principal axes of the surface in it (Gottschalk, Lin and Manocha 1996).
 #pragma once
 
+#include "odds/math/float_sums.hpp"
 #include "odds/math/rounding.hpp"
 #include "odds/volume/box_overlap.hpp"
 #include "odds/volume/concept.hpp"
@@ -35,7 +36,7 @@ struct Obb {
   }
 
   [[nodiscard]] double volume() const noexcept { return box_volume(half_); }
-  [[nodiscard]] float radius() const noexcept { return half_.norm(); }
+  [[nodiscard]] float radius() const noexcept { return math::length(half_); }
   [[nodiscard]] OrientedBox cell_box() const {
     return {center_.cast<double>(), axes_.cast<double>(), half_.cast<double>()};
   }
@@ -43,8 +44,8 @@ struct Obb {
 
 [[nodiscard]] inline BoxPairView view_of(const Obb& a, const Obb& b, const RelativePose& pose) noexcept {
   BoxPairView view;
-  view.t = a.axes_.transpose() * (pose.rotation * b.center_ + pose.translation - a.center_);
-  view.r = a.axes_.transpose() * (pose.rotation * b.axes_);
+  view.t = math::transposed_times(a.axes_, Vec3f(pose.rotation * b.center_ + pose.translation - a.center_));
+  view.r = math::transposed_times(a.axes_, Mat3f(pose.rotation * b.axes_));
   view.abs_r = view.r.cwiseAbs().array() + 1e-6F;
   return view;
 }
@@ -59,8 +60,8 @@ struct Obb {
 }
 
 [[nodiscard]] inline bool met_by(const Obb& box, const RaySegment& ray) noexcept {
-  return segment_meets_box(box.half_, box.axes_.transpose() * (ray.origin - box.center_),
-                           box.axes_.transpose() * ray.direction, ray);
+  return segment_meets_box(box.half_, math::transposed_times(box.axes_, Vec3f(ray.origin - box.center_)),
+                           math::transposed_times(box.axes_, ray.direction), ray);
 }
 
 static_assert(BoundingVolume<Obb>);

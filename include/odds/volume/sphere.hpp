@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "odds/math/float_sums.hpp"
 #include "odds/math/rounding.hpp"
 #include "odds/volume/box_overlap.hpp"
 #include "odds/volume/concept.hpp"
@@ -56,13 +57,13 @@ struct Sphere {
 [[nodiscard]] inline bool overlap(const Sphere& a, const Sphere& b, const RelativePose& pose) noexcept {
   const Vec3f offset = pose.rotation * b.center_ + pose.translation - a.center_;
   const float reach = a.radius_ + b.radius_ + 2.0F * pose.margin;
-  return offset.squaredNorm() <= reach * reach * (1.0F + 1e-6F);
+  return math::squared_length(offset) <= reach * reach * (1.0F + 1e-6F);
 }
 
 /// The exact lens of two balls: pi z^2 (d^2 + 2d(R+r) - 3(R-r)^2) / (12 d) with z = R + r - d; a contained ball counts
 /// whole.
 [[nodiscard]] inline double overlap_volume(const Sphere& a, const Sphere& b, const RelativePose& pose) noexcept {
-  const double d = static_cast<double>((pose.rotation * b.center_ + pose.translation - a.center_).norm());
+  const double d = static_cast<double>(math::length(pose.rotation * b.center_ + pose.translation - a.center_));
   const double ra = std::max(static_cast<double>(a.radius_), 1e-30);
   const double rb = std::max(static_cast<double>(b.radius_), 1e-30);
   if (d <= std::abs(ra - rb)) return std::min(a.volume(), b.volume());
@@ -75,9 +76,9 @@ struct Sphere {
 
 [[nodiscard]] inline bool met_by(const Sphere& sphere, const RaySegment& ray) noexcept {
   const Vec3f to_center = sphere.center_ - ray.origin;
-  const float along = std::clamp(to_center.dot(ray.direction), 0.0F, ray.length);
+  const float along = std::clamp(math::dot(to_center, ray.direction), 0.0F, ray.length);
   const float reach = sphere.radius_ + 2.0F * ray.margin;
-  return (to_center - along * ray.direction).squaredNorm() <= reach * reach * (1.0F + 1e-6F);
+  return math::squared_length(to_center - along * ray.direction) <= reach * reach * (1.0F + 1e-6F);
 }
 
 static_assert(BoundingVolume<Sphere>);

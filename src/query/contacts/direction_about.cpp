@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <variant>
 
+#include "odds/math/float_sums.hpp"
 #include "query/node_odds/facing.hpp"
 #include "query/shape_data.hpp"
 
@@ -35,9 +36,9 @@ NodesAbout nodes_about(const tree::WideTree& tree, const wide::Searches& searche
 /// How far a place is from a node's middle, over the node's size, the more if it lies outside; squared.
 float strangeness(const tree::NodeStatistics& statistics, float radius, const Vec3f& place) noexcept {
   constexpr float outside_counts = 16.0F;
-  const float along = statistics.slab_normal.dot(place) - statistics.slab_center;
+  const float along = math::dot(statistics.slab_normal, place) - statistics.slab_center;
   const float above = std::max(std::abs(along) - statistics.slab_half, 0.0F);
-  return ((place - statistics.centroid).squaredNorm() + outside_counts * above * above) /
+  return (math::squared_length(place - statistics.centroid) + outside_counts * above * above) /
          std::max(radius * radius, 1e-37F);
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "odds/math/float_sums.hpp"
 #include "odds/math/pose.hpp"
 #include "odds/tree/node_statistics.hpp"
 
@@ -54,7 +55,7 @@ struct Facing {
 
 /// How flat both patches are, 0 .. 1: one that faces all ways, as of a whole closed body, has no side.
 [[nodiscard]] inline double flatness_of(const tree::NodeStatistics& a, const tree::NodeStatistics& b) noexcept {
-  return std::min(static_cast<double>(a.mean_normal.norm() * b.mean_normal.norm()), 1.0);
+  return std::min(static_cast<double>(math::length(a.mean_normal) * math::length(b.mean_normal)), 1.0);
 }
 
 }  // namespace odds::query

@@ -7,6 +7,7 @@
 #include <cstddef>
 
 #include "odds/math/elementary.hpp"
+#include "odds/math/float_sums.hpp"
 #include "odds/probability/balls_into_bins.hpp"
 #include "odds/probability/kinematic.hpp"
 #include "odds/query/request.hpp"
@@ -93,16 +94,16 @@ struct NodeNumbers {
   const float log_rate = a.log_relative_area + b.log_relative_area + log_shares * (1.0F / 3.0F) + log_sine;
   const Vec3f normal_b = met.rotation * b.slab_normal;
   const Vec3f centroid_b = met.rotation * b.centroid + placed.b_in_a;
-  const float cosine = std::min(std::abs(a.slab_normal.dot(normal_b)), 1.0F);
+  const float cosine = std::min(std::abs(math::dot(a.slab_normal, normal_b)), 1.0F);
   constexpr float usual_reach = 0.5F;  // of the radius: a surface rarely fills the ball about it
   const float sine = usual_reach * std::sqrt(1.0F - cosine * cosine);
-  const float away_a = std::abs(a.slab_normal.dot(centroid_b) - a.slab_center);
-  const float away_b = std::abs(normal_b.dot(a.centroid - placed.b_in_a) - b.slab_center);
+  const float away_a = std::abs(math::dot(a.slab_normal, centroid_b) - a.slab_center);
+  const float away_b = std::abs(math::dot(normal_b, a.centroid - placed.b_in_a) - b.slab_center);
   const float thick_a = a.slab_half + b.slab_half * cosine + placed.radius_b * sine;
   const float thick_b = b.slab_half + a.slab_half * cosine + placed.radius_a * sine;
   const bool first = away_a * thick_b > away_b * thick_a;
   const float depth = 1.0F - (first ? away_a : away_b) / std::max(first ? thick_a : thick_b, 1e-37F);
-  const float apart = (centroid_b - a.centroid).norm() / std::max(placed.radius_a + placed.radius_b, 1e-37F);
+  const float apart = math::length(centroid_b - a.centroid) / std::max(placed.radius_a + placed.radius_b, 1e-37F);
   NodeNumbers numbers;
   numbers.x = {1.0F,
                std::clamp(log_rate, -12.0F, 8.0F),
@@ -114,7 +115,7 @@ struct NodeNumbers {
   if (used > NodeNumbers::usual) {
     const float share = math::rough_log2(met.common) - std::min(a.log_volume, b.log_volume);
     const float levels = numbers.x[4];
-    const float facing = std::clamp(a.mean_normal.dot(met.rotation * b.mean_normal), 0.0F, 1.0F);
+    const float facing = std::clamp(math::dot(a.mean_normal, met.rotation * b.mean_normal), 0.0F, 1.0F);
     numbers.x[7] = std::clamp(share, -20.0F, 4.0F);
     numbers.x[8] = cosine;
     numbers.x[9] = 0.1F * levels * levels;

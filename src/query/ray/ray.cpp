@@ -4,6 +4,7 @@
 #include <cmath>
 #include <variant>
 
+#include "odds/math/float_sums.hpp"
 #include "odds/primitive/ray_triangle.hpp"
 #include "query/counted_ray.hpp"
 #include "query/search/search.hpp"
@@ -27,8 +28,8 @@ std::optional<RayHit> cast(const tree::Hierarchy<V>& hierarchy, const Vec3& orig
     if (!met_by(node.volume, segment)) continue;
     if (!node.is_leaf()) {
       // The child whose surface lies nearer along the ray is searched first, so that the segment shrinks early.
-      const float first = hierarchy.statistics()[node.first].centroid.dot(segment.direction);
-      const float second = hierarchy.statistics()[node.first + 1].centroid.dot(segment.direction);
+      const float first = math::dot(hierarchy.statistics()[node.first].centroid, segment.direction);
+      const float second = math::dot(hierarchy.statistics()[node.first + 1].centroid, segment.direction);
       const bool swap = second < first;
       stack[size++] = node.first + (swap ? 0U : 1U);
       stack[size++] = node.first + (swap ? 1U : 0U);

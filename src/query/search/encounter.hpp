@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "odds/math/float_sums.hpp"
 #include "odds/primitive/triangle_triangle.hpp"
 #include "odds/query/answer.hpp"
 #include "odds/query/contact_patch.hpp"
@@ -166,7 +167,7 @@ class Encounter {
 
   /// Cosine between the mean normals of both nodes, times how flat they are: -1 face to face, 1 one behind the other.
   [[nodiscard]] float facing(std::uint32_t i, std::uint32_t j) const noexcept {
-    return a_.statistics()[i].mean_normal.dot(relative_.rotation * b_.statistics()[j].mean_normal);
+    return math::dot(a_.statistics()[i].mean_normal, relative_.rotation * b_.statistics()[j].mean_normal);
   }
 
   [[nodiscard]] const tree::Hierarchy<V>& a() const noexcept { return a_; }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "odds/math/float_sums.hpp"
 #include "query/wide/searches.hpp"
 
 namespace odds::query::wide {
@@ -87,7 +88,7 @@ float Encounter::probability(Slot slot_a, Slot slot_b) const noexcept {
 }
 
 float Encounter::facing(Slot slot_a, Slot slot_b) const noexcept {
-  return a_.statistics(slot_a).mean_normal.dot(relative_.rotation * b_.statistics(slot_b).mean_normal);
+  return math::dot(a_.statistics(slot_a).mean_normal, relative_.rotation * b_.statistics(slot_b).mean_normal);
 }
 
 double Encounter::smaller_radius(Slot slot_a, Slot slot_b) const noexcept {
