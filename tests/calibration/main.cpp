@@ -22,7 +22,7 @@
 #include "calibration/unproved.hpp"
 #include "odds/report/accuracy/forecast.hpp"
 #include "query/answer_odds/answer_odds.hpp"
-#include "query/answer_odds/answer_odds_table.hpp"
+#include "query/answer_odds/odds_for.hpp"
 
 namespace odds::calibration {
 namespace {
@@ -36,6 +36,7 @@ struct Options {
   std::vector<std::string> held_out;
   bool nodes = false;
   bool standing = false;
+  bool polygon_free = false;
 };
 
 struct Kept {
@@ -43,36 +44,56 @@ struct Kept {
   std::vector<Unproved> answers;
 };
 
-/// What tables of odds are for, in the order of odds_index: incremental answers count with the exact ones.
-using Tables = std::array<std::vector<Kept>, 4>;
+/// What a table of odds is for: answers of one estimator, found in one order, or without polygons.
+struct Table {
+  std::string_view name;
+  std::vector<Way> ways;  ///< that it is for; the first stands for all
+};
 
-Tables gather(const std::vector<Meeting>& meetings, volume::Kind volume, const Options& options, std::uint64_t seed) {
+std::vector<Table> tables_of(const Options& options) {
   using query::EstimatorKind;
   using query::Method;
+  std::vector<Table> tables;
+  for (const EstimatorKind estimator : {EstimatorKind::cells, EstimatorKind::kinematic}) {
+    const bool cells = estimator == EstimatorKind::cells;
+    const Way likeliest_first{estimator, Method::time_critical, options.polygon_free};
+    if (options.polygon_free) {
+      tables.push_back({cells ? "cells, without polygons" : "kinematic, without polygons", {likeliest_first}});
+      continue;
+    }
+    tables.push_back({cells ? "cells, exact and incremental" : "kinematic, exact and incremental",
+                      {{estimator, Method::exact}, {estimator, Method::incremental}}});
+    tables.push_back({cells ? "cells, time-critical" : "kinematic, time-critical", {likeliest_first}});
+  }
+  return tables;
+}
+
+/// For each table, the answers of all meetings that left any.
+std::vector<std::vector<Kept>> gather(const std::vector<Meeting>& meetings, volume::Kind volume,
+                                      const std::vector<Table>& tables, const Options& options, std::uint64_t seed) {
   Asked asked;
   asked.volume = volume;
-  for (const EstimatorKind estimator : {EstimatorKind::cells, EstimatorKind::kinematic}) {
-    for (const Method method : {Method::exact, Method::incremental, Method::time_critical}) {
-      asked.ways.push_back({estimator, method});
-    }
+  std::vector<std::size_t> table_of_way;
+  for (std::size_t i = 0; i < tables.size(); ++i) {
+    asked.ways.insert(asked.ways.end(), tables[i].ways.begin(), tables[i].ways.end());
+    table_of_way.resize(asked.ways.size(), i);
   }
   asked.units = {64, 128, 256, 512, 1024, 2048};
   asked.poses_per_band = options.poses;
   asked.seed = seed;
-  Tables tables;
-  for (std::size_t i = 0; i < meetings.size(); ++i) {
-    const auto answers = unproved_answers(meetings[i], asked);
+  std::vector<std::vector<Kept>> gathered(tables.size());
+  for (const Meeting& meeting : meetings) {
+    const auto answers = unproved_answers(meeting, asked);
     if (!answers.ok()) fmt::print(stderr, "left out: {}\n", answers.error().message());
-    for (auto& table : tables) table.push_back({meetings[i], {}});
+    for (auto& kept : gathered) kept.push_back({meeting, {}});
     for (std::size_t way = 0; answers.ok() && way < asked.ways.size(); ++way) {
       const std::vector<Unproved>& found = answers.value()[way];
-      const std::size_t index = query::odds_index(volume, asked.ways[way].estimator, asked.ways[way].method) % 4;
-      auto& all = tables[index].back().answers;
+      auto& all = gathered[table_of_way[way]].back().answers;
       all.insert(all.end(), found.begin(), found.end());
     }
   }
-  for (auto& table : tables) std::erase_if(table, [](const Kept& kept) { return kept.answers.empty(); });
-  return tables;
+  for (auto& table : gathered) std::erase_if(table, [](const Kept& kept) { return kept.answers.empty(); });
+  return gathered;
 }
 
 /// Each meeting counts the same, however many of its answers have no proof; but a handful does not outweigh a thousand.
@@ -139,7 +160,7 @@ std::string distance_name(double offset) {
 
 void judge(const std::vector<Kept>& all, const query::AnswerOdds& odds, const char* title) {
   std::vector<report::Forecast> apart;
-  std::vector<report::Forecast> nested;
+  std::vector<report::Forecast> nested, yes, no;
   std::map<std::string, std::vector<report::Forecast>> by_distance;
   std::vector<double> alone;  // errors of each pair of meshes
   fmt::print(stderr, "{}\n{:>8}{:>9}{:>8}{:>8}\n", title, "answers", "P said", "hits", "error");
@@ -153,6 +174,7 @@ void judge(const std::vector<Kept>& all, const query::AnswerOdds& odds, const ch
     std::vector<report::Forecast> here;
     for (const Unproved& one : kept.answers) {
       here.push_back({query::probability_of_hit(odds, one.remains), one.hit});
+      if (one.judged) (one.remains.logit >= 0 ? yes : no).push_back(here.back());
       if (kept.meeting.procedure != Procedure::nested) by_distance[distance_name(one.offset)].push_back(here.back());
     }
     line(here, kept.meeting.a + " + " + kept.meeting.b);
@@ -167,6 +189,8 @@ void judge(const std::vector<Kept>& all, const query::AnswerOdds& odds, const ch
       apart.empty() ? 0.0 : report::judge_forecasts(apart).brier);
   for (const auto& [name, forecasts] : by_distance) line(forecasts, "of these at " + name);
   line(nested, "all nested");
+  line(yes, "judged hits");
+  line(no, "judged clear");
 }
 
 void print(const query::AnswerOdds& odds, const std::string& comment) {
@@ -179,19 +203,24 @@ void print(const query::AnswerOdds& odds, const std::string& comment) {
              list(odds.seen_of_shells));
 }
 
+const query::AnswerOdds& standing(volume::Kind volume, const Way& way) {
+  return query::odds_for(volume, way.estimator, way.method, way.polygon_free);
+}
+
 void run(const Options& options) {
-  constexpr std::array<const char*, 4> names = {"cells, exact and incremental", "cells, time-critical",
-                                                "kinematic, exact and incremental", "kinematic, time-critical"};
+  const std::vector<Table> tables = tables_of(options);
   for (const std::string_view word : volume::kind_names) {
     const volume::Kind volume = *volume::kind_from_name(word);
     if (!options.volume.empty() && options.volume != word) continue;
-    const Tables held_out = gather(held_out_meetings(options.held_out), volume, options, options.seed + 1);
-    const Tables training = options.standing ? Tables{} : gather(training_meetings(), volume, options, options.seed);
-    for (std::size_t i = 0; i < training.size(); ++i) {
-      const std::string name = fmt::format("{}, {}", word, names[i]);
+    const auto gathered = [&](const std::vector<Meeting>& meetings, std::uint64_t seed) {
+      return gather(meetings, volume, tables, options, seed);
+    };
+    const auto held_out = gathered(held_out_meetings(options.held_out), options.seed + 1);
+    const auto training = options.standing ? held_out : gathered(training_meetings(), options.seed);
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+      const std::string name = fmt::format("{}, {}", word, tables[i].name);
       if (options.standing) {
-        const std::size_t first = query::odds_index(volume, query::EstimatorKind::cells, query::Method::exact);
-        judge(held_out[i], query::answer_odds[first + i], (name + ": held out, as it stands").c_str());
+        judge(held_out[i], standing(volume, tables[i].ways.front()), (name + ": held out, as it stands").c_str());
         continue;
       }
       const query::AnswerOdds odds = fit(training[i]);
@@ -214,6 +243,7 @@ int main(int argc, char** argv) {
   app.add_option("--bv", options.volume, "tables of this volume alone; default: of all");
   app.add_flag("--nodes", options.nodes, "the odds of pairs of nodes, not of answers");
   app.add_flag("--standing", options.standing, "fits nothing: judges what stands in the library");
+  app.add_flag("--polygon-free", options.polygon_free, "tables of searches that do without polygons");
   CLI11_PARSE(app, argc, argv);
   if (options.nodes) {
     odds::calibration::calibrate_nodes(options.volume, options.poses, options.seed, options.held_out, options.standing);

@@ -23,18 +23,22 @@ struct Workspace {
 };
 
 template <class Met>
-std::optional<query::Remains> remains_at_end(const Met& met, const query::SearchResult& result,
-                                             const query::Spending& spending) {
-  if (result.ended != query::Progressed::spent || result.shortlist.empty()) return std::nullopt;
+std::optional<Unproved> left_at_end(const Met& met, const query::SearchResult& result, const query::Spending& spending,
+                                    bool polygon_free) {
+  if (result.ended != query::Progressed::spent && !result.is_judged()) return std::nullopt;
+  if (result.shortlist.empty()) return std::nullopt;
   const query::NodePair& likeliest = result.shortlist.highest();
-  return query::remains_of(met, result, spending.so_far(), met.probability(likeliest.a, likeliest.b));
+  const float probability = met.probability(likeliest.a, likeliest.b);
+  Unproved left;
+  left.judged = result.is_judged();
+  left.remains = query::remains_of(met, result, spending.so_far(), probability, polygon_free);
+  return left;
 }
 
 /// One search from the beginning. Nothing: it was proved.
 template <class Tree>
-std::optional<query::Remains> search(const Tree& a, const Tree& b, const query::Shape& shape_a,
-                                     const query::Shape& shape_b, const math::Pose& pose, const query::Request& request,
-                                     Workspace& memory) {
+std::optional<Unproved> search(const Tree& a, const Tree& b, const query::Shape& shape_a, const query::Shape& shape_b,
+                               const math::Pose& pose, const query::Request& request, Workspace& memory) {
   const query::PosedMeshes meshes(shape_a.mesh(), shape_b.mesh(), a.origin(), b.origin(), pose);
   query::Spending spending(request.budget);
   query::SearchResult result;
@@ -51,7 +55,7 @@ std::optional<query::Remains> search(const Tree& a, const Tree& b, const query::
       memory.front.move_to(meshes.pose(), b.reach());
       searches.incremental(task, memory.front);
     }
-    return remains_at_end(met, result, spending);
+    return left_at_end(met, result, spending, request.polygon_free);
   } else {
     const query::Encounter met(a, b, meshes.pose(), request);
     if (met.far_apart() || !met.volumes_overlap(0, 0)) return std::nullopt;
@@ -63,12 +67,12 @@ std::optional<query::Remains> search(const Tree& a, const Tree& b, const query::
       memory.slice.reset();
       memory.slice.search(met, 1, memory.hits, spending, result);
     }
-    return remains_at_end(met, result, spending);
+    return left_at_end(met, result, spending, request.polygon_free);
   }
 }
 
-std::optional<query::Remains> search(const query::Shape& a, const query::Shape& b, const math::Pose& pose,
-                                     const query::Request& request, Workspace& memory) {
+std::optional<Unproved> search(const query::Shape& a, const query::Shape& b, const math::Pose& pose,
+                               const query::Request& request, Workspace& memory) {
   return std::visit(
       [&](const auto& tree_a) {
         using Tree = std::remove_cvref_t<decltype(tree_a)>;
@@ -108,12 +112,16 @@ Result<std::vector<std::vector<Unproved>>> unproved_answers(const Meeting& meeti
       query::Request request;
       request.estimator = asked.ways[way].estimator;
       request.method = asked.ways[way].method;
+      request.polygon_free = asked.ways[way].polygon_free;
       // The wide engine is depth-first from the beginning where it looks for several contacts.
       if (request.method == query::Method::exact) request.max_contacts = 2;
       for (const std::uint64_t units : asked.units) {
         request.budget = query::Budget::work(units);
-        const auto remains = search(*shapes[0], *shapes[1], pose, request, memory);
-        if (remains) found[way].push_back({*remains, hit, made.value().offset});
+        auto left = search(*shapes[0], *shapes[1], pose, request, memory);
+        if (!left) continue;
+        left->hit = hit;
+        left->offset = made.value().offset;
+        found[way].push_back(*left);
       }
     }
   }

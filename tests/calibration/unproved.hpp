@@ -21,6 +21,7 @@ struct Meeting {
 
 struct Unproved {
   query::Remains remains;
+  bool judged = false;  ///< without polygons: no budget ended it, see query::SearchResult::is_judged
   bool hit = false;
   double offset = 0.0;  ///< from first touch, parts of the size; see report::PoseBand
 };
@@ -29,6 +30,7 @@ struct Unproved {
 struct Way {
   query::EstimatorKind estimator = query::EstimatorKind::kinematic;
   query::Method method = query::Method::time_critical;
+  bool polygon_free = false;
 };
 
 /// How the poses of a meeting are answered.

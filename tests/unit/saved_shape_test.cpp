@@ -31,7 +31,7 @@ SharedShape loaded(const SharedShape& shape) {
 
 math::Pose some_pose(math::Random& random) {
   const Vec3 direction(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-  return math::Pose::from_quaternion(random.uniform(1.6, 2.3) * direction.normalized(), random.rotation());
+  return math::Pose::from_quaternion(random.uniform(1.7, 2.4) * direction.normalized(), random.rotation());
 }
 
 void expect_same(const Contact& a, const Contact& b) {

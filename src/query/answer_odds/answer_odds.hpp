@@ -93,6 +93,11 @@ inline constexpr std::size_t odds_tables = 4 * volume::kind_names.size();
          (method == Method::time_critical ? 1U : 0U);
 }
 
+/// Which table of polygon_free_odds_table.hpp.
+[[nodiscard]] constexpr std::size_t polygon_free_odds_index(volume::Kind volume, EstimatorKind estimator) noexcept {
+  return 2 * static_cast<std::size_t>(volume) + (estimator == EstimatorKind::kinematic ? 1U : 0U);
+}
+
 /// Probability of a hit, in (0, 1): among searches that left this undecided, such a share met a hit.
 [[nodiscard]] inline double probability_of_hit(const AnswerOdds& odds, const Remains& remains) noexcept {
   constexpr std::size_t pieces = AnswerOdds::pieces;

@@ -6,8 +6,8 @@
 #include <type_traits>
 
 #include "odds/math/tolerances.hpp"
-#include "query/answer_odds/answer_odds_table.hpp"
 #include "query/answer_odds/likeliest_place.hpp"
+#include "query/answer_odds/odds_for.hpp"
 #include "query/answer_odds/way_apart.hpp"
 #include "query/contacts/flush_answer.hpp"
 #include "query/contacts/pair_contacts.hpp"
@@ -146,19 +146,18 @@ SearchResult search(const wide::Encounter& encounter, const PosedMeshes& meshes,
   return result;
 }
 
-/// Verdict, basis and probability from what the search found; `undecided_probability` is that of a hit if the budget
-/// ended it.
-void judge(const SearchResult& result, double undecided_probability, const Request& request, bool any_hit,
-           Answer& answer) noexcept {
+/// Verdict, basis and probability from what the search found; `undecided_probability` is that of a hit where it left
+/// pairs undecided.
+void judge(const SearchResult& result, double undecided_probability, bool any_hit, Answer& answer) noexcept {
   if (any_hit) {
     answer.verdict = Verdict::hit;
     answer.basis = Basis::proved;
     answer.probability = 1.0;
-  } else if (result.estimated_hit || (request.polygon_free && result.ended == Progressed::finished)) {
+  } else if (result.estimated_hit) {
     answer.basis = Basis::estimated;
     answer.probability = static_cast<double>(result.estimate);
-  } else if (result.ended == Progressed::spent) {
-    answer.basis = Basis::budget;
+  } else if (result.ended == Progressed::spent || !result.shortlist.empty()) {
+    answer.basis = result.ended == Progressed::spent ? Basis::budget : Basis::estimated;
     answer.probability = undecided_probability;
   } else {
     answer.basis = Basis::proved;
@@ -193,12 +192,12 @@ void forecast(const Met& met, const math::Pose& pose_b_in_a, const SearchResult&
   float cell_probability = 0.0F;
   if (!result.shortlist.empty() && pair.hits.empty()) {
     const NodePair& likeliest = result.shortlist.highest();
-    const AnswerOdds& odds = answer_odds[odds_index(pair.a->volume(), request.estimator, result.method)];
+    const AnswerOdds& odds = odds_for(pair.a->volume(), request.estimator, result.method, request.polygon_free);
     cell_probability = met.probability(likeliest.a, likeliest.b);
-    undecided =
-        pair.recalibration(probability_of_hit(odds, remains_of(met, result, spending.so_far(), cell_probability)));
+    undecided = pair.recalibration(
+        probability_of_hit(odds, remains_of(met, result, spending.so_far(), cell_probability, request.polygon_free)));
   }
-  judge(result, undecided, request, !pair.hits.empty(), answer);
+  judge(result, undecided, !pair.hits.empty(), answer);
   if (answer.basis == Basis::proved || result.shortlist.empty()) return;
   answer.has_cell_pair = true;
   const auto apart = [&]() noexcept {
@@ -293,7 +292,7 @@ void search_and_answer(const Tree& a, const Tree& b, const PosedMeshes& meshes, 
   if (is_witnessed) {
     result.ended = Progressed::enough;
     result.method = Method::incremental;
-    judge(result, 0.5, request, true, answer);
+    judge(result, 0.5, true, answer);
     // Nothing is worked in.
     if (request.max_contacts == 0) {
       return conclude(meshes, pose_b_in_a, b.reach(), result, request, nullptr, pair, spending);

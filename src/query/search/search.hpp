@@ -11,14 +11,38 @@ namespace odds::query {
 /// A depth-first search pops one pair and pushes two, one level lower on one side.
 inline constexpr std::size_t stack_capacity = 2 * tree::deepest_level + 2;
 
+/// Pairs of leaves that were judged by their probabilities, since there are no polygons.
+struct JudgedLeaves {
+  static constexpr float enough = 0.5F;  ///< a pair of leaves as likely as this ends a search (footnote 6)
+  NodePair likeliest;
+  float greatest = 0.0F;  ///< its probability; 0: no pair was judged
+  float sum = 0.0F;       ///< of all their probabilities
+
+  /// Whether that is enough.
+  bool note(const NodePair& pair, float probability) noexcept {
+    sum += probability;
+    if (probability > greatest) {
+      greatest = probability;
+      likeliest = pair;
+    }
+    return probability >= enough;
+  }
+};
+
 /// What a search found besides the hits.
 struct SearchResult {
   Progressed ended = Progressed::finished;
-  bool estimated_hit = false;             ///< k_min pairs reached p_min, or a polygon-free leaf pair was judged a hit
+  bool estimated_hit = false;             ///< k_min pairs reached p_min
   float estimate = 0.0F;                  ///< the greatest probability that such a pair had
+  JudgedLeaves judged;                    ///< of a polygon-free search
   std::uint32_t open = 0;                 ///< pairs of nodes that were left undecided
   Shortlist shortlist;                    ///< the likeliest of them
   Method method = Method::time_critical;  ///< the order that was followed
+
+  /// Whether a polygon-free search ended by what it made of pairs of leaves: by one that was enough, or by all of them.
+  [[nodiscard]] bool is_judged() const noexcept {
+    return judged.greatest > 0.0F && ended != Progressed::spent && !estimated_hit;
+  }
 };
 
 /// Notes a pair that is left undecided. The likeliest come first; what finds no room is only counted.
@@ -112,7 +136,12 @@ class TimeCriticalSearch {
       }
       visit(queue_.pop());
     }
-    if (result_.ended != Progressed::finished) consider(result_, queue_);
+    if (result_.is_judged()) {
+      consider(result_, result_.judged.likeliest);
+      result_.open += queue_.size();
+    } else if (result_.ended != Progressed::finished) {
+      consider(result_, queue_);
+    }
     return result_;
   }
 
@@ -143,13 +172,7 @@ class TimeCriticalSearch {
 
   void visit_leaves(const NodePair& pair) noexcept {
     if (request_.polygon_free) {
-      const float p = encounter_.probability(pair.a, pair.b);
-      result_.estimate = std::max(result_.estimate, p);
-      if (p >= 0.5F) {
-        result_.estimated_hit = true;
-        consider(result_, pair);
-        finish(Progressed::enough);
-      }
+      if (result_.judged.note(pair, encounter_.probability(pair.a, pair.b))) finish(Progressed::enough);
       return;
     }
     const Progressed leaves = encounter_.test_leaves(pair.a, pair.b, wanted_, hits_, spending_);
@@ -171,7 +194,7 @@ class TimeCriticalSearch {
     if (!queue_.full()) return queue_.push(bucket_of(pair.rank, encounter_.levels_left(pair.a, pair.b)), pair);
     // Nothing is dropped: what finds no room is searched to its end at once.
     spending_.note_full_queue();
-    if (request_.polygon_free) return visit_leaves_below(pair);
+    if (request_.polygon_free) return consider(result_, pair);  // no triangles to fall back on
     search_depth_first(encounter_, pair, wanted_, hits_, spending_, result_);
     if (result_.ended != Progressed::finished) finished_ = true;
   }
@@ -181,12 +204,6 @@ class TimeCriticalSearch {
     if (static_cast<double>(p) < request_.p_min) return false;
     result_.estimate = std::max(result_.estimate, p);
     return true;
-  }
-
-  // The polygon-free search has no triangles to fall back on: the pair itself is judged.
-  void visit_leaves_below(const NodePair& pair) noexcept {
-    result_.estimate = std::max(result_.estimate, encounter_.probability(pair.a, pair.b));
-    consider(result_, pair);
   }
 
   const Encounter<V>& encounter_;

@@ -36,7 +36,13 @@ class TimeCritical {
       }
       visit(task_.queue->pop());
     }
-    if (task_.result.ended != Progressed::finished) consider_queue();
+    SearchResult& result = task_.result;
+    if (result.is_judged()) {
+      leave_open<L>(task_, result.judged.likeliest);
+      result.open += task_.queue->size();
+    } else if (result.ended != Progressed::finished) {
+      consider_queue();
+    }
   }
 
   void consider_queue() noexcept {
@@ -126,13 +132,7 @@ class TimeCritical {
 
   void visit_leaf_pair(const NodePair& pair) noexcept {
     if (task_.request.polygon_free) {
-      const float p = probability(pair);
-      task_.result.estimate = std::max(task_.result.estimate, p);
-      if (p >= 0.5F) {
-        task_.result.estimated_hit = true;
-        leave_open<L>(task_, pair);
-        finish(Progressed::enough);
-      }
+      if (task_.result.judged.note(pair, probability(pair))) finish(Progressed::enough);
       return;
     }
     if (!task_.spending.allows(wide_lanes)) {
@@ -173,11 +173,7 @@ class TimeCritical {
     if (!task_.queue->full()) return push(pair, cost);
     // Nothing is dropped: what finds no room is searched to its end at once.
     task_.spending.note_full_queue();
-    if (task_.request.polygon_free) {
-      task_.result.estimate = std::max(task_.result.estimate, probability(pair));
-      leave_open<L>(task_, pair);
-      return;
-    }
+    if (task_.request.polygon_free) return leave_open<L>(task_, pair);  // no triangles to fall back on
     Exact<L>::run(task_, pair.a, pair.b);
     if (task_.result.ended != Progressed::finished) finished_ = true;
   }
