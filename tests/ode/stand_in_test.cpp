@@ -206,6 +206,33 @@ TEST_F(StandIn, AMeshDoesNotStandInForOtherData) {
   EXPECT_EQ(stats().changed_partners, 1u);
 }
 
+// Its ground was another from then on, and things still stood on the old one.
+TEST_F(StandIn, AMeshDoesNotStandInForOtherHeights) {
+  const oddsHeightfield field = field_of(&slope, 1.0);
+  std::array<dHeightfieldDataID, 2> odes = {};
+  for (dHeightfieldDataID& one : odes) {
+    one = dGeomHeightfieldDataCreate();
+    dGeomHeightfieldDataBuildCallback(one, nullptr, field.height, field.width, field.depth, field.width_samples,
+                                      field.depth_samples, field.scale, field.offset, field.thickness, 0);
+  }
+  const oddsMeshDataID data = oddsMeshDataCreate();
+  ASSERT_EQ(oddsMeshDataBuildHeightfield(data, &field, nullptr), 1);
+  const dGeomID mesh = mesh_geom(sphere_shape(0.5), space);
+  dGeomSetPosition(mesh, 0.3, 1.1, 0.2);
+  const dGeomID heightfield = dCreateHeightfield(space, odes[0], 0);
+  ASSERT_EQ(oddsSetStandIn(heightfield, data, 0), 1) << oddsGetLastError();
+  EXPECT_FALSE(collide(mesh, heightfield).empty());
+  dGeomHeightfieldSetHeightfieldData(heightfield, odes[1]);
+  EXPECT_TRUE(collide(mesh, heightfield).empty());
+  EXPECT_EQ(stats().changed_partners, 1u);
+  ASSERT_EQ(oddsSetStandIn(heightfield, data, 0), 1) << oddsGetLastError();
+  EXPECT_FALSE(collide(mesh, heightfield).empty());
+  oddsForgetGeom(heightfield);
+  dGeomDestroy(heightfield);
+  oddsMeshDataDestroy(data);
+  for (const dHeightfieldDataID one : odes) dGeomHeightfieldDataDestroy(one);
+}
+
 // Two were destroyed and not forgotten, and geoms of other classes made at their addresses: ODE ended the program where
 // such a sphere was asked for its triangles.
 TEST_F(StandIn, AGeomOfAnotherClassAtAKnownAddressIsAnotherGeom) {

@@ -177,6 +177,9 @@ bool has_bounds_of(const ConvexShape& shape, dGeomID geom) noexcept {
 
 bool is_unchanged(Partner& partner) noexcept {
   if (partner.convex != nullptr) return has_bounds_of(*partner.convex, partner.geom);
+  if (partner.heightfield_data != nullptr) {
+    return dGeomHeightfieldGetHeightfieldData(partner.geom) == partner.heightfield_data;
+  }
   if (partner.trimesh_data == nullptr) return true;
   if (dGeomTriMeshGetData(partner.geom) != partner.trimesh_data) return false;
   if (partner.changes == nullptr) return true;  // what stands in need not be like it
@@ -247,6 +250,7 @@ int oddsSetStandIn(dGeomID geom, oddsMeshDataID data, int placeable) noexcept {
     std::unique_ptr<Partner> partner = make_partner(geom, data->prepared);
     partner->placeable = number == dTriMeshClass || placeable != 0;
     if (number == dTriMeshClass) partner->trimesh_data = dGeomTriMeshGetData(geom);
+    if (number == dHeightfieldClass) partner->heightfield_data = dGeomHeightfieldGetHeightfieldData(geom);
     partner_table().put(std::move(partner));
     return 1;
   } catch (...) {

@@ -19,6 +19,7 @@ struct Partner {
   std::unique_ptr<GeomData> mesh;             ///< stands in for the geom
   std::shared_ptr<const ConvexShape> convex;  ///< null for a mesh; of a dTriMesh that cannot be read both are
   dTriMeshDataID trimesh_data = nullptr;      ///< of a dTriMesh, when `mesh` was read from it or set to stand in for it
+  dHeightfieldDataID heightfield_data = nullptr;  ///< likewise of a heightfield
   /// How often the client has said that it changed that data, and how often it had when it was read; null: not read.
   const std::atomic<std::uint64_t>* changes = nullptr;
   std::uint64_t changes_seen = 0;
@@ -70,8 +71,9 @@ void note_changed(dTriMeshDataID data) noexcept;
 [[nodiscard]] std::unique_ptr<Partner> make_partner(dGeomID geom, std::shared_ptr<const PreparedMesh> mesh);
 
 /// Whether the geom is still the one that was read: the same data, which nobody has said was changed, as many
-/// triangles, and the next of them where it was, and every one that was compared before; of a convex, the same box. A
-/// geom that was destroyed, and another that was made at its address, or a mesh that was deformed, are found out so.
+/// triangles, and the next of them where it was, and every one that was compared before; of a heightfield, the same
+/// data; of a convex, the same box. A geom that was destroyed, and another that was made at its address, or a mesh that
+/// was deformed, are found out so.
 [[nodiscard]] bool is_unchanged(Partner& partner) noexcept;
 
 /// Whether this thread makes a dTriMesh of its own now, to read another one.

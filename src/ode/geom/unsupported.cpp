@@ -24,7 +24,11 @@ Remedy remedy_for(dGeomID geom) noexcept {
                                 "oddsRegisterConvex again, also after dGeomSetConvex"
                               : "ODE does not tell its points; call oddsRegisterConvex"};
     case dHeightfieldClass:
-      return {"heightfield", "ODE does not tell its heights; call oddsMeshDataBuildHeightfield and oddsSetStandIn"};
+      return {"heightfield", known ? "it is not the one that a mesh stands in for; call oddsForgetGeom before "
+                                     "dGeomDestroy, and oddsSetStandIn again, also after "
+                                     "dGeomHeightfieldSetHeightfieldData"
+                                   : "ODE does not tell its heights; call oddsMeshDataBuildHeightfield and "
+                                     "oddsSetStandIn"};
     case dTriMeshClass:
       return {"dTriMesh", known ? "it changed since it was read; call oddsPrepareTriMesh again, and oddsForgetGeom "
                                   "before dGeomDestroy"
