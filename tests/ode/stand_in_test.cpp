@@ -76,6 +76,29 @@ TEST_F(StandIn, GeomsOfOneDataShareOneHierarchyAndKeepTheirSettingsApart) {
   EXPECT_EQ(oddsForgetGeom(second), 1);
 }
 
+// The hierarchy of the first call was shared, whatever the second one asked for, were it nonsense.
+TEST_F(StandIn, OtherParametersOfOneDataBuildAnotherHierarchy) {
+  const auto shape = sphere_shape(0.5, 8);
+  const TriMesh trimesh(shape->mesh(), space);
+  const auto leaves = [&](int leaf_triangles) {
+    oddsBuildParams params;
+    oddsBuildParamsInit(&params);
+    params.leaf_triangles = leaf_triangles;
+    EXPECT_EQ(oddsPrepareTriMesh(trimesh.geom, &params), 1) << oddsGetLastError();
+    return ode::partner_table().find(trimesh.geom)->mesh->mesh->shape->summary().leaves;
+  };
+  const std::size_t large = leaves(8);
+  EXPECT_GT(leaves(1), large);
+  EXPECT_EQ(leaves(8), large);
+  oddsBuildParams params;
+  oddsBuildParamsInit(&params);
+  params.leaf_triangles = 99;
+  EXPECT_EQ(oddsPrepareTriMesh(trimesh.geom, &params), 0);
+  oddsBuildParamsInit(&params);
+  params.tau = NAN;
+  EXPECT_EQ(oddsPrepareTriMesh(trimesh.geom, &params), 0);
+}
+
 TEST_F(StandIn, AMeshThatWasDeformedIsFoundOutAndCanBePreparedAgain) {
   const auto shape = box_shape(1, 1, 1, 1);
   const dGeomID mesh = mesh_geom(shape, space);

@@ -87,14 +87,23 @@ bool has_triangles(dGeomID geom) noexcept {
          dGeomTriMeshGetTriangleCount(geom) > 0;
 }
 
-using Known = std::map<dTriMeshDataID, std::weak_ptr<const PreparedMesh>>;
+struct KnownMesh {
+  std::weak_ptr<const PreparedMesh> prepared;
+  oddsBuildParams asked;  // without a name
+};
+using Known = std::map<dTriMeshDataID, KnownMesh>;
+
+bool is_alike(const oddsBuildParams& a, const oddsBuildParams& b) noexcept {
+  return a.volume == b.volume && a.leaf_triangles == b.leaf_triangles && a.tau == b.tau;
+}
 
 // Geoms of the same data share one hierarchy. The data's address alone says little: it may be that of other data now.
-std::shared_ptr<const PreparedMesh> prepared_like_before(dGeomID trimesh, int volume, const Known& known) {
+std::shared_ptr<const PreparedMesh> prepared_like_before(dGeomID trimesh, const oddsBuildParams& params,
+                                                         const Known& known) {
   const auto found = known.find(dGeomTriMeshGetData(trimesh));
-  if (found == known.end()) return nullptr;
-  std::shared_ptr<const PreparedMesh> prepared = found->second.lock();
-  if (prepared == nullptr || static_cast<int>(prepared->shape->volume()) != volume) return nullptr;
+  if (found == known.end() || !is_alike(found->second.asked, params)) return nullptr;
+  std::shared_ptr<const PreparedMesh> prepared = found->second.prepared.lock();
+  if (prepared == nullptr) return nullptr;
   const std::size_t count = prepared->mesh().triangles().size();
   if (dGeomTriMeshGetTriangleCount(trimesh) != static_cast<int>(count)) return nullptr;
   const AtIdentity source(trimesh);
@@ -113,12 +122,12 @@ std::shared_ptr<const PreparedMesh> prepare(dGeomID trimesh, const oddsBuildPara
   static std::mutex mutex;
   static Known& known = *new Known;  // outlives what is static: that may still make geoms, or look at them
   const std::lock_guard lock(mutex);
-  std::erase_if(known, [](const auto& entry) { return entry.second.expired(); });
-  if (auto prepared = prepared_like_before(trimesh, params.volume, known)) return prepared;
+  std::erase_if(known, [](const auto& entry) { return entry.second.prepared.expired(); });
+  if (auto prepared = prepared_like_before(trimesh, params, known)) return prepared;
   IndexedMesh mesh = read_triangles(trimesh);
   oddsMeshData data;
   if (build_mesh_data(&data, std::move(mesh.vertices), std::move(mesh.triangles), &params) == 0) return nullptr;
-  known[dGeomTriMeshGetData(trimesh)] = data.prepared;
+  known[dGeomTriMeshGetData(trimesh)] = {data.prepared, {params.volume, params.leaf_triangles, params.tau, nullptr}};
   return data.prepared;
 }
 
