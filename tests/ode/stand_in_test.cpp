@@ -99,6 +99,19 @@ TEST_F(StandIn, OtherParametersOfOneDataBuildAnotherHierarchy) {
   EXPECT_EQ(oddsPrepareTriMesh(trimesh.geom, &params), 0);
 }
 
+TEST_F(StandIn, AMeshIsReadWithTheVolumeOfTheOneThatItIsPreparedWith) {
+  const auto shape = box_shape(1, 1, 1);
+  const TriMesh known(shape->mesh(), space);
+  const TriMesh other(shape->mesh(), space);
+  const TriMesh third(shape->mesh(), space);
+  oddsBuildParams params;
+  oddsBuildParamsInit(&params);
+  params.volume = ODDS_VOLUME_AABB;
+  ASSERT_EQ(oddsPrepareTriMesh(known.geom, &params), 1) << oddsGetLastError();
+  EXPECT_EQ(oddsPreparePair(known.geom, other.geom), 1) << oddsGetLastError();
+  EXPECT_EQ(oddsPreparePair(third.geom, known.geom), 1) << oddsGetLastError();
+}
+
 TEST_F(StandIn, AMeshThatWasDeformedIsFoundOutAndCanBePreparedAgain) {
   const auto shape = box_shape(1, 1, 1, 1);
   const dGeomID mesh = mesh_geom(shape, space);

@@ -62,9 +62,7 @@ GeomData* prepared_data(dGeomID geom, dGeomID other) noexcept {
   if (dGeomGetClass(geom) != dTriMeshClass) return nullptr;
   oddsBuildParams params;
   oddsBuildParamsInit(&params);
-  if (dGeomGetClass(other) == oddsGetClass()) {
-    params.volume = static_cast<int>(own_data(other).mesh->shape->volume());
-  }
+  if (const GeomData* partner = known_data(other)) params.volume = static_cast<int>(partner->mesh->shape->volume());
   const Partner* adopted = adopt_trimesh(geom, &params, true);
   return adopted != nullptr ? adopted->mesh.get() : nullptr;
 }
