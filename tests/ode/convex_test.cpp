@@ -164,9 +164,21 @@ TEST_F(ConvexTest, WhatIsNoConvexSolidIsRefused) {
   for (unsigned i = 0; i < 8; ++i) flat.points[3 * i + 2] = 0;
   EXPECT_NE(refused(flat, 8, 6), "");
   EXPECT_NE(refused(arrays, 3, 6), "");
+  EXPECT_NE(refused(arrays, 8, 5).find("not closed"), std::string::npos) << "it had contacts beyond its open side";
   EXPECT_NE(refused(arrays, -1U, 6).find("oddsRegisterConvex: more than 4096 points"), std::string::npos);
   EXPECT_EQ(oddsRegisterConvex(nullptr, arrays.points.data(), 8, arrays.polygons.data(), 6), 0);
   EXPECT_EQ(oddsRegisterConvex(dCreateSphere(space, 1), arrays.points.data(), 8, arrays.polygons.data(), 6), 0);
+}
+
+TEST_F(ConvexTest, FacesMayBePartedWithoutSharedCorners) {
+  Arrays arrays = cuboid(Vec3(1, 1, 1));
+  arrays.points.insert(arrays.points.end(), {0, 1, 1});  // on an edge that only one of its faces knows of
+  arrays.polygons.resize(arrays.polygons.size() - 5);    // the last one, of corners 4, 5, 7, 6
+  arrays.planes.resize(arrays.planes.size() - 4);
+  --arrays.faces;
+  arrays.add({4, 5, 7, 8});
+  arrays.add({4, 8, 6});
+  convex_of(arrays);  // expects that it is taken
 }
 
 TEST_F(ConvexTest, AnotherGeomAtTheSameAddressIsFoundOut) {

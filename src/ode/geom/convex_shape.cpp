@@ -91,6 +91,11 @@ Result<std::shared_ptr<const ConvexShape>> ConvexShape::make(std::span<const Vec
     polygons += 1 + corners.size();
   }
   std::sort(shape->edges_.begin(), shape->edges_.end());
+  if (const auto open = shape->open_edge(same_plane * size)) {
+    return refusal("it is not closed: the edge of points " + std::to_string((*open)[0]) + " and " +
+                       std::to_string((*open)[1]) + " is on one face only",
+                   "give all faces");
+  }
   shape->edges_.erase(std::unique(shape->edges_.begin(), shape->edges_.end()), shape->edges_.end());
   const auto beside_center = [&](const HalfSpace& face) { return face.offset - face.normal.dot(shape->center_); };
   const auto has_volume = [&](const HalfSpace& face) { return beside_center(face) > same_plane * size; };
@@ -101,6 +106,23 @@ Result<std::shared_ptr<const ConvexShape>> ConvexShape::make(std::span<const Vec
   shape->box_center_ = 0.5 * (lower + upper);
   shape->box_half_extents_ = 0.5 * (upper - lower);
   return std::shared_ptr<const ConvexShape>(shape);
+}
+
+// An edge is on two polygons, or on two planes: faces that are parted need not share corners. Where a face is missing,
+// the sides hold more than the body, up to infinity.
+std::optional<std::array<unsigned, 2>> ConvexShape::open_edge(double tolerance) const noexcept {
+  const auto is_on = [&](const HalfSpace& face, unsigned corner) {
+    return std::abs(face.normal.dot(points_[corner]) - face.offset) <= tolerance;
+  };
+  for (auto edge = edges_.begin(); edge != edges_.end();) {
+    const auto next = std::upper_bound(edge, edges_.end(), *edge);
+    const auto planes = std::count_if(faces_.begin(), faces_.end(), [&](const HalfSpace& face) {
+      return next - edge == 1 && is_on(face, (*edge)[0]) && is_on(face, (*edge)[1]);
+    });
+    if (next - edge == 1 && planes < 2) return *edge;
+    edge = next;
+  }
+  return std::nullopt;
 }
 
 Vec3 ConvexShape::farthest(const Vec3& direction) const noexcept {

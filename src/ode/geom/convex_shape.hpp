@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,7 +20,8 @@ class ConvexShape final : public ConvexBody {
 
   /// `polygons` is a number of corners followed by as many indices into `points`, for each of `face_count` faces.
   /// Refused: counts out of range, indices out of range, coordinates not finite, a face without area, a point outside
-  /// of a face by more than 1e-6 of the size (then it is not convex), no volume.
+  /// of a face by more than 1e-6 of the size (then it is not convex), an edge of one face only (then one is missing),
+  /// no volume.
   static Result<std::shared_ptr<const ConvexShape>> make(std::span<const Vec3> points, const unsigned* polygons,
                                                          std::size_t face_count);
   ConvexShape(const ConvexShape&) = delete;
@@ -36,6 +38,8 @@ class ConvexShape final : public ConvexBody {
   ConvexShape() noexcept;
   [[nodiscard]] static Result<HalfSpace> face_of(std::span<const Vec3> points, std::span<const unsigned> corners,
                                                  const Vec3& inside, std::size_t number);
+  /// One that a single face has, of `edges_` in order, each as often as polygons have it.
+  [[nodiscard]] std::optional<std::array<unsigned, 2>> open_edge(double tolerance) const noexcept;
 
   std::vector<Vec3> points_;
   std::vector<HalfSpace> faces_;
