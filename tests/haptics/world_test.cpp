@@ -426,6 +426,26 @@ TEST(World, IgnoresWrenchesAndCouplingsThatAreNotFinite) {
   EXPECT_EQ(world.state(body).pose.translation, Vec3::Zero());
 }
 
+// It said what it had exerted last, for as long as it was off.
+TEST(WorldCoupling, ThatIsOffExertsNothing) {
+  World world = make(repeatable_options());
+  world.set_gravity(Vec3(0, 0, -9.81));
+  const BodyId body = world.add_dynamic(cube(), at(0, 0, 0), {.mass_kg = 0.2}, "cube").value();
+  world.add_coupling(body);
+  world.set_coupling(body, pull(at(0, 0, 0.1), 500, 3));
+  ASSERT_FALSE(world.prepare().has_value());
+  EXPECT_EQ(world.coupling_wrench(body).force_n, Vec3::Zero()) << "before the first step";
+  for (const Coupling& off : {pull(at(0, 0, 0), 0, 0, 0, 0), pull(at(std::nan(""), 0, 0), 500, 3, 0, 0)}) {
+    world.set_coupling(body, pull(at(0, 0, 0.1), 500, 3));
+    world.step();
+    EXPECT_GT(world.coupling_wrench(body).force_n.z(), 1.0);
+    world.set_coupling(body, off);
+    world.step();
+    EXPECT_EQ(world.coupling_wrench(body).force_n, Vec3::Zero());
+    EXPECT_EQ(world.coupling_wrench(body).torque_nm, Vec3::Zero());
+  }
+}
+
 TEST(World, HoldsBodiesToTheGreatestSpeed) {
   WorldOptions options = repeatable_options();
   options.max_speed_m_per_s = 3.0;

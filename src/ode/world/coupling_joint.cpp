@@ -77,6 +77,11 @@ void CouplingJoint::set(const Coupling& c, const Vec3& center_m, double step_s) 
                  c.angular_stiffness_nm_per_rad, c.angular_damping_nms_per_rad, c.max_spring_torque_nm, step_s));
 }
 
+void CouplingJoint::forget_wrench() noexcept {
+  linear_feedback_ = {};
+  angular_feedback_ = {};
+}
+
 Wrench CouplingJoint::wrench() const noexcept {
   const dReal* f = linear_feedback_.f1;
   const dReal* t = angular_feedback_.t1;

@@ -18,6 +18,8 @@ class CouplingJoint {
 
   /// `center_m`: of mass, in the body's mesh frame. What is not finite switches the coupling off until the next call.
   void set(const Coupling& coupling, const Vec3& center_m, double step_s) noexcept;
+  /// Before each step: ODE writes nothing where the coupling is off.
+  void forget_wrench() noexcept;
   /// On the body, in the last step.
   [[nodiscard]] Wrench wrench() const noexcept;
 

@@ -169,7 +169,10 @@ void World::Implementation::warm_up_solver() {
   }
   options.contact = asked;
   contacts_made = 0;
-  for (std::size_t i = 0; i < bodies.size(); ++i) place(*bodies[i], before[i]);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    place(*bodies[i], before[i]);
+    if (bodies[i]->coupling) bodies[i]->coupling->forget_wrench();
+  }
 }
 
 void World::Implementation::near(void* self, dGeomID a, dGeomID b) noexcept {
@@ -371,6 +374,9 @@ StepSummary World::step() noexcept {
   const double h = self.options.step_s;
   const bool measures = self.options.contact_work && self.momenta.size() == self.bodies.size();
   if (measures) self.note_momenta();
+  for (const auto& body : self.bodies) {
+    if (body->coupling) body->coupling->forget_wrench();
+  }
   ++self.summary.solver_calls;
   self.summary.bodies_stepped = self.dynamic_bodies;
   const std::uint64_t complaints = solver_messages.load(std::memory_order_relaxed);
