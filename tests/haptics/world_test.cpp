@@ -446,6 +446,16 @@ TEST(WorldCoupling, ThatIsOffExertsNothing) {
   }
 }
 
+TEST(World, RefusesBodiesWithoutAShape) {
+  World world = make(repeatable_options());
+  const auto fixed = world.add_fixed(nullptr, at(0, 0, 0), "floor");
+  ASSERT_FALSE(fixed.ok());
+  EXPECT_EQ(fixed.error().file, "floor");
+  const auto dynamic = world.add_dynamic(nullptr, at(0, 0, 0), {.mass_kg = 1.0}, "cube");
+  ASSERT_FALSE(dynamic.ok());
+  EXPECT_EQ(dynamic.error().file, "cube");
+}
+
 TEST(World, HoldsBodiesToTheGreatestSpeed) {
   WorldOptions options = repeatable_options();
   options.max_speed_m_per_s = 3.0;

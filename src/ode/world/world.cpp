@@ -37,6 +37,10 @@ std::atomic<std::uint64_t> solver_messages{0};
 // ODE writes to stderr where contacts are redundant; within a tick that would be a system call.
 void count_message(int, const char*, va_list) { solver_messages.fetch_add(1, std::memory_order_relaxed); }
 
+Error no_shape(const std::string& name) {
+  return {name, "", "its shape is null", "build one with query::Shape::build"};
+}
+
 // Geoms know their place in the list of bodies.
 BodyId id_of(dGeomID geom) {
   return {static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(dGeomGetData(geom)))};
@@ -86,6 +90,7 @@ struct World::Implementation {
 
 Result<Body*> World::Implementation::add(std::shared_ptr<const query::Shape> shape, const math::Pose& pose,
                                          const std::string& name) {
+  if (shape == nullptr) return no_shape(name);
   if (!pose.is_rigid(rigid_within))
     return Error{name, "", "its pose is not a finite rigid pose", "correct position and orientation"};
   const double reach_m = shape->mesh().lower().cwiseAbs().cwiseMax(shape->mesh().upper().cwiseAbs()).norm();
@@ -301,6 +306,7 @@ Result<BodyId> World::add_fixed(std::shared_ptr<const query::Shape> shape, const
 Result<BodyId> World::add_dynamic(std::shared_ptr<const query::Shape> shape, const math::Pose& pose,
                                   const MassSpec& mass, const std::string& name) {
   Implementation& self = *implementation_;
+  if (shape == nullptr) return no_shape(name);
   const oddsMeshDataID data = oddsMeshDataFromShape(shape);
   const bool closed = data != nullptr && oddsMeshDataIsClosed(data) != 0;
   oddsMeshDataDestroy(data);
