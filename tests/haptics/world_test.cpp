@@ -456,6 +456,20 @@ TEST(World, RefusesBodiesWithoutAShape) {
   EXPECT_EQ(dynamic.error().file, "cube");
 }
 
+// ODE's own friction may be infinite; here such contacts were left out, and bodies fell through each other.
+TEST(World, RefusesContactsThatAreNotFinite) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (double ContactModel::*number :
+       {&ContactModel::stiffness_n_per_m, &ContactModel::damping_ns_per_m, &ContactModel::friction}) {
+    WorldOptions options;
+    options.contact.*number = infinity;
+    EXPECT_FALSE(World::make(options).ok());
+  }
+  WorldOptions options;
+  options.contact.max_correcting_velocity_m_per_s = std::nan("");
+  EXPECT_FALSE(World::make(options).ok());
+}
+
 TEST(World, HoldsBodiesToTheGreatestSpeed) {
   WorldOptions options = repeatable_options();
   options.max_speed_m_per_s = 3.0;
