@@ -2,6 +2,7 @@
 #include "odds/ode/world.hpp"
 
 #include <gtest/gtest.h>
+#include <ode/ode.h>
 #include <rapidcheck/gtest.h>
 
 #include <algorithm>
@@ -468,6 +469,22 @@ TEST(World, RefusesContactsThatAreNotFinite) {
   WorldOptions options;
   options.contact.max_correcting_velocity_m_per_s = std::nan("");
   EXPECT_FALSE(World::make(options).ok());
+}
+
+int messages_heard = 0;
+
+TEST(World, LeavesTheProgramItsMessageHandler) {
+  dMessageFunction* const before = dGetMessageHandler();
+  dMessageFunction* const own = [](int, const char*, va_list) { ++messages_heard; };
+  dSetMessageHandler(own);
+  {
+    const World world = make(repeatable_options());
+    const World other = make(repeatable_options());
+    dMessage(0, "between steps");
+    EXPECT_EQ(messages_heard, 1);
+  }
+  EXPECT_EQ(dGetMessageHandler(), own);
+  dSetMessageHandler(before);
 }
 
 TEST(World, HoldsBodiesToTheGreatestSpeed) {

@@ -161,8 +161,8 @@ struct StepSummary {
   std::uint32_t pairs_left_out = 0;     ///< for which the frame had no time left
   double frame_overshoot_us = 0.0;      ///< of the frame beyond its time, >= 0
   std::uint32_t contacts_left_out = 0;  ///< beyond max_contacts_per_step, or not finite
-  /// With which ODE's solver complained, e.g. "LCP internal error": it gave up on a part of the contacts. Those of
-  /// other worlds that step meanwhile, in other threads, count too.
+  /// With which ODE's solver complained, e.g. "LCP internal error": it gave up on a part of the contacts. They are
+  /// written nowhere; what ODE says at other times goes to the program's own message handler, as before.
   std::uint32_t solver_messages = 0;
   double max_depth_m = 0.0;
   double collision_us = 0.0;        ///< broad phase, queries and contact joints; by the world's clock

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <vector>
 
@@ -19,6 +18,7 @@
 #include "ode/world/first_look.hpp"
 #include "ode/world/meeting_answer.hpp"
 #include "ode/world/penalty.hpp"
+#include "ode/world/solver_messages.hpp"
 #include "ode/world/world_body.hpp"
 #include "ode/world/world_frame.hpp"
 #include "ode/world/world_options.hpp"
@@ -31,11 +31,6 @@ constexpr unsigned long dynamic_bit = 2;
 // Depths and lever arms beyond this overflow in ODE's solver, which then ends the program.
 constexpr double farthest_m = 1e7;
 constexpr double rigid_within = 1e-6;  // of a pose given from outside: R^T R - I
-
-std::atomic<std::uint64_t> solver_messages{0};
-
-// ODE writes to stderr where contacts are redundant; within a tick that would be a system call.
-void count_message(int, const char*, va_list) { solver_messages.fetch_add(1, std::memory_order_relaxed); }
 
 Error no_shape(const std::string& name) {
   return {name, "", "its shape is null", "build one with query::Shape::build"};
@@ -62,6 +57,7 @@ struct World::Implementation {
   }
 
   Library library;
+  MessageHandler message_handler;
   WorldOptions options;
   dWorldID world = nullptr;
   dSpaceID space = nullptr;
@@ -141,6 +137,7 @@ std::optional<Error> World::Implementation::prepare_pairs() {
 // Fills the joint group and the solver's memory once with the most contacts a step may have, then undoes the motion.
 void World::Implementation::warm_up_solver() {
   constexpr std::uint32_t most_solved = 64;  // the exact solver's time grows with the cube
+  const CountedMessages messages;            // nobody's contacts
   reserve_solver(world, options, dynamic_bodies);
 
   std::vector<BodyState> before;
@@ -280,7 +277,6 @@ Result<World> World::make(const WorldOptions& options) {
   if (!library) return library.error();
   auto made = std::make_unique<Implementation>(std::move(library).value(), options);
   if (made->options.clock.now_ns == nullptr) made->options.clock = realtime::fastest_clock();
-  dSetMessageHandler(&count_message);
   made->world = dWorldCreate();
   made->space = dSimpleSpaceCreate(nullptr);  // the hash space and sweep-and-prune allocate where boxes overlap
   dSpaceSetCleanup(made->space, 0);
@@ -361,6 +357,7 @@ void World::look() noexcept {
 
 StepSummary World::step() noexcept {
   Implementation& self = *implementation_;
+  const CountedMessages messages;
   self.summary = {};
   const std::uint32_t parts = self.options.parts;
   const bool solves = self.part + 1 == parts;
@@ -385,10 +382,9 @@ StepSummary World::step() noexcept {
   }
   ++self.summary.solver_calls;
   self.summary.bodies_stepped = self.dynamic_bodies;
-  const std::uint64_t complaints = solver_messages.load(std::memory_order_relaxed);
+  const std::uint32_t complaints = messages.count();
   self.options.solver == Solver::exact ? dWorldStep(self.world, h) : dWorldQuickStep(self.world, h);
-  self.summary.solver_messages =
-      static_cast<std::uint32_t>(solver_messages.load(std::memory_order_relaxed) - complaints);
+  self.summary.solver_messages = messages.count() - complaints;
   dJointGroupEmpty(self.contacts);
   if (measures) self.note_contacts();
   for (const auto& body : self.bodies) {
