@@ -2,6 +2,7 @@
 #include "preload/environment.hpp"
 
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <string_view>
@@ -25,15 +26,18 @@ constexpr std::array<PartnerName, 9> partner_names = {{{"all", ODDS_TAKE_ALL},
                                                        {"ray", ODDS_TAKE_RAY},
                                                        {"convex", ODDS_TAKE_CONVEX}}};
 
-// A number in [least, most] into `value`; otherwise it stays, and the mistake is noted.
+// A number in [least, most] into `value`; otherwise it stays, and the mistake is noted. Not by strtod: the program may
+// have set a locale whose numbers have commas.
 template <class Number>
 void read_number(const char* name, double least, double most, Number& value, std::vector<std::string>& mistakes) {
-  const char* text = std::getenv(name);
-  if (text == nullptr || *text == '\0') return;
-  char* end = nullptr;
-  const double number = std::strtod(text, &end);
+  const char* given = std::getenv(name);
+  if (given == nullptr || *given == '\0') return;
+  const std::string text = given;
+  double number = 0.0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool read = code == std::errc{} && end == text.data() + text.size();
   const bool whole = std::is_floating_point_v<Number> || number == std::floor(number);
-  if (*end == '\0' && number >= least && number <= most && whole) {
+  if (read && number >= least && number <= most && whole) {
     value = static_cast<Number>(number);
     return;
   }

@@ -1,10 +1,11 @@
 // A program that knows ODE only: mesh bricks on a mesh ground, one second at 1 kHz. Prints how far the bricks are from
 // where they were put, and how many contacts were sideways. The test of the preload library runs it with and without.
 // With DEFORM set in the environment it tells ODE that it has moved the ground's vertices, with LATE_DATA it collides a
-// mesh that could not be read when it was made.
+// mesh that could not be read when it was made. With COMMAS it sets a locale whose numbers have commas, if there is one.
 #include <ode/ode.h>
 
 #include <algorithm>
+#include <clocale>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -84,6 +85,7 @@ int contacts_of_late_data() {
 }  // namespace
 
 int main() {
+  if (std::getenv("COMMAS") != nullptr && std::setlocale(LC_ALL, "de_DE.UTF-8") != nullptr) std::puts("commas");
   dInitODE2(0);
   dAllocateODEDataForThread(static_cast<unsigned>(dAllocateMaskAll));
   double farthest = 0.0;

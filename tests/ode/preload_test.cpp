@@ -120,5 +120,12 @@ TEST_F(Preload, FractionsOfWholeNumbersAndListsWithoutAPartnerAreMistakes) {
   EXPECT_EQ(spaced.output.find("unknown"), std::string::npos) << spaced.output;
 }
 
+TEST_F(Preload, NumbersAreReadAlikeInEveryLocale) {
+  const ClientRun with = run("COMMAS=1 ODDS_BUDGET_US=99.5 ODDS_REPORT=off", true);
+  ASSERT_EQ(with.status, 0) << with.output;
+  if (with.output.find("commas") == std::string::npos) GTEST_SKIP() << "no locale with decimal commas";
+  EXPECT_EQ(with.output.find("ODDS_BUDGET_US"), std::string::npos) << with.output;
+}
+
 }  // namespace
 }  // namespace odds::test
