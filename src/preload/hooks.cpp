@@ -1,9 +1,11 @@
 // The functions of ODE that libodds_preload.so puts itself in front of: a program that runs under LD_PRELOAD gets a
 // takeover of its dTriMesh geoms without being changed or built anew. Hierarchies are built where the program makes its
 // meshes, not where they collide.
+#include <atomic>
 #include <cstdio>
 #include <exception>
 #include <fstream>
+#include <utility>
 
 #include "ode/geom/partners.hpp"
 #include "ode/geom/takeover.hpp"
@@ -17,11 +19,15 @@ namespace {
 // What our own library does with ODE comes here too; it is not the program's doing.
 thread_local bool inside = false;
 
-struct Inside {
-  Inside() noexcept { inside = true; }
-  ~Inside() { inside = false; }
+class Inside {
+ public:
+  Inside() noexcept : outer_(std::exchange(inside, true)) {}
+  ~Inside() { inside = outer_; }
   Inside(const Inside&) = delete;
   Inside& operator=(const Inside&) = delete;
+
+ private:
+  bool outer_;
 };
 
 // Reads the environment once; says the page when the program ends.
@@ -72,15 +78,27 @@ Session& session() {
   return only;
 }
 
+std::atomic<int> initialised{0};  // by the program, which has not closed it as often yet
+
 // After every initialisation, so that a takeover outlives a real close of ODE.
 void after_init() noexcept {
   if (inside) return;
+  initialised.fetch_add(1, std::memory_order_relaxed);
   const Inside guard;
   try {
     session().take_over();
   } catch (const std::exception& error) {
     std::fprintf(stderr, "warning: libodds_preload: no takeover: %s\n", error.what());
   }
+}
+
+// ODE closes where the program closes it for the last time: held open by a takeover it would keep the program's classes
+// of geoms, of which it has room for four, and abort where the program registers them anew.
+void after_close() noexcept {
+  if (inside || initialised.load(std::memory_order_relaxed) == 0) return;
+  if (initialised.fetch_sub(1, std::memory_order_relaxed) > 1) return;
+  const Inside guard;
+  oddsGiveBackTriMesh();  // not of an ODE that hides its own colliders: there the takeover goes on
 }
 
 void after_mesh(dGeomID trimesh) noexcept {
@@ -114,7 +132,10 @@ extern "C" {
 
 void dInitODE(void) {
   static const auto next = real<void()>("dInitODE");
-  next();
+  {
+    const odds::preload::Inside guard;  // it may call dInitODE2
+    next();
+  }
   odds::preload::after_init();
 }
 
@@ -123,6 +144,12 @@ int dInitODE2(unsigned int flags) {
   const int result = next(flags);
   if (result != 0) odds::preload::after_init();
   return result;
+}
+
+void dCloseODE(void) {
+  static const auto next = real<void()>("dCloseODE");
+  next();
+  odds::preload::after_close();
 }
 
 dGeomID dCreateTriMesh(dSpaceID space, dTriMeshDataID data, dTriCallback* callback, dTriArrayCallback* array_callback,

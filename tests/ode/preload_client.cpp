@@ -1,7 +1,8 @@
 // A program that knows ODE only: mesh bricks on a mesh ground, one second at 1 kHz. Prints how far the bricks are from
 // where they were put, and how many contacts were sideways. The test of the preload library runs it with and without.
 // With DEFORM set in the environment it tells ODE that it has moved the ground's vertices, with LATE_DATA it collides a
-// mesh that could not be read when it was made. With COMMAS it sets a locale whose numbers have commas, if there is one.
+// mesh that could not be read when it was made. With CYCLES it has used ODE several times before, with a class of geoms
+// of its own, and with COMMAS it sets a locale whose numbers have commas, if there is one.
 #include <ode/ode.h>
 
 #include <algorithm>
@@ -82,10 +83,21 @@ int contacts_of_late_data() {
   return count;
 }
 
+void use_a_class_of_its_own() {
+  dInitODE2(0);
+  dGeomClass description = {};
+  description.bytes = 8;
+  description.collider = [](int) -> dColliderFn* { return nullptr; };
+  description.aabb = &dInfiniteAABB;
+  dCreateGeomClass(&description);
+  dCloseODE();
+}
+
 }  // namespace
 
 int main() {
   if (std::getenv("COMMAS") != nullptr && std::setlocale(LC_ALL, "de_DE.UTF-8") != nullptr) std::puts("commas");
+  for (int i = 0; i < 6 && std::getenv("CYCLES") != nullptr; ++i) use_a_class_of_its_own();
   dInitODE2(0);
   dAllocateODEDataForThread(static_cast<unsigned>(dAllocateMaskAll));
   double farthest = 0.0;

@@ -127,5 +127,16 @@ TEST_F(Preload, NumbersAreReadAlikeInEveryLocale) {
   EXPECT_EQ(with.output.find("ODDS_BUDGET_US"), std::string::npos) << with.output;
 }
 
+// ODE was held open, and its room for classes filled up.
+TEST_F(Preload, AProgramMayCloseOdeAndUseItAgainWithAClassOfItsOwn) {
+  const ClientRun alone = run("CYCLES=1", false);
+  ASSERT_EQ(alone.status, 0) << alone.output;
+  const ClientRun with = run("CYCLES=1 ODDS_BUDGET_US=1e9 ODDS_REPORT=" + page.string(), true);
+  ASSERT_EQ(with.status, 0) << with.output;
+  EXPECT_EQ(with.sideways, 0) << "taken over anew";
+  EXPECT_GT(with.contacts, 4000);
+  EXPECT_NE(read_page().find("dTriMesh "), std::string::npos);
+}
+
 }  // namespace
 }  // namespace odds::test
