@@ -427,6 +427,20 @@ TEST(World, IgnoresWrenchesAndCouplingsThatAreNotFinite) {
   EXPECT_EQ(world.state(body).pose.translation, Vec3::Zero());
 }
 
+// It was the force of the moment, and held no weight.
+TEST(WorldCoupling, ThatIsSetOnceIsASpringFromThenOn) {
+  World world = make(repeatable_options());
+  world.set_gravity(Vec3(0, 0, -10));
+  const BodyId body = world.add_dynamic(cube(), at(0.01, 0, 0), {.mass_kg = 0.2}, "cube").value();
+  world.add_coupling(body);
+  ASSERT_FALSE(world.prepare().has_value());
+  world.set_coupling(body, pull(at(0, 0, 0), 500, 10));
+  for (int i = 0; i < 2000; ++i) world.step();
+  EXPECT_NEAR(world.state(body).pose.translation.x(), 0.0, 1e-6);
+  EXPECT_NEAR(world.state(body).pose.translation.z(), -0.2 * 10 / 500, 1e-6);
+  EXPECT_NEAR(world.coupling_wrench(body).force_n.z(), 2.0, 1e-4);
+}
+
 // It said what it had exerted last, for as long as it was off.
 TEST(WorldCoupling, ThatIsOffExertsNothing) {
   World world = make(repeatable_options());

@@ -62,7 +62,9 @@ CouplingJoint::CouplingJoint(dWorldID world, dBodyID body)
   dJointSetFeedback(angular_, &angular_feedback_);
 }
 
-void CouplingJoint::set(const Coupling& c, const Vec3& center_m, double step_s) noexcept {
+void CouplingJoint::begin_step(const Vec3& center_m, double step_s) noexcept {
+  forget_wrench();
+  const Coupling& c = coupling_;
   const dReal* p = dBodyGetPosition(body_);
   const dReal* r = dBodyGetRotation(body_);
   Mat3 rotation;

@@ -16,15 +16,18 @@ class CouplingJoint {
   CouplingJoint(const CouplingJoint&) = delete;
   CouplingJoint& operator=(const CouplingJoint&) = delete;
 
-  /// `center_m`: of mass, in the body's mesh frame. What is not finite switches the coupling off until the next call.
-  void set(const Coupling& coupling, const Vec3& center_m, double step_s) noexcept;
-  /// Before each step: ODE writes nothing where the coupling is off.
+  /// Of the next steps. What is not finite switches the coupling off until the next call.
+  void set(const Coupling& coupling) noexcept { coupling_ = coupling; }
+  /// Before each step: its rows, from where the body is. `center_m`: of mass, in the body's mesh frame.
+  void begin_step(const Vec3& center_m, double step_s) noexcept;
+  /// ODE writes nothing where the coupling is off.
   void forget_wrench() noexcept;
   /// On the body, in the last step.
   [[nodiscard]] Wrench wrench() const noexcept;
 
  private:
   dBodyID body_;
+  Coupling coupling_;  // without stiffness and damping: off
   dJointID linear_;
   dJointID angular_;
   dJointFeedback linear_feedback_{};

@@ -378,7 +378,7 @@ StepSummary World::step() noexcept {
   const bool measures = self.options.contact_work && self.momenta.size() == self.bodies.size();
   if (measures) self.note_momenta();
   for (const auto& body : self.bodies) {
-    if (body->coupling) body->coupling->forget_wrench();
+    if (body->coupling) body->coupling->begin_step(body->mass.center_m, h);
   }
   ++self.summary.solver_calls;
   self.summary.bodies_stepped = self.dynamic_bodies;
@@ -407,7 +407,7 @@ void World::abandon_step() noexcept {
 
 void World::set_coupling(BodyId id, const Coupling& coupling) noexcept {
   Body& body = *implementation_->bodies[id.index];
-  if (body.coupling) body.coupling->set(coupling, body.mass.center_m, implementation_->options.step_s);
+  if (body.coupling) body.coupling->set(coupling);
 }
 
 Wrench World::coupling_wrench(BodyId id) const noexcept {
