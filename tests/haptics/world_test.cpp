@@ -7,9 +7,11 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <thread>
 
 #include "odds/mesh/made/by_name.hpp"
 #include "support/allocation_counter.hpp"
@@ -483,6 +485,30 @@ TEST(World, RefusesContactsThatAreNotFinite) {
   WorldOptions options;
   options.contact.max_correcting_velocity_m_per_s = std::nan("");
   EXPECT_FALSE(World::make(options).ok());
+}
+
+// ODE ended the program, in most runs of this.
+TEST(World, StepsBesideAnotherOneInAnotherThread) {
+  std::atomic<int> ready{0};
+  const auto hang = [&ready](double& height) {
+    WorldOptions options = repeatable_options();
+    options.gravity_m_per_s2 = Vec3(0, 0, -10);
+    World world = make(options);
+    const BodyId body = world.add_dynamic(cube(), at(0, 0, 0), {.mass_kg = 0.5}, "cube").value();
+    world.add_coupling(body);
+    world.set_coupling(body, pull(at(0, 0, 0), 500, 30));
+    EXPECT_FALSE(world.prepare().has_value());
+    for (++ready; ready < 2;) {
+    }
+    for (int i = 0; i < 200'000; ++i) world.step();
+    height = world.state(body).pose.translation.z();
+  };
+  std::array<double, 2> heights = {};
+  std::thread other([&] { hang(heights[0]); });
+  hang(heights[1]);
+  other.join();
+  EXPECT_NEAR(heights[0], -0.5 * 10 / 500, 1e-6);
+  EXPECT_EQ(heights[1], heights[0]);
 }
 
 int messages_heard = 0;

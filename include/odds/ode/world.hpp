@@ -176,7 +176,7 @@ struct StepSummary {
 };
 
 /// Bodies, contacts and time. Set-up functions allocate and may fail; after prepare() nothing does. One thread at a
-/// time.
+/// time; other worlds may step in other threads meanwhile.
 class World {
  public:
   static Result<World> make(const WorldOptions& options);

@@ -53,12 +53,14 @@ struct World::Implementation {
     bodies.clear();  // geoms before their space, and before the library
     if (contacts != nullptr) dJointGroupDestroy(contacts);
     if (world != nullptr) dWorldDestroy(world);
+    if (threading != nullptr) dThreadingFreeImplementation(threading);
     if (space != nullptr) dSpaceDestroy(space);
   }
 
   Library library;
   MessageHandler message_handler;
   WorldOptions options;
+  dThreadingImplementationID threading = nullptr;  // ODE's own is one for all worlds: two at once would end it
   dWorldID world = nullptr;
   dSpaceID space = nullptr;
   dJointGroupID contacts = nullptr;
@@ -277,7 +279,11 @@ Result<World> World::make(const WorldOptions& options) {
   if (!library) return library.error();
   auto made = std::make_unique<Implementation>(std::move(library).value(), options);
   if (made->options.clock.now_ns == nullptr) made->options.clock = realtime::fastest_clock();
+  made->threading = dThreadingAllocateSelfThreadedImplementation();
+  if (made->threading == nullptr) return Error{"world", "", "out of memory", "free memory"};
   made->world = dWorldCreate();
+  dWorldSetStepThreadingImplementation(made->world, dThreadingImplementationGetFunctions(made->threading),
+                                       made->threading);
   made->space = dSimpleSpaceCreate(nullptr);  // the hash space and sweep-and-prune allocate where boxes overlap
   dSpaceSetCleanup(made->space, 0);
   made->contacts = dJointGroupCreate(0);
