@@ -38,8 +38,9 @@ struct ContactModel {
   double damping_ns_per_m = 20.0;  ///< likewise; >= 0
   double error_reduction = 0.2;    ///< of a constraint: share of the overlap that a step takes away, (0, 1]
   double friction = 0.0;           ///< Coulomb's mu; 0: no friction rows at all
-  double max_correcting_velocity_m_per_s =
-      1.0;  ///< how fast overlap may be pushed apart; bounds the force of deep contacts
+  /// How fast overlap may be pushed apart, > 0. But for a constraint it bounds the force of deep contacts, of a pair at
+  /// rest to (step * stiffness + damping) times it: 40 N by the defaults, through which more than 4 kg sink.
+  double max_correcting_velocity_m_per_s = 1.0;
 };
 
 /// How fast bodies lose speed, as rates of exponential decay. 0: not at all.
