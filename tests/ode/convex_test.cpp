@@ -2,6 +2,7 @@
 // out.
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <random>
 
 #include "odds/mesh/made/icosphere.hpp"
@@ -131,6 +132,39 @@ TEST_F(ConvexTest, CrossedEdgesArePushedApartAcrossBoth) {
   EXPECT_NEAR(contacts[0].depth, 0.01, 1e-4);
   EXPECT_NEAR(contacts[0].pos[0], 0.13, 1e-3);
   EXPECT_NEAR(contacts[0].pos[1], 0.0, 1e-3);
+}
+
+// A quarter of those of 0.1 mm lacked the direction between two edges.
+TEST_F(ConvexTest, SmallOnesAreHeldLikeLargeOnes) {
+  const double small = std::ldexp(1.0, -13);
+  const auto shape = [](double scale) {
+    return shape_of(mesh::made::Icosphere{.radius = 0.6 * scale, .frequency = 4});
+  };
+  const std::array<dGeomID, 2> meshes = {mesh_geom(shape(1.0), space), mesh_geom(shape(small), space)};
+  std::deque<Arrays> arrays;  // ODE keeps pointers to them
+  int touching = 0;
+  for (int round = 0; round < 200; ++round) {
+    const Vec3 half(0.3 + 0.2 * uniform(random), 0.3 + 0.2 * uniform(random), 0.3 + 0.2 * uniform(random));
+    const Vec3 place(uniform(random), uniform(random), uniform(random));
+    const Vec3 axis(uniform(random), uniform(random), 1.5);
+    const double angle = 3.0 * uniform(random);
+    std::array<std::vector<dContactGeom>, 2> found;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const double scale = i == 0 ? 1.0 : small;
+      arrays.push_back(cuboid(scale * half));
+      const dGeomID convex = convex_of(arrays.back());
+      rotate(convex, axis, angle);
+      dGeomSetPosition(convex, scale * place.x(), scale * place.y(), scale * place.z());
+      found[i] = collide(convex, meshes[i]);
+    }
+    ASSERT_EQ(found[0].size(), found[1].size()) << "round " << round;
+    touching += found[0].empty() ? 0 : 1;
+    for (std::size_t k = 0; k < found[0].size(); ++k) {
+      EXPECT_EQ(small * found[0][k].depth, found[1][k].depth) << "round " << round;
+      EXPECT_EQ(normal_of(found[0][k]), normal_of(found[1][k])) << "round " << round;
+    }
+  }
+  EXPECT_GT(touching, 50);
 }
 
 TEST_F(ConvexTest, SwallowedByAClosedMeshItIsPushedOut) {

@@ -21,12 +21,23 @@ constexpr std::size_t most_hull_corners = 256;
 struct Hull {
   std::span<const Piece* const> patch;
   Vec3 middle;
+  double scale;
 };
 
 struct Searched {
   const ConvexBody& body;
+  double scale;
   mutable int supports_left = most_supports;
 };
+
+// To a size of about 1. libccd takes 2e-16 for nothing, products of three lengths among them: of bodies below a
+// millimetre it would find no direction. A power of two, which rounds nothing.
+double scale_of(double size) noexcept {
+  constexpr int most = 1000;
+  int exponent = 0;
+  std::frexp(size, &exponent);
+  return std::ldexp(1.0, std::clamp(-exponent, -most, most));
+}
 
 Vec3 from_ccd(const ccd_vec3_t& v) noexcept { return {v.v[0], v.v[1], v.v[2]}; }
 void to_ccd(const Vec3& from, ccd_vec3_t* to) noexcept { ccdVec3Set(to, from.x(), from.y(), from.z()); }
@@ -34,11 +45,12 @@ void to_ccd(const Vec3& from, ccd_vec3_t* to) noexcept { ccdVec3Set(to, from.x()
 void body_support(const void* self, const ccd_vec3_t* direction, ccd_vec3_t* point) noexcept {
   const auto& searched = *static_cast<const Searched*>(self);
   const bool goes_on = searched.supports_left-- > 0;
-  to_ccd(goes_on ? searched.body.farthest(from_ccd(*direction)) : searched.body.center(), point);
+  to_ccd(searched.scale * (goes_on ? searched.body.farthest(from_ccd(*direction)) : searched.body.center()), point);
 }
 
 void body_center(const void* self, ccd_vec3_t* center) noexcept {
-  to_ccd(static_cast<const Searched*>(self)->body.center(), center);
+  const auto& searched = *static_cast<const Searched*>(self);
+  to_ccd(searched.scale * searched.body.center(), center);
 }
 
 void hull_support(const void* self, const ccd_vec3_t* direction, ccd_vec3_t* point) noexcept {
@@ -54,11 +66,12 @@ void hull_support(const void* self, const ccd_vec3_t* direction, ccd_vec3_t* poi
       best = &piece->corners[i];
     }
   }
-  to_ccd(*best, point);
+  to_ccd(hull.scale * *best, point);
 }
 
 void hull_center(const void* self, ccd_vec3_t* center) noexcept {
-  to_ccd(static_cast<const Hull*>(self)->middle, center);
+  const auto& hull = *static_cast<const Hull*>(self);
+  to_ccd(hull.scale * hull.middle, center);
 }
 
 }  // namespace
@@ -81,7 +94,9 @@ void add_refined_exit(const ConvexBody& body, std::span<const Piece* const> patc
     corners += piece->count;
   }
   if (corners == 0 || corners > most_hull_corners) return;
-  const Hull hull = {patch, sum / static_cast<double>(corners)};
+  const double size = body.box_half_extents().norm();
+  const double scale = scale_of(size);
+  const Hull hull = {patch, sum / static_cast<double>(corners), scale};
   ccd_t settings;
   CCD_INIT(&settings);
   settings.support1 = &body_support;
@@ -89,11 +104,11 @@ void add_refined_exit(const ConvexBody& body, std::span<const Piece* const> patc
   settings.center1 = &body_center;
   settings.center2 = &hull_center;
   settings.max_iterations = most_iterations;
-  settings.mpr_tolerance = refinement_tolerance * body.box_half_extents().norm();
+  settings.mpr_tolerance = refinement_tolerance * scale * size;
   double depth = 0.0;
   ccd_vec3_t direction;
   ccd_vec3_t position;
-  const Searched searched = {body};
+  const Searched searched = {body, scale};
   if (ccdMPRPenetration(&searched, &hull, &settings, &depth, &direction, &position) == 0) {
     exits.add_facing(from_ccd(direction));
   }
