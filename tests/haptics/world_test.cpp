@@ -2,16 +2,13 @@
 #include "odds/ode/world.hpp"
 
 #include <gtest/gtest.h>
-#include <ode/ode.h>
 #include <rapidcheck/gtest.h>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <thread>
 
 #include "odds/mesh/made/by_name.hpp"
 #include "support/allocation_counter.hpp"
@@ -461,70 +458,6 @@ TEST(WorldCoupling, ThatIsOffExertsNothing) {
     EXPECT_EQ(world.coupling_wrench(body).force_n, Vec3::Zero());
     EXPECT_EQ(world.coupling_wrench(body).torque_nm, Vec3::Zero());
   }
-}
-
-TEST(World, RefusesBodiesWithoutAShape) {
-  World world = make(repeatable_options());
-  const auto fixed = world.add_fixed(nullptr, at(0, 0, 0), "floor");
-  ASSERT_FALSE(fixed.ok());
-  EXPECT_EQ(fixed.error().file, "floor");
-  const auto dynamic = world.add_dynamic(nullptr, at(0, 0, 0), {.mass_kg = 1.0}, "cube");
-  ASSERT_FALSE(dynamic.ok());
-  EXPECT_EQ(dynamic.error().file, "cube");
-}
-
-// ODE's own friction may be infinite; here such contacts were left out, and bodies fell through each other.
-TEST(World, RefusesContactsThatAreNotFinite) {
-  const double infinity = std::numeric_limits<double>::infinity();
-  for (double ContactModel::*number :
-       {&ContactModel::stiffness_n_per_m, &ContactModel::damping_ns_per_m, &ContactModel::friction}) {
-    WorldOptions options;
-    options.contact.*number = infinity;
-    EXPECT_FALSE(World::make(options).ok());
-  }
-  WorldOptions options;
-  options.contact.max_correcting_velocity_m_per_s = std::nan("");
-  EXPECT_FALSE(World::make(options).ok());
-}
-
-// ODE ended the program, in most runs of this.
-TEST(World, StepsBesideAnotherOneInAnotherThread) {
-  std::atomic<int> ready{0};
-  const auto hang = [&ready](double& height) {
-    WorldOptions options = repeatable_options();
-    options.gravity_m_per_s2 = Vec3(0, 0, -10);
-    World world = make(options);
-    const BodyId body = world.add_dynamic(cube(), at(0, 0, 0), {.mass_kg = 0.5}, "cube").value();
-    world.add_coupling(body);
-    world.set_coupling(body, pull(at(0, 0, 0), 500, 30));
-    EXPECT_FALSE(world.prepare().has_value());
-    for (++ready; ready < 2;) {
-    }
-    for (int i = 0; i < 200'000; ++i) world.step();
-    height = world.state(body).pose.translation.z();
-  };
-  std::array<double, 2> heights = {};
-  std::thread other([&] { hang(heights[0]); });
-  hang(heights[1]);
-  other.join();
-  EXPECT_NEAR(heights[0], -0.5 * 10 / 500, 1e-6);
-  EXPECT_EQ(heights[1], heights[0]);
-}
-
-int messages_heard = 0;
-
-TEST(World, LeavesTheProgramItsMessageHandler) {
-  dMessageFunction* const before = dGetMessageHandler();
-  dMessageFunction* const own = [](int, const char*, va_list) { ++messages_heard; };
-  dSetMessageHandler(own);
-  {
-    const World world = make(repeatable_options());
-    const World other = make(repeatable_options());
-    dMessage(0, "between steps");
-    EXPECT_EQ(messages_heard, 1);
-  }
-  EXPECT_EQ(dGetMessageHandler(), own);
-  dSetMessageHandler(before);
 }
 
 TEST(World, HoldsBodiesToTheGreatestSpeed) {
