@@ -17,6 +17,18 @@ namespace odds::math {
 
 [[nodiscard]] inline float length(const Vec3f& v) noexcept { return std::sqrt(squared_length(v)); }
 
+/// M v.
+[[nodiscard]] inline Vec3f times(const Mat3f& m, const Vec3f& v) noexcept {
+  return {dot(m.row(0), v), dot(m.row(1), v), dot(m.row(2), v)};
+}
+
+/// M N.
+[[nodiscard]] inline Mat3f times(const Mat3f& m, const Mat3f& n) noexcept {
+  Mat3f product;
+  for (int j = 0; j < 3; ++j) product.col(j) = times(m, Vec3f(n.col(j)));
+  return product;
+}
+
 /// M^T v.
 [[nodiscard]] inline Vec3f transposed_times(const Mat3f& m, const Vec3f& v) noexcept {
   return {dot(m.col(0), v), dot(m.col(1), v), dot(m.col(2), v)};

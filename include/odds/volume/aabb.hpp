@@ -40,7 +40,7 @@ struct Aabb {
 };
 
 [[nodiscard]] inline BoxPairView view_of(const Aabb& a, const Aabb& b, const RelativePose& pose) noexcept {
-  return {pose.rotation * b.center_ + pose.translation - a.center_, pose.rotation, pose.abs_rotation};
+  return {math::times(pose.rotation, b.center_) + pose.translation - a.center_, pose.rotation, pose.abs_rotation};
 }
 
 [[nodiscard]] inline bool overlap(const Aabb& a, const Aabb& b, const RelativePose& pose) noexcept {

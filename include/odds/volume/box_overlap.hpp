@@ -20,7 +20,7 @@ struct BoxPairView {
 /// The six face axes. True: not separated by any of them.
 [[nodiscard]] inline bool faces_overlap(const Vec3f& ha, const Vec3f& hb, const BoxPairView& view,
                                         float margin) noexcept {
-  const Vec3f reach_a = ha + view.abs_r * hb;
+  const Vec3f reach_a = ha + math::times(view.abs_r, hb);
   if (((view.t.cwiseAbs() - reach_a).array() > margin).any()) return false;
   const Vec3f t_in_b = math::transposed_times(view.r, view.t);
   const Vec3f reach_b = hb + math::transposed_times(view.abs_r, ha);
@@ -65,7 +65,7 @@ struct BoxPairView {
                                                const BoxPairView& view) noexcept {
   const Vec3f ha = floored(half_a);
   const Vec3f hb = floored(half_b);
-  const Vec3f eb = view.abs_r * hb;
+  const Vec3f eb = math::times(view.abs_r, hb);
   const Vec3f ea = math::transposed_times(view.abs_r, ha);
   const Vec3f t_in_b = math::transposed_times(view.r, view.t);
   double product_a = 1.0;

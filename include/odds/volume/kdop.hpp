@@ -135,8 +135,8 @@ template <int K>
 /// That of the enclosing boxes, times the lesser of both shares of their boxes that the volumes fill.
 template <int K>
 [[nodiscard]] inline double overlap_volume(const Kdop<K>& a, const Kdop<K>& b, const KdopPose<K>& pose) noexcept {
-  const BoxPairView view = {pose.rotation * b.box_center() + pose.translation - a.box_center(), pose.rotation,
-                            pose.abs_rotation};
+  const BoxPairView view = {math::times(pose.rotation, b.box_center()) + pose.translation - a.box_center(),
+                            pose.rotation, pose.abs_rotation};
   return box_overlap_volume(a.box_half(), b.box_half(), view) * static_cast<double>(std::min(a.fill_, b.fill_));
 }
 

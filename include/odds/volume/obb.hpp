@@ -44,8 +44,8 @@ struct Obb {
 
 [[nodiscard]] inline BoxPairView view_of(const Obb& a, const Obb& b, const RelativePose& pose) noexcept {
   BoxPairView view;
-  view.t = math::transposed_times(a.axes_, Vec3f(pose.rotation * b.center_ + pose.translation - a.center_));
-  view.r = math::transposed_times(a.axes_, Mat3f(pose.rotation * b.axes_));
+  view.t = math::transposed_times(a.axes_, Vec3f(math::times(pose.rotation, b.center_) + pose.translation - a.center_));
+  view.r = math::transposed_times(a.axes_, math::times(pose.rotation, b.axes_));
   view.abs_r = view.r.cwiseAbs().array() + 1e-6F;
   return view;
 }

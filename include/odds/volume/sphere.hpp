@@ -55,7 +55,7 @@ struct Sphere {
 };
 
 [[nodiscard]] inline bool overlap(const Sphere& a, const Sphere& b, const RelativePose& pose) noexcept {
-  const Vec3f offset = pose.rotation * b.center_ + pose.translation - a.center_;
+  const Vec3f offset = math::times(pose.rotation, b.center_) + pose.translation - a.center_;
   const float reach = a.radius_ + b.radius_ + 2.0F * pose.margin;
   return math::squared_length(offset) <= reach * reach * (1.0F + 1e-6F);
 }
@@ -63,7 +63,8 @@ struct Sphere {
 /// The exact lens of two balls: pi z^2 (d^2 + 2d(R+r) - 3(R-r)^2) / (12 d) with z = R + r - d; a contained ball counts
 /// whole.
 [[nodiscard]] inline double overlap_volume(const Sphere& a, const Sphere& b, const RelativePose& pose) noexcept {
-  const double d = static_cast<double>(math::length(pose.rotation * b.center_ + pose.translation - a.center_));
+  const double d =
+      static_cast<double>(math::length(math::times(pose.rotation, b.center_) + pose.translation - a.center_));
   const double ra = std::max(static_cast<double>(a.radius_), 1e-30);
   const double rb = std::max(static_cast<double>(b.radius_), 1e-30);
   if (d <= std::abs(ra - rb)) return std::min(a.volume(), b.volume());

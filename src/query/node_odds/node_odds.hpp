@@ -92,8 +92,8 @@ struct NodeNumbers {
       0.5F * math::rough_log2(static_cast<double>(probability::mean_square_sine(a, b, met.rotation) + 1e-4F));
   const float log_shares = 2.0F * math::rough_log2(met.common) - a.log_volume - b.log_volume;
   const float log_rate = a.log_relative_area + b.log_relative_area + log_shares * (1.0F / 3.0F) + log_sine;
-  const Vec3f normal_b = met.rotation * b.slab_normal;
-  const Vec3f centroid_b = met.rotation * b.centroid + placed.b_in_a;
+  const Vec3f normal_b = math::times(met.rotation, b.slab_normal);
+  const Vec3f centroid_b = math::times(met.rotation, b.centroid) + placed.b_in_a;
   const float cosine = std::min(std::abs(math::dot(a.slab_normal, normal_b)), 1.0F);
   constexpr float usual_reach = 0.5F;  // of the radius: a surface rarely fills the ball about it
   const float sine = usual_reach * std::sqrt(1.0F - cosine * cosine);
@@ -115,7 +115,7 @@ struct NodeNumbers {
   if (used > NodeNumbers::usual) {
     const float share = math::rough_log2(met.common) - std::min(a.log_volume, b.log_volume);
     const float levels = numbers.x[4];
-    const float facing = std::clamp(math::dot(a.mean_normal, met.rotation * b.mean_normal), 0.0F, 1.0F);
+    const float facing = std::clamp(math::dot(a.mean_normal, math::times(met.rotation, b.mean_normal)), 0.0F, 1.0F);
     numbers.x[7] = std::clamp(share, -20.0F, 4.0F);
     numbers.x[8] = cosine;
     numbers.x[9] = 0.1F * levels * levels;

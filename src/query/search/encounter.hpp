@@ -167,7 +167,7 @@ class Encounter {
 
   /// Cosine between the mean normals of both nodes, times how flat they are: -1 face to face, 1 one behind the other.
   [[nodiscard]] float facing(std::uint32_t i, std::uint32_t j) const noexcept {
-    return math::dot(a_.statistics()[i].mean_normal, relative_.rotation * b_.statistics()[j].mean_normal);
+    return math::dot(a_.statistics()[i].mean_normal, math::times(relative_.rotation, b_.statistics()[j].mean_normal));
   }
 
   [[nodiscard]] const tree::Hierarchy<V>& a() const noexcept { return a_; }

@@ -88,7 +88,8 @@ float Encounter::probability(Slot slot_a, Slot slot_b) const noexcept {
 }
 
 float Encounter::facing(Slot slot_a, Slot slot_b) const noexcept {
-  return math::dot(a_.statistics(slot_a).mean_normal, relative_.rotation * b_.statistics(slot_b).mean_normal);
+  return math::dot(a_.statistics(slot_a).mean_normal,
+                   math::times(relative_.rotation, b_.statistics(slot_b).mean_normal));
 }
 
 double Encounter::smaller_radius(Slot slot_a, Slot slot_b) const noexcept {
