@@ -1,9 +1,12 @@
 #include "odds/mesh/enclosed_volume.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "mesh/adjacency.hpp"
+#include "mesh/signed_volume.hpp"
+#include "odds/math/exact.hpp"
 
 namespace odds::mesh {
 namespace {
@@ -50,16 +53,28 @@ bool is_closed_and_consistent(const TriangleMesh& mesh, const std::vector<std::u
 
 }  // namespace
 
+double signed_volume(const TriangleMesh& mesh) {
+  // By the divergence theorem, from the middle of the box so that far-off meshes lose no digits.
+  const Vec3 middle = 0.5 * mesh.lower() + 0.5 * mesh.upper();
+  math::TwoDoubles six_volumes{0.0, 0.0};
+  double uncertain = 0.0;
+  for (const Triangle& t : mesh.triangles()) {
+    const Vec3& corner = mesh.vertices()[t[0]];
+    const Vec3 a = corner - middle;
+    const Vec3 u = mesh.vertices()[t[1]] - corner;
+    const Vec3 v = mesh.vertices()[t[2]] - corner;
+    const math::TwoDoubles sum = math::two_sum(six_volumes.high, a.dot(u.cross(v)));
+    six_volumes = {sum.high, six_volumes.low + sum.low};
+    uncertain += std::sqrt(a.squaredNorm() * u.squaredNorm() * v.squaredNorm());
+  }
+  // Differences err by 3 roundings of that product, the cross product by 4, the other by 3; the sum by next to nothing.
+  const double sum = six_volumes.high + six_volumes.low;
+  return std::abs(sum) > 16.0 * 0x1p-53 * uncertain ? sum / 6.0 : 0.0;
+}
+
 std::optional<double> enclosed_volume(const TriangleMesh& mesh) {
   if (!is_closed_and_consistent(mesh, first_at_position(mesh.vertices()))) return std::nullopt;
-  // By the divergence theorem, from the middle of the box so that far-off meshes lose no digits.
-  const Vec3 middle = 0.5 * (mesh.lower() + mesh.upper());
-  double six_volumes = 0.0;
-  for (const Triangle& t : mesh.triangles()) {
-    const Vec3 a = mesh.vertices()[t[0]] - middle;
-    six_volumes += a.dot((mesh.vertices()[t[1]] - middle).cross(mesh.vertices()[t[2]] - middle));
-  }
-  return six_volumes / 6.0;
+  return signed_volume(mesh);
 }
 
 }  // namespace odds::mesh

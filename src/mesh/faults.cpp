@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "mesh/adjacency.hpp"
+#include "mesh/signed_volume.hpp"
 
 namespace odds::mesh {
 namespace {
@@ -25,7 +26,7 @@ class Search {
     judge_vertices();
     faults_.closed = faults_.boundary.count == 0;
     faults_.manifold = faults_.non_manifold.count == 0 && faults_.non_manifold_vertex.count == 0;
-    if (faults_.closed && faults_.consistent()) faults_.volume = volume();
+    if (faults_.closed && faults_.consistent()) faults_.volume = signed_volume(mesh_);
     return std::move(faults_);
   }
 
@@ -109,17 +110,6 @@ class Search {
       if (seen[first_[i]]) note(faults_.duplicate_vertex, i);
       seen[first_[i]] = true;
     }
-  }
-
-  /// By the divergence theorem, from the middle of the box so that far-off meshes lose no digits.
-  [[nodiscard]] double volume() const {
-    const Vec3 middle = 0.5 * (mesh_.lower() + mesh_.upper());
-    double six_volumes = 0.0;
-    for (const Triangle& t : triangles_) {
-      const Vec3 a = mesh_.vertices()[t[0]] - middle;
-      six_volumes += a.dot((mesh_.vertices()[t[1]] - middle).cross(mesh_.vertices()[t[2]] - middle));
-    }
-    return six_volumes / 6.0;
   }
 
   const TriangleMesh& mesh_;

@@ -49,7 +49,8 @@ struct Faults {
   std::size_t components =
       0;              ///< parts connected through edges; triangles with a repeated vertex have none and do not count
   double area = 0.0;  ///< square metres
-  /// Cubic metres, positive if the triangles face outwards; only where closed and without inconsistent edges.
+  /// Cubic metres, positive if the triangles face outwards; only where closed and without inconsistent edges. Exactly 0
+  /// where it is no more than rounding, as of a sheet whose triangles are there twice, once for each side.
   std::optional<double> volume;
 
   [[nodiscard]] bool consistent() const noexcept { return inconsistent.count == 0; }
