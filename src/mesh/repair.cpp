@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "mesh/adjacency.hpp"
+#include "mesh/surrounds.hpp"
 
 namespace odds::mesh {
 namespace {
@@ -104,8 +105,11 @@ class Bench {
     bool inside_out = false;  ///< and in no other
     bool turned = false;      ///< because of that, or with another
     double six_volumes = 0.0;
+    std::size_t first_member = 0;
     Vec3 lower = Vec3::Constant(std::numeric_limits<double>::infinity());
     Vec3 upper = Vec3::Constant(-std::numeric_limits<double>::infinity());
+
+    [[nodiscard]] double length() const { return upper.x() - lower.x(); }  ///< along x
   };
 
   /// Positions, not indices, decide who is whose neighbour, whether or not the mesh was welded.
@@ -162,33 +166,72 @@ class Bench {
       own.six_volumes += turn[i] ? -sixfold : sixfold;
     }
     const auto faces_inwards = [](const Component& c) { return c.closed && c.orientable && c.six_volumes < 0.0; };
+    list_members();
+    const std::vector<std::uint32_t> closed = longest_first([](const Component& c) { return c.closed; });
     for (Component& component : components_) {
-      component.inside_out =
-          faces_inwards(component) && !lies_in_another(component, [](const Component& outer) { return outer.closed; });
+      component.inside_out = faces_inwards(component) && !lies_in_one_of(closed, component);
       component.turned = component.inside_out;
       log_.turned_components += component.inside_out ? 1 : 0;
     }
+    const std::vector<std::uint32_t> inside_out = longest_first([](const Component& c) { return c.inside_out; });
     for (Component& inner : components_) {
       if (!inner.closed || !inner.orientable || inner.inside_out) continue;
-      inner.turned = lies_in_another(inner, [](const Component& outer) { return outer.inside_out; });
+      inner.turned = lies_in_one_of(inside_out, inner);
       log_.turned_inner_components += inner.turned ? 1 : 0;
       log_.cavities_kept += !inner.turned && faces_inwards(inner) ? 1 : 0;
     }
   }
 
-  /// By boxes: a component of that kind that encloses this one's box; it may be the wall of its cavity.
+  /// The triangles of each component, one component after the other.
+  void list_members() {
+    std::size_t end = 0;
+    for (Component& component : components_) {
+      component.first_member = end;
+      end += component.triangles;
+    }
+    members_.resize(end);
+    std::vector<std::size_t> next;
+    next.reserve(components_.size());
+    for (const Component& component : components_) next.push_back(component.first_member);
+    for (std::uint32_t i = 0; i < triangles_.size(); ++i) members_[next[component_of_[i]]++] = i;
+  }
+  [[nodiscard]] std::span<const std::uint32_t> members(const Component& component) const {
+    return std::span(members_).subspan(component.first_member, component.triangles);
+  }
+
   template <class IsOfKind>
-  [[nodiscard]] bool lies_in_another(const Component& inner, IsOfKind is_of_kind) const {
-    return std::any_of(components_.begin(), components_.end(), [&](const Component& outer) {
-      return &outer != &inner && is_of_kind(outer) && (outer.lower.array() < inner.lower.array()).all() &&
-             (outer.upper.array() > inner.upper.array()).all();
-    });
+  [[nodiscard]] std::vector<std::uint32_t> longest_first(IsOfKind is_of_kind) const {
+    std::vector<std::uint32_t> numbers;
+    for (std::uint32_t i = 0; i < components_.size(); ++i) {
+      if (is_of_kind(components_[i])) numbers.push_back(i);
+    }
+    std::sort(numbers.begin(), numbers.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return components_[a].length() > components_[b].length(); });
+    return numbers;
+  }
+
+  /// Whether one of the closed components `outers`, longest first, surrounds this one: a box about its box does not say
+  /// so, as that of a ring. It may be the wall of its cavity.
+  [[nodiscard]] bool lies_in_one_of(std::span<const std::uint32_t> outers, const Component& inner) const {
+    const Triangle& first = triangles_[members(inner).front()];
+    const Vec3 point = (vertices_[first[0]] + vertices_[first[1]] + vertices_[first[2]]) / 3.0;
+    const double least = inner.length() * (1.0 + 1e-12);  // equal parts need not be compared with each other
+    for (const std::uint32_t number : outers) {
+      const Component& outer = components_[number];
+      if (!(outer.length() > least)) return false;
+      if ((outer.lower.array() < inner.lower.array()).all() && (outer.upper.array() > inner.upper.array()).all() &&
+          surrounds(vertices_, triangles_, members(outer), point)) {
+        return true;
+      }
+    }
+    return false;
   }
 
   std::vector<Vec3> vertices_;
   std::vector<Triangle> triangles_;
   std::vector<Component> components_;
   std::vector<std::uint32_t> component_of_;
+  std::vector<std::uint32_t> members_;
   std::vector<bool> odd_;
   RepairLog log_;
 };

@@ -210,6 +210,57 @@ TEST(Repair, OfAHollowBodyThatIsInsideOutTurnsTheCavityToo) {
   EXPECT_NEAR(find_faults(turned.mesh).volume.value(), volume, 1e-12 * volume);
 }
 
+/// Both as they are, or inside out.
+TriangleMesh joined(const TriangleMesh& a, bool a_over, const TriangleMesh& b, bool b_over) {
+  std::vector<Vec3> vertices(a.vertices().begin(), a.vertices().end());
+  std::vector<Triangle> triangles(a.triangles().begin(), a.triangles().end());
+  const auto first = static_cast<std::uint32_t>(vertices.size());
+  vertices.insert(vertices.end(), b.vertices().begin(), b.vertices().end());
+  for (const Triangle& t : b.triangles()) triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    if (i < a.triangles().size() ? a_over : b_over) std::swap(triangles[i][0], triangles[i][1]);
+  }
+  return mesh_of(vertices, triangles);
+}
+
+TEST(Repair, OfABallInTheHoleOfARingTurnsWhatIsInsideOutAndNothingElse) {
+  const TriangleMesh ball = made::make_shape("icosphere:radius=0.1,frequency=4").value();
+  for (const int axis : {0, 1, 2}) {
+    const TriangleMesh lying = made::make_shape("torus:ring=1,tube=0.3,around=24,across=12").value();
+    std::vector<Vec3> vertices;  // turned, so that the ring lies across each axis once
+    for (const Vec3& v : lying.vertices()) vertices.push_back({v[(axis + 1) % 3], v[(axis + 2) % 3], v[axis]});
+    const TriangleMesh ring = mesh_of(vertices, {lying.triangles().begin(), lying.triangles().end()});
+    const double volume = find_faults(ring).volume.value() + find_faults(ball).volume.value();
+    for (const bool ring_over : {false, true}) {
+      for (const bool ball_over : {false, true}) {
+        const auto repaired = repair(joined(ring, ring_over, ball, ball_over)).value();
+        EXPECT_NEAR(find_faults(repaired.mesh).volume.value(), volume, 1e-12) << axis << ring_over << ball_over;
+        EXPECT_EQ(repaired.log.turned_components, (ring_over ? 1u : 0u) + (ball_over ? 1u : 0u));
+        EXPECT_EQ(repaired.log.turned_inner_components, 0u);
+        EXPECT_EQ(repaired.log.cavities_kept, 0u);
+      }
+    }
+  }
+}
+
+// The ray goes through corners and along edges here.
+TEST(Repair, KeepsACavityWhereverItLiesInABox) {
+  const TriangleMesh box = made::make_shape("box:x=2,y=2,z=2,cells=4").value();
+  const TriangleMesh small = made::make_shape("box:x=0.5,y=0.5,z=0.5").value();
+  for (int place = 0; place < 27; ++place) {
+    const Vec3 at = 0.5 * Vec3(place % 3 - 1, place / 3 % 3 - 1, place / 9 - 1);
+    std::vector<Vec3> vertices;
+    for (const Vec3& v : small.vertices()) vertices.push_back(v + at);
+    const TriangleMesh cavity = mesh_of(vertices, {small.triangles().begin(), small.triangles().end()});
+    const auto kept = repair(joined(box, false, cavity, true)).value();
+    EXPECT_EQ(kept.log.cavities_kept, 1u) << place;
+    EXPECT_FALSE(kept.log.changed()) << place;
+    const auto turned = repair(joined(box, true, cavity, false)).value();
+    EXPECT_EQ(turned.log.turned_inner_components, 1u) << place;
+    EXPECT_NEAR(find_faults(turned.mesh).volume.value(), 8.0 - 0.125, 1e-12) << place;
+  }
+}
+
 TEST(Repair, SaysSoWhenThereIsNothingToDo) {
   const auto repaired = repair(made::make_shape("gear").value()).value();
   EXPECT_FALSE(repaired.log.changed());
