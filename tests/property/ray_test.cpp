@@ -147,6 +147,36 @@ TEST_P(Rays, GrazeNothingAwayAtAnySizeInAnyDirection) {
   }
 }
 
+// Through points of edges, which belong to two triangles: one of them is met however far off the ray begins.
+TEST_P(Rays, FromAfarPassBetweenNoTrianglesAndSeeNoMoreNodes) {
+  const auto mesh = testing::wavy_sphere(60, 0.0);
+  const auto shape = Shape::build(mesh, {.volume = GetParam()}).value();
+  double nodes_near = 0.0;
+  for (const double way : {2.0, 60.0, 70.0, 1e3, 1e4, 1e6, 1e9, 1e12}) {
+    math::Random random(5);
+    double nodes = 0.0;
+    constexpr int rays = 500;
+    for (int i = 0; i < rays; ++i) {
+      const mesh::Triangle& t = mesh->triangles()[random.below(mesh->triangles().size())];
+      const double share = random.uniform();
+      const Vec3 on = share * mesh->vertices()[t[0]] + (1.0 - share) * mesh->vertices()[t[1]];
+      Vec3 direction = random.direction();
+      if (direction.dot(on) > -0.3) direction = -(on + 0.5 * direction).normalized();
+      direction *= 1.0 + random.uniform(-4e-7, 4e-7);  // unit, as single precision would have it and more
+      RayEffort effort;
+      const auto hit = cast_counted_ray(*shape, on - way * direction, direction, INFINITY, UINT64_MAX, effort);
+      ASSERT_TRUE(hit) << way << " ray " << i;
+      const double rounding = 1e-12 + 1e-14 * way;  // of the origin: as far off is where the ray meets the surface
+      ASSERT_NEAR(hit->distance, way, 10.0 * rounding) << i;
+      ASSERT_FALSE(cast_ray(*shape, on - way * direction, -direction, INFINITY)) << way << " ray " << i;
+      ASSERT_FALSE(cast_ray(*shape, on - way * direction, direction, way - 10.0 * rounding)) << way << " ray " << i;
+      nodes += static_cast<double>(effort.nodes) / rays;
+    }
+    if (way == 2.0) nodes_near = nodes;
+    EXPECT_LT(nodes, 1.2 * nodes_near) << way;
+  }
+}
+
 /// Two shapes of one volume, two of which one is of the default's.
 TEST_P(Rays, CastTwoAtATimeMeetWhatEachMeets) {
   const auto shape = Shape::build(testing::wavy_sphere(16), {.volume = GetParam()}).value();
@@ -160,6 +190,8 @@ TEST_P(Rays, CastTwoAtATimeMeetWhatEachMeets) {
       if (i % 50 == 0) made.max_distance = INFINITY;
       if (i % 50 == 1 && random.below(2) == 0) made.max_distance = NAN;
       if (i % 50 == 2 && random.below(2) == 0) made.direction *= 2.0;
+      if (i % 5 == 3) made.origin -= 1e3 * made.direction;  // from afar
+      if (i % 5 == 3) made.max_distance += 1e3;
       return made;
     };
     const CountedRay first = ray(*shape);

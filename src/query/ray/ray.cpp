@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <variant>
 
 #include "odds/math/float_sums.hpp"
@@ -65,14 +66,45 @@ bool is_castable(const Shape& shape, const Vec3& origin, const Vec3& direction, 
          max_distance >= 0.0;
 }
 
-/// Nothing lies beyond the far side of the enclosing ball; this also makes an infinite length finite.
-double length_within(double reach, const Vec3& local, double max_distance) noexcept {
-  return std::fmin(max_distance, (local.norm() + reach) * (1.0 + 1e-9));
+/// Nothing lies beyond the far side of the enclosing ball; this also makes an infinite length finite. `away`: of the
+/// ray's origin, from the ball's middle.
+double length_within(double reach, double away, double max_distance) noexcept {
+  constexpr double unit_length = 1e-6;  // how nearly the direction has it
+  return std::fmin(max_distance, (away + reach) * (1.0 + unit_length));
 }
 
+bool is_far_off(double reach, double away) noexcept { return away > 64.0 * reach; }
+
+/// How much of a ray from far off comes before the near side of the enclosing ball, in units of the direction's length;
+/// not a number where it leads away. Beyond that, single precision tells boxes apart, and all triangles agree on what
+/// the rounding of large coordinates has made of the ray.
+double skipped_way(double reach, const Vec3& local, const Vec3& direction) noexcept {
+  constexpr double rounding = 4e-15;  // of the way, and more
+  const double to_middle = -local.dot(direction) / direction.squaredNorm();
+  const double around = 2.0 * reach + rounding * local.norm();
+  if (to_middle < -around) return std::numeric_limits<double>::quiet_NaN();
+  return to_middle > around ? to_middle - around : 0.0;
+}
+
+template <class Tree>
+[[gnu::noinline]] std::optional<RayHit> cast_from_afar(const mesh::TriangleMesh& mesh, const Tree& tree,
+                                                       const Vec3& local, const Vec3& direction, double max_distance,
+                                                       std::uint64_t budget_nodes, RayEffort& effort) noexcept {
+  const double skipped = skipped_way(tree.reach(), local, direction);
+  if (!(skipped <= max_distance)) return std::nullopt;
+  const Vec3 nearer = local + skipped * direction;
+  const double length = length_within(tree.reach(), nearer.norm(), max_distance - skipped);
+  std::optional<RayHit> hit = cast(mesh, tree, nearer, direction, length, budget_nodes, effort);
+  if (hit) hit->distance += skipped;
+  return hit;
+}
+
+/// Null also of a ray that begins far off: one at a time has to do for those.
 const tree::WideTree* castable_wide_tree(const CountedRay& ray) noexcept {
   if (!is_castable(ray.shape, ray.origin, ray.direction, ray.max_distance)) return nullptr;
-  return std::get_if<tree::WideTree>(&ray.shape.data().tree);
+  const auto* const tree = std::get_if<tree::WideTree>(&ray.shape.data().tree);
+  if (tree == nullptr || is_far_off(tree->reach(), (ray.origin - tree->origin()).norm())) return nullptr;
+  return tree;
 }
 
 }  // namespace
@@ -90,8 +122,11 @@ std::optional<RayHit> cast_counted_ray(const Shape& shape, const Vec3& origin, c
   return std::visit(
       [&](const auto& tree) -> std::optional<RayHit> {
         const Vec3 local = origin - tree.origin();
-        return cast(shape.mesh(), tree, local, direction, length_within(tree.reach(), local, max_distance),
-                    budget_nodes, effort);
+        const double away = local.norm();
+        if (is_far_off(tree.reach(), away)) [[unlikely]]
+          return cast_from_afar(shape.mesh(), tree, local, direction, max_distance, budget_nodes, effort);
+        return cast(shape.mesh(), tree, local, direction, length_within(tree.reach(), away, max_distance), budget_nodes,
+                    effort);
       },
       shape.data().tree);
 }
@@ -109,10 +144,11 @@ std::array<std::optional<RayHit>, 2> cast_two_rays(const CountedRay& first, cons
   const Vec3 local = first.origin - tree->origin();
   const Vec3 other_local = second.origin - other_tree->origin();
   return wide::searches_for(InstructionSet::best)
-      ->two_rays({first.shape.mesh(), *tree, local, first.direction,
-                  length_within(tree->reach(), local, first.max_distance), budget_nodes, effort},
-                 {second.shape.mesh(), *other_tree, other_local, second.direction,
-                  length_within(other_tree->reach(), other_local, second.max_distance), budget_nodes, other_effort});
+      ->two_rays(
+          {first.shape.mesh(), *tree, local, first.direction,
+           length_within(tree->reach(), local.norm(), first.max_distance), budget_nodes, effort},
+          {second.shape.mesh(), *other_tree, other_local, second.direction,
+           length_within(other_tree->reach(), other_local.norm(), second.max_distance), budget_nodes, other_effort});
 }
 
 }  // namespace odds::query
