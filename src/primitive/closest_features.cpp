@@ -4,8 +4,28 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/double_double.hpp"
+#include "odds/math/exact.hpp"
+
 namespace odds::primitive::detail {
 namespace {
+
+/// Directions at less than this sine: rounding turns their cross product, and what is reckoned with it.
+constexpr double careful_sine = 0.01;
+/// Sides at no more than this sine are nearer in between than at their ends by nothing but rounding.
+constexpr double least_sine = 4e-16;
+/// What is left of a way after it was reckoned with them errs by as much of itself: so often is it reckoned again.
+constexpr int careful_steps = 3;
+
+/// The vector (b - a) x (d - c), right to the last bits of its length also where its terms cancel.
+Vec3 careful_cross(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) noexcept {
+  const auto component = [&](int u, int v) {
+    const auto first = [&](int axis) { return math::two_difference(b[axis], a[axis]); };
+    const auto second = [&](int axis) { return math::two_difference(d[axis], c[axis]); };
+    return math::difference(math::product(first(u), second(v)), math::product(first(v), second(u))).high;
+  };
+  return {component(1, 2), component(2, 0), component(0, 1)};
+}
 
 /// A polygon with what every comparison with it needs.
 struct Side {
@@ -16,6 +36,7 @@ struct Side {
   double length2[3];
   Vec3 normal = Vec3::Zero();
   double normal2 = 0.0;
+  bool is_sliver = false;  ///< at its first corner
 
   explicit Side(CornerSpan polygon) noexcept
       : corner(polygon.corner), count(polygon.count), edges(count == 3 ? 3 : count - 1) {
@@ -26,6 +47,7 @@ struct Side {
     if (count == 3) {
       normal = edge[0].cross(corner[2] - corner[0]);
       normal2 = normal.squaredNorm();
+      is_sliver = normal2 < careful_sine * careful_sine * (length2[0] * length2[2]);
     }
   }
 };
@@ -33,6 +55,7 @@ struct Side {
 /// Keeps the closest pair seen.
 struct Closest {
   ClosestPoints best{HUGE_VAL, Vec3::Zero(), Vec3::Zero()};
+  bool along_edges = false;  ///< two are nearly parallel
 
   void offer(const Vec3& on_a, const Vec3& on_b) noexcept {
     const double squared_distance = (on_a - on_b).squaredNorm();
@@ -76,6 +99,9 @@ void edge_to_edge(const Side& a, int i, const Side& b, int j, Closest& closest) 
   const Vec3 normal = u.cross(v);
   const double normal2 = normal.squaredNorm();
   if (!(normal2 > 0.0)) return;
+  const double lengths2 = a.length2[i] * b.length2[j];
+  closest.along_edges |=
+      normal2 < careful_sine * careful_sine * lengths2 && normal2 > least_sine * least_sine * lengths2;
   const Vec3 w = b.corner[j] - a.corner[i];
   const double height = w.dot(normal);
   if (height * height >= closest.best.squared_distance * normal2) return;  // so far apart are the lines
@@ -83,6 +109,65 @@ void edge_to_edge(const Side& a, int i, const Side& b, int j, Closest& closest) 
   const double along_v = w.cross(u).dot(normal);
   if (along_u >= 0.0 && along_u <= normal2 && along_v >= 0.0 && along_v <= normal2) {
     closest.offer(a.corner[i] + (along_u / normal2) * u, b.corner[j] + (along_v / normal2) * v);
+  }
+}
+
+// Of x above the face of a sliver.
+template <class Offer>
+void corner_to_sliver(const Vec3& x, const Side& side, const Offer& offer) noexcept {
+  const Vec3 normal = careful_cross(side.corner[0], side.corner[1], side.corner[0], side.corner[2]);
+  const double normal2 = normal.squaredNorm();
+  if (!(normal2 > 0.0)) return;
+  const Vec3 v = -side.edge[2];
+  double along_u = 0.0;
+  double along_v = 0.0;
+  for (int step = 0; step <= careful_steps; ++step) {
+    const Vec3 left = x - side.corner[0] - along_u * side.edge[0] - along_v * v;
+    along_u += left.cross(v).dot(normal) / normal2;
+    along_v += side.edge[0].cross(left).dot(normal) / normal2;
+  }
+  if (along_u >= 0.0 && along_v >= 0.0 && along_u + along_v <= 1.0) {
+    offer(side.corner[0] + along_u * side.edge[0] + along_v * v);
+  }
+}
+
+// Of edges, if they are nearly parallel.
+void edge_along_edge(const Side& a, int i, const Side& b, int j, Closest& closest) noexcept {
+  const Vec3& u = a.edge[i];
+  const Vec3& v = b.edge[j];
+  const Vec3 rounded = u.cross(v);
+  const double lengths2 = a.length2[i] * b.length2[j];
+  const double sine2 = rounded.squaredNorm() / lengths2;
+  if (!(sine2 > least_sine * least_sine && sine2 < careful_sine * careful_sine)) return;
+  const Vec3 w = b.corner[j] - a.corner[i];
+  constexpr double roundings = 32.0 * 0x1p-53;  // of what the height is a product of
+  const double least = std::fabs(w.dot(rounded)) - roundings * std::sqrt(w.squaredNorm() * lengths2);
+  if (least > 0.0 && least * least >= closest.best.squared_distance * rounded.squaredNorm()) return;
+  const Vec3 normal = careful_cross(a.corner[i], a.corner[(i + 1) % a.count], b.corner[j], b.corner[(j + 1) % b.count]);
+  const double normal2 = normal.squaredNorm();
+  if (!(normal2 > 0.0)) return;
+  double along_u = 0.0;
+  double along_v = 0.0;
+  for (int step = 0; step <= careful_steps; ++step) {
+    const Vec3 left = w + along_v * v - along_u * u;
+    along_u += left.cross(v).dot(normal) / normal2;
+    along_v += left.cross(u).dot(normal) / normal2;
+  }
+  if (along_u >= 0.0 && along_u <= 1.0 && along_v >= 0.0 && along_v <= 1.0) {
+    closest.offer(a.corner[i] + along_u * u, b.corner[j] + along_v * v);
+  }
+}
+
+// What rounding may have hidden: above the faces of slivers, and along edges that are nearly parallel.
+[[gnu::noinline]] void look_carefully(const Side& a, const Side& b, Closest& closest) noexcept {
+  for (int i = 0; i < a.count && b.is_sliver; ++i) {
+    corner_to_sliver(a.corner[i], b, [&](const Vec3& on_b) { closest.offer(a.corner[i], on_b); });
+  }
+  for (int j = 0; j < b.count && a.is_sliver; ++j) {
+    corner_to_sliver(b.corner[j], a, [&](const Vec3& on_a) { closest.offer(on_a, b.corner[j]); });
+  }
+  for (int i = 0; i < a.edges; ++i) {
+    for (int j = 0; j < b.edges; ++j) edge_along_edge(a, i, b, j, closest);
   }
 }
 
@@ -99,6 +184,8 @@ ClosestPoints all_pairs(CornerSpan polygon_a, CornerSpan polygon_b) noexcept {
   for (int i = 0; i < a.edges; ++i) {
     for (int j = 0; j < b.edges; ++j) edge_to_edge(a, i, b, j, closest);
   }
+  if (a.is_sliver || b.is_sliver || closest.along_edges) [[unlikely]]
+    look_carefully(a, b, closest);
   return closest.best;
 }
 

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
+#include "odds/math/random.hpp"
 #include "odds/primitive/triangle_box.hpp"
 #include "odds/primitive/triangle_distance.hpp"
 #include "support/triangles.hpp"
@@ -172,6 +173,40 @@ TEST(TriangleDistanceProperty, OfNearlyParallelTrianglesIsRightToTwelveDigits) {
   ASSERT_TRUE(nearly_parallel(a, b));
   EXPECT_TRUE(certified(a, b, points, size_of(a, b)));
   EXPECT_NEAR(std::sqrt(points.squared_distance), 2.0, 1e-9);
+}
+
+// Two points that are so far apart, and no farther, are known; the nearest are no farther apart than they.
+TEST(TriangleDistanceProperty, OfSliversAndAlongEdgesIsRightToFourteenDigits) {
+  odds::math::Random random(4);
+  const auto exponent = [&random](double least) { return std::pow(10.0, random.uniform(least, 0.0)); };
+  double worst = 0.0;
+  for (int i = 0; i < 40000; ++i) {
+    const Mat3 turn = random.rotation().toRotationMatrix();
+    const double gap = exponent(-12.0);
+    Corners a = {Vec3(-0.5, 0.0, 0.0), Vec3(0.5, 0.0, 0.0), Vec3(i % 4 == 0 ? 0.5 : random.uniform(-0.4, 0.4), 1, 0)};
+    Corners b;
+    Vec3 on_a;
+    Vec3 on_b;
+    if (i % 2 == 0) {  // a corner above a needle or a flat triangle
+      a[2].y() = exponent(-12.0);
+      on_a = 0.3 * a[0] + 0.3 * a[1] + 0.4 * a[2];
+      on_b = on_a + gap * Vec3::UnitZ();
+      b = {on_b, on_b + Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0, 1)),
+           on_b + Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0, 1))};
+    } else {  // edges that cross at a small angle
+      const double angle = exponent(-14.0);
+      const Vec3 along(0.5 * std::cos(angle), 0.5 * std::sin(angle), 0.0);
+      on_a = {random.uniform(-0.4, 0.4), 0.0, 0.0};
+      on_b = on_a + gap * Vec3::UnitZ();
+      a[2].z() = -random.uniform(0, 1);
+      b = {on_b - along, on_b + along, on_b + Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0, 1))};
+    }
+    for (Vec3& corner : a) corner = turn * corner;
+    for (Vec3& corner : b) corner = turn * corner;
+    const ClosestPoints points = closest_points(a.data(), b.data());
+    worst = std::max(worst, std::sqrt(points.squared_distance) - (turn * on_b - turn * on_a).norm());
+  }
+  EXPECT_LT(worst, 1e-14);
 }
 
 TEST(TriangleDistanceProperty, HoldsAtExtremeSizesWithoutNaN) {
