@@ -74,10 +74,10 @@ class Shape {
   std::unique_ptr<Data> data_;
 };
 
-/// Indices of triangles whose bounding boxes meet the oriented box {center + axes * x, |x_i| <= half_extents_i} given
-/// in the mesh's frame, written to `found` until it is full or `budget_nodes` nodes were visited. Returns how many were
-/// written. noexcept, no allocation. `complete` (if not null) says whether nothing was cut off, `visited` (likewise)
-/// how many nodes were visited.
+/// Indices of all triangles that meet the oriented box {center + axes * x, |x_i| <= half_extents_i}, given in the
+/// mesh's frame, and of some of which only the extents along its axes do, written to `found` until it is full or
+/// `budget_nodes` nodes were visited; returns how many. noexcept, no allocation. `complete` (if not null) says whether
+/// nothing was cut off, `visited` (likewise) how many nodes were visited.
 std::size_t triangles_in_box(const Shape& shape, const Vec3& center, const Mat3& axes, const Vec3& half_extents,
                              std::span<std::uint32_t> found, std::uint64_t budget_nodes, bool* complete,
                              std::uint64_t* visited = nullptr) noexcept;
