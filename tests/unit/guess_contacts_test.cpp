@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "odds/math/random.hpp"
+#include "odds/math/tolerances.hpp"
+#include "support/brute_force.hpp"
 #include "support/shapes.hpp"
 #include "support/short_request.hpp"
 #include "support/slabs.hpp"
@@ -87,6 +90,32 @@ TEST(GuessedContacts, OfTheOppositeSideDoNotPushIntoIt) {
     }
     EXPECT_GT(guessed, 100) << look_ns;
     EXPECT_LT(into, guessed / 20) << look_ns << " ns a look, of " << guessed;
+  }
+}
+
+// Where the ground came second, and its frame begins far away, a ball that rocked a little was said to be elsewhere in
+// every run: what is guessed never got deeper while it sank in.
+TEST(GuessedContacts, GetDeeperWhileABodySinksInWhereverFramesBegin) {
+  const auto hill = testing::wavy_sphere(40, 0.0);
+  const auto ball = shape_of(testing::made_mesh("made:bumpy_sphere:radius=0.3"));
+  for (const double far : {0.0, 1000.0}) {
+    const auto ground = Shape::build(testing::changed(*hill, 4.0, {Mat3::Identity(), Vec3(far, 0, 0)}, 0)).value();
+    for (const bool ground_first : {true, false}) {
+      realtime::ManualClock clock(150);
+      const auto& [a, b] = ground_first ? std::pair(ground, ball) : std::pair(ball, ground);
+      Pair pair = std::move(Pair::make(a, b, {.late_contacts = true})).value();
+      double deepest = 0.0;
+      for (int run = 0; run < 1500; ++run) {
+        const Mat3 rocking = Eigen::AngleAxisd(2e-3 * std::sin(0.1 * run), Vec3::UnitY()).toRotationMatrix();
+        const math::Pose ball_in_ground{rocking, Vec3(far, 0.0, 4.3 - 2e-6 * run)};
+        const Answer& answer =
+            pair.run(ground_first ? ball_in_ground : ball_in_ground.inverse(), testing::short_request(clock, 2.0));
+        ASSERT_FALSE(answer.contacts_late);
+        deepest = 0.0;
+        for (const Contact& contact : answer.contacts) deepest = std::max(deepest, contact.depth);
+      }
+      EXPECT_GT(deepest, 3.0 * tolerances::unmeasured_depth * ball->mesh().size()) << far << " " << ground_first;
+    }
   }
 }
 

@@ -35,7 +35,7 @@ TEST(HastyMemory, WhatSidesSayCancelsOut) {
   HastyMemory memory;
   EXPECT_FALSE(memory.has_seen());
   for (int run = 0; run < 40; ++run) {
-    memory.begin({}, 1e-3, 0.1);
+    memory.begin({}, Vec3::Zero(), 1e-3, 0.1);
     const double sign = run % 2 == 0 ? 1.0 : -1.0;
     memory.see((up + sign * side).normalized(), 1.0);
   }
@@ -48,7 +48,7 @@ TEST(HastyMemory, WhatSidesSayCancelsOut) {
 TEST(HastyMemory, ContactsThatPushAgainstEachOtherAreNotOfOneMind) {
   HastyMemory memory;
   for (int run = 0; run < 40; ++run) {
-    memory.begin({}, 1e-3, 0.1);
+    memory.begin({}, Vec3::Zero(), 1e-3, 0.1);
     memory.see(side, 1.0);
     memory.see(-side, 1.0);
   }
@@ -67,9 +67,9 @@ TEST(HastyMemory, AddsThePlacesOfRunsBefore) {
   HastyMemory memory;
   const double near = 0.01;
   const double slack = 1e-3;
-  memory.begin({}, slack, 0.1);
+  memory.begin({}, Vec3::Zero(), slack, 0.1);
   memory.remember(std::vector{contact_at(0.1)}, {}, near);
-  memory.begin({}, slack, 0.1);
+  memory.begin({}, Vec3::Zero(), slack, 0.1);
   std::vector<Contact> contacts = {contact_at(-0.1), {}, {}, {}};
   EXPECT_EQ(memory.add_to(contacts, 1, &up, {}, near), 2u);
   EXPECT_NEAR(contacts[1].position.x(), 0.1, 1e-12);
@@ -81,14 +81,14 @@ TEST(HastyMemory, AddsThePlacesOfRunsBefore) {
   EXPECT_EQ(memory.add_to(contacts, 1, &up, apart, near), 1u) << "it has parted there";
   math::Pose slid;
   slid.translation = 2.0 * slack * Vec3::UnitY();
-  memory.begin(slid, slack, 0.1);
+  memory.begin(slid, slid.translation, slack, 0.1);
   EXPECT_EQ(memory.add_to(contacts, 1, &up, slid, near), 1u) << "it has slid away";
 }
 
 // A place at a wall goes on holding off the wall when the floor is touched.
 TEST(HastyMemory, APlaceAcrossADirectionKeepsItsOwn) {
   HastyMemory memory;
-  memory.begin({}, 1e-3, 0.1);
+  memory.begin({}, Vec3::Zero(), 1e-3, 0.1);
   memory.remember(std::vector{contact_at(0.1)}, {}, 0.01);
   std::vector<Contact> contacts(2);
   ASSERT_EQ(memory.add_to(contacts, 0, &side, {}, 0.01), 1u);
@@ -102,7 +102,7 @@ TEST(HastyMemory, APlaceAcrossADirectionKeepsItsOwn) {
 TEST(HastyMemory, KeepsThePlacesFarAway) {
   HastyMemory memory;
   const double near = 1e-4;
-  memory.begin({}, 1e-3, 0.1);
+  memory.begin({}, Vec3::Zero(), 1e-3, 0.1);
   memory.remember(std::vector{contact_at(-0.2)}, {}, near);
   for (int i = 0; i < 30; ++i) memory.remember(std::vector{contact_at(0.2 + 1e-3 * i)}, {}, near);
   std::vector<Contact> contacts(most_contacts);
@@ -117,7 +117,7 @@ TEST(HastyMemory, HoldsBesideContactsThatPushTheSameWay) {
   HastyMemory memory;
   const double near = 0.01;
   const double most = 5e-5;
-  memory.begin({}, 1e-3, 0.1);
+  memory.begin({}, Vec3::Zero(), 1e-3, 0.1);
   memory.remember(std::vector{contact_at(0.1)}, {}, near);
   const auto held_at = [&](double deeper, const Vec3& normal) {
     math::Pose pose;

@@ -127,11 +127,12 @@ void limit_depths(std::span<Contact> contacts, double most) noexcept {
 
 }  // namespace
 
-void begin_haste(const math::Pose& pose_b_in_a, Pair::Implementation& pair) noexcept {
+void begin_haste(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, Pair::Implementation& pair) noexcept {
   if (pair.haste_has_begun) return;
   pair.haste_has_begun = true;
   const double size = smaller_size(pair);
-  pair.haste.begin(pose_b_in_a, tolerances::hasty_slack * size, tolerances::coherent_motion * size);
+  pair.haste.begin(pose_b_in_a, centre_of_smaller(meshes.pose(), pair), tolerances::hasty_slack * size,
+                   tolerances::coherent_motion * size);
 }
 
 bool guess_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Vec3* known_normal,

@@ -8,7 +8,7 @@
 namespace odds::query {
 
 /// A run that may guess begins.
-void begin_haste(const math::Pose& pose_b_in_a, Pair::Implementation& pair) noexcept;
+void begin_haste(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, Pair::Implementation& pair) noexcept;
 
 /// Contacts from the pair's hits. They hold, but hardly push: a wrong one moves a body by no more than what nobody need
 /// have measured. `known_normal`: of all of them, or null. False: flat faces explain all that was looked at.

@@ -133,7 +133,7 @@ bool answer_beside(Beside seen, const math::Pose& pose_b_in_a, const PosedMeshes
     return false;
   }
   if (seen == Beside::unknown && !pair.flush.something_else_came()) return false;
-  begin_haste(pose_b_in_a, pair);
+  begin_haste(meshes, pose_b_in_a, pair);
   if (seen == Beside::something) {
     if (!guess_anew(meshes, pose_b_in_a, request, pair, spending)) return false;
     pair.flush.note_beside(true);
@@ -149,7 +149,7 @@ bool answer_carried(Beside seen, const PosedMeshes& meshes, const math::Pose& po
                     Pair::Implementation& pair, Spending& spending) noexcept {
   const bool is_flush = pair.flush.serves(seen == Beside::nothing);
   if (!is_flush && !serves_unmeasured(pose_b_in_a, request, pair)) return false;
-  begin_haste(pose_b_in_a, pair);
+  begin_haste(meshes, pose_b_in_a, pair);
   if (is_flush) {
     write_flush(meshes, false, request, pair, spending);
     learn_from_work(meshes, pair, spending);
@@ -200,7 +200,7 @@ bool carry_late_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_
   if (!(overlap && answer_beside(seen, pose_b_in_a, meshes, request, pair, spending)) &&
       !answer_carried(seen, meshes, pose_b_in_a, request, pair, spending)) {
     // The hit is proved: a search could only lose the time for its contacts.
-    begin_haste(pose_b_in_a, pair);
+    begin_haste(meshes, pose_b_in_a, pair);
     if (guess_anew(meshes, pose_b_in_a, request, pair, spending)) {
       add_flush(request, pair, spending);
     } else if (overlap) {
@@ -228,7 +228,7 @@ void make_contacts_over_runs(const PosedMeshes& meshes, const math::Pose& pose_b
                              const Request& request, Pair::Implementation& pair, Spending& spending) noexcept {
   pair.answer.contacts_complete = false;
   ++pair.hasty_runs;
-  begin_haste(pose_b_in_a, pair);
+  begin_haste(meshes, pose_b_in_a, pair);
   if (see_flush(meshes, pair, spending)) {
     write_flush(meshes, false, request, pair, spending);
     pair.carried.keep_proofs(pair.hits.pairs());

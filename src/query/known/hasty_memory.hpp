@@ -59,11 +59,12 @@ class HastyMemory {
     spread.forget();
   }
 
-  /// A run begins with B at `pose` in A; `slack`: by so much a remembered place may part sideways.
-  /// `far`: bodies that have moved by more since the last one touch elsewhere. Metres.
-  void begin(const math::Pose& pose, double slack, double far) noexcept {
-    if (!((pose.translation - pose_.translation).norm() <= far)) forget();
-    pose_ = pose;
+  /// A run begins with B at `pose` in A; `slack`: by so much a remembered place may part sideways. `centre`: of the
+  /// smaller body, as the larger one sees it; of bodies that have moved by more than `far` since the last run, it is
+  /// elsewhere that they touch. Metres.
+  void begin(const math::Pose& pose, const Vec3& centre, double slack, double far) noexcept {
+    if (!((centre - centre_).norm() <= far)) forget();
+    centre_ = centre;
     lean_ *= kept;
     weight_ *= kept;
     std::size_t left = 0;
@@ -172,7 +173,7 @@ class HastyMemory {
     return at;
   }
 
-  math::Pose pose_;  ///< of the last run that began
+  Vec3 centre_ = Vec3::Zero();  ///< in the last run that began
   Vec3 lean_ = Vec3::Zero();
   double weight_ = 0.0;
   std::array<Place, most_contacts> places_;

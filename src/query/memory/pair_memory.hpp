@@ -112,6 +112,12 @@ struct Pair::Implementation {
   return std::min(pair.size_a, pair.size_b);
 }
 
+/// Of the smaller body, as the larger one sees it: a large one that turns, or one far from its origin, carries that of
+/// its own frame far, and the bodies have hardly moved. `pose`: PosedMeshes::pose().
+[[nodiscard]] inline Vec3 centre_of_smaller(const math::Pose& pose, const Pair::Implementation& pair) noexcept {
+  return pair.size_b <= pair.size_a ? pose.translation : pose.inverse().translation;
+}
+
 /// The pair's memory for as many contacts as are asked for.
 [[nodiscard]] inline std::span<Contact> room_for_contacts(const Request& request, Pair::Implementation& pair) noexcept {
   return std::span(pair.contacts).first(std::min(static_cast<std::size_t>(request.max_contacts), pair.contacts.size()));

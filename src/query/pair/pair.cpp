@@ -234,9 +234,7 @@ void forget_if_elsewhere(const PosedMeshes& meshes, Pair::Implementation& pair) 
   constexpr double elsewhere = 0.5;
   const math::Pose& now = meshes.pose();
   if (pair.known_at) {
-    const math::Pose& before = *pair.known_at;
-    const Vec3 motion = pair.size_b <= pair.size_a ? Vec3(now.translation - before.translation)
-                                                   : Vec3(now.inverse().translation - before.inverse().translation);
+    const Vec3 motion = centre_of_smaller(now, pair) - centre_of_smaller(*pair.known_at, pair);
     if (motion.norm() > elsewhere * smaller_size(pair)) {
       pair.came.setZero();
       pair.previous_normal.setZero();
