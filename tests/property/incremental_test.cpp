@@ -7,6 +7,9 @@
 #include <optional>
 #include <random>
 #include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "odds/mesh/made/by_name.hpp"
 #include "odds/query/pair.hpp"
@@ -280,6 +283,35 @@ TEST(IncrementalOfFlushFaces, LooksForFewPlanesInVain) {
     EXPECT_LE(clock.readings, fresh + 8) << i;
   }
   EXPECT_GT(fresh, 1000);
+}
+
+// Where a ball came first, all of the hills around it moved in its frame as it rocked, and were looked at again.
+TEST(IncrementalOnHills, TakesAsLittleWorkWhicheverComesFirst) {
+  const auto hills = mesh::made::make_shape("made:terrain").value();
+  const double scale = 0.01 * hills.size();
+  const Vec3 middle = 0.5 * (hills.lower() + hills.upper());
+  const auto shape_of = [](mesh::TriangleMesh mesh) {
+    return Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(mesh))).value();
+  };
+  const auto ground = shape_of(hills);
+  const auto ball = shape_of(mesh::made::make_shape("made:icosphere:radius=" + std::to_string(0.5 * scale)).value());
+  std::uint64_t work[2] = {0, 0};
+  for (const bool ball_first : {false, true}) {
+    Pair pair = (ball_first ? Pair::make(ball, ground) : Pair::make(ground, ball)).value();
+    Pair fresh = Pair::make(ground, ball).value();
+    math::Pose pose{Mat3::Identity(), Vec3(middle.x(), middle.y(), hills.upper().z() + scale)};
+    const auto meets = [&] { return fresh.run(pose, {.method = Method::exact}).verdict == Verdict::hit; };
+    while (!meets()) pose.translation.z() -= 0.01 * scale;
+    pose.translation.z() += 0.02 * scale;
+    for (int run = 0; run < 500; ++run) {
+      pose.rotation = Eigen::AngleAxisd(1e-3 * std::sin(0.1 * run), Vec3(1, 2, 3).normalized()).toRotationMatrix();
+      const Answer& answer =
+          pair.run(ball_first ? pose.inverse() : pose, {.method = Method::incremental, .max_contacts = 0});
+      ASSERT_EQ(answer.verdict == Verdict::hit, meets()) << run;
+      work[ball_first ? 1 : 0] += answer.cost.node_pairs + answer.cost.triangle_pairs;
+    }
+  }
+  EXPECT_LT(work[1], 2 * work[0] + 1000);
 }
 
 INSTANTIATE_TEST_SUITE_P(

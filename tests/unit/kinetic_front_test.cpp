@@ -8,7 +8,7 @@
 namespace odds::query::wide {
 namespace {
 
-constexpr double reach = 1.0;
+constexpr math::Reaches reach{1.0, 1.0};
 
 /// A front of `size` entries whose slots of A are their numbers, after a run from the roots.
 KineticFront filled(std::uint32_t size) {

@@ -21,8 +21,8 @@
 namespace odds::query::wide {
 namespace {
 
-constexpr std::uint32_t triangles = 8;  // in one leaf or two: the first is looked at
-constexpr double reach = 4.0;           // of B, more than enough
+constexpr std::uint32_t triangles = 8;    // in one leaf or two: the first is looked at
+constexpr math::Reaches reach{4.0, 4.0};  // of B, more than enough
 
 struct Leaf {
   explicit Leaf(std::vector<Vec3> corners) : mesh(make(std::move(corners))), tree(tree::WideTree::build(mesh, {})) {}

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "odds/math/pose.hpp"
+#include "odds/math/tolerances.hpp"
 
 namespace odds::math {
 
@@ -18,7 +19,34 @@ namespace odds::math {
   return ((to.translation - from.translation).norm() + reach * turn_between(from, to)) * (1.0 + 1e-12);
 }
 
-/// The same of a body's points within `reach` of one of them, `place` in the body's frame. Metres.
+/// How far the surfaces of two bodies lie from the origins of their frames at most, metres.
+struct Reaches {
+  double a = 0.0;
+  double b = 0.0;
+
+  /// Whose motion is counted. A body that turns about itself moves in the other one's frame by up to 1.5 times as much
+  /// then as in its own.
+  [[nodiscard]] bool is_a_much_smaller() const noexcept { return a < 0.25 * b; }
+  [[nodiscard]] double of_the_moving() const noexcept { return is_a_much_smaller() ? a : b; }
+};
+
+/// By how much at most two bodies come nearer to each other, or deeper into each other, as B goes from pose `from` to
+/// pose `to` in A's frame. Metres; of several motions one after the other, the sum. No more than any point of B moves in A's frame, and no more than any point of A does in B's: where a crate that
+/// rocks is A, its ground is carried far in its frame, and it is not in that of the ground. Which of them depends on
+/// the bodies alone, for at poses that are only just rigid distances differ by 1.5 times the tolerance between both
+/// frames, and not only once where they take turns.
+[[nodiscard]] inline double approach_bound(const Pose& from, const Pose& to, const Reaches& reaches) noexcept {
+  if (!reaches.is_a_much_smaller()) {
+    return motion_bound(from, to, reaches.b);
+  }
+  const Vec3 moved = to.inverse().translation - from.inverse().translation;
+  const double motion = moved.norm() + reaches.a * turn_between(from, to);
+  if (motion == 0.0) return 0.0;
+  const double rounding = 0x1p-48 * (from.translation.lpNorm<1>() + to.translation.lpNorm<1>());  // of inverse poses
+  return motion * (1.0 + 4.0 * tolerances::pose_orthonormality) + rounding;
+}
+
+/// The same as `motion_bound`, of a body's points within `reach` of one of them, `place` in the body's frame. Metres.
 [[nodiscard]] inline double motion_bound_about(const Vec3& place, const Pose& from, const Pose& to,
                                                double reach) noexcept {
   return motion_bound({from.rotation, from * place}, {to.rotation, to * place}, reach);

@@ -74,7 +74,7 @@ Beside look_beside(const PosedMeshes& meshes, const Request& request, Pair::Impl
   const double little = tolerances::unmeasured_depth * smaller_size(pair);
   const std::uint32_t lost = pair.flush.lost();
   if (pair.nothing_beside && pair.nothing_beside->lost_faces == lost &&
-      math::motion_bound(pair.nothing_beside->pose, meshes.pose(), pair.b->mesh().size()) <= little) {
+      math::approach_bound(pair.nothing_beside->pose, meshes.pose(), {pair.size_a, pair.size_b}) <= little) {
     return Beside::nothing;
   }
   pair.nothing_beside.reset();

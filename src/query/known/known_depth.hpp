@@ -23,9 +23,9 @@ class KnownDepth {
   [[nodiscard]] bool known() const noexcept { return known_; }
   /// What was noted, metres.
   [[nodiscard]] double depth() const noexcept { return depth_; }
-  /// Of any contact at this pose; infinite if nothing is known. `reach` of B's surface from its frame's origin.
-  [[nodiscard]] double most(const math::Pose& pose, double reach) const noexcept {
-    return known_ ? depth_ + math::motion_bound(pose_, pose, reach) : std::numeric_limits<double>::infinity();
+  /// Of any contact at this pose; infinite if nothing is known.
+  [[nodiscard]] double most(const math::Pose& pose, const math::Reaches& reaches) const noexcept {
+    return known_ ? depth_ + math::approach_bound(pose_, pose, reaches) : std::numeric_limits<double>::infinity();
   }
   /// How B's point that is now at `place`, in A's frame, has moved since; zero if nothing is known.
   [[nodiscard]] Vec3 motion_of(const Vec3& place, const math::Pose& pose) const noexcept {

@@ -107,18 +107,18 @@ SearchResult search(const Encounter<V>& encounter, const PosedMeshes&, const Req
 /// The incremental search of the wide engine, or one from the roots where that is better.
 void search_from_front(wide::Task& task, const math::Pose& pose, Pair::Implementation& pair) noexcept {
   const Spending& spending = task.spending;
-  const double reach = task.encounter.b().reach();
+  const math::Reaches reaches{task.encounter.a().reach(), task.encounter.b().reach()};
   const bool may_choose = may_search_from_roots(task.request, pair);
   const Cost before = spending.so_far();
   if (is_short(task.request, pair) && may_go_on_next_run(pair)) task.sweep = &pair.sweep;
   const auto work = [&] { return wide::Work::between(before, spending.so_far()); };
-  if (may_choose && pair.front_worth.prefers_roots(pose, reach, task.request.budget.is_limited())) {
+  if (may_choose && pair.front_worth.prefers_roots(pose, reaches.b, task.request.budget.is_limited())) {
     pair.wide->exact(task);
     return pair.front_worth.note_roots(work(), task.result.ended != Progressed::spent);
   }
   task.result.method = Method::incremental;
   if (may_choose && pair.front_worth.is_stale()) pair.front.restart();
-  pair.front.move_to(pose, reach);
+  pair.front.move_to(pose, reaches);
   task.sample = task.wanted;
   if (task.wanted > 1) task.wanted = no_feature;
   const bool is_new = pair.front.size() == 1;
@@ -225,7 +225,7 @@ Apart known_apart(const tree::WideTree& a, const tree::WideTree& b, const PosedM
   if (request.polygon_free) return Apart::unknown;
   if (wide::Encounter::are_far_apart(a, b, meshes.pose())) return Apart::far;
   if (order_of(request) != Method::incremental) return Apart::unknown;
-  return pair.front.is_apart(meshes.pose(), b.reach()) ? Apart::still : Apart::unknown;
+  return pair.front.is_apart(meshes.pose(), {a.reach(), b.reach()}) ? Apart::still : Apart::unknown;
 }
 
 /// Bodies that have gone by more than half of the smaller one between two runs may have been anywhere: nothing is known
@@ -250,17 +250,18 @@ void forget_if_elsewhere(const PosedMeshes& meshes, Pair::Implementation& pair) 
 }
 
 /// What follows a search: contacts, or what is known of bodies that are apart. `patches` to make contacts in.
-void conclude(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, double reach_b, const SearchResult& result,
-              const Request& request, PatchBuilder* patches, Pair::Implementation& pair, Spending& spending) noexcept {
+void conclude(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const math::Reaches& reaches,
+              const SearchResult& result, const Request& request, PatchBuilder* patches, Pair::Implementation& pair,
+              Spending& spending) noexcept {
   const Answer& answer = pair.answer;
   pair.within_is_of_front = false;
   if (!pair.hits.empty()) pair.within = Within::neither;
   if (!pair.hits.empty() && request.max_contacts > 0) {
-    const double most_depth = pair.known_depth.most(meshes.pose(), reach_b);
+    const double most_depth = pair.known_depth.most(meshes.pose(), reaches);
     make_contacts(meshes, pose_b_in_a, result, most_depth, request, *patches, pair, spending);
   } else if (answer.basis == Basis::proved && answer.verdict == Verdict::clear) {
     pair.flush.note_clear();
-    if (!answer_within(meshes, pose_b_in_a, request, reach_b, false, pair, spending)) {
+    if (!answer_within(meshes, pose_b_in_a, request, reaches, false, pair, spending)) {
       note_clear(meshes, pose_b_in_a, request, pair);
     }
     pair.within_is_of_front = pair.within_is_of_front && result.method == Method::incremental;
@@ -273,13 +274,14 @@ template <class Tree>
 void search_and_answer(const Tree& a, const Tree& b, const PosedMeshes& meshes, const math::Pose& pose_b_in_a,
                        const Request& request, Pair::Implementation& pair, Spending& spending) noexcept {
   Answer& answer = pair.answer;
+  const math::Reaches reaches{a.reach(), b.reach()};
   if (carry_contacts(meshes, pose_b_in_a, request, pair, spending)) return;
   if (carry_late_contacts(meshes, pose_b_in_a, request, pair, spending)) return;
   if (const Apart apart = known_apart(a, b, meshes, request, pair); apart != Apart::unknown) {
     pair.has_witness = false;
     pair.flush.note_clear();
     const bool same = apart == Apart::still && pair.within_is_of_front;
-    if (!answer_within(meshes, pose_b_in_a, request, b.reach(), same, pair, spending)) {
+    if (!answer_within(meshes, pose_b_in_a, request, reaches, same, pair, spending)) {
       note_clear(meshes, pose_b_in_a, request, pair);
     }
     pair.within_is_of_front = pair.within_is_of_front && apart == Apart::still;
@@ -293,7 +295,7 @@ void search_and_answer(const Tree& a, const Tree& b, const PosedMeshes& meshes, 
     judge(result, 0.5, true, answer);
     // Nothing is worked in.
     if (request.max_contacts == 0) {
-      return conclude(meshes, pose_b_in_a, b.reach(), result, request, nullptr, pair, spending);
+      return conclude(meshes, pose_b_in_a, reaches, result, request, nullptr, pair, spending);
     }
   }
   const ScratchPool::Loan scratch = pair.scratch.borrow();
@@ -303,7 +305,7 @@ void search_and_answer(const Tree& a, const Tree& b, const PosedMeshes& meshes, 
     forecast(encounter, pose_b_in_a, result, request, spending, pair);
     if (answer.basis == Basis::budget) judge_by_flat_faces(meshes, request, pair, spending);
   }
-  conclude(meshes, pose_b_in_a, b.reach(), result, request, &scratch->patches, pair, spending);
+  conclude(meshes, pose_b_in_a, reaches, result, request, &scratch->patches, pair, spending);
 }
 
 template <class Tree>

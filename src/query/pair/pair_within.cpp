@@ -53,8 +53,8 @@ void note_clear(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const 
   if (!request.solids && may_be_within(*pair.a, *pair.b, pose_b_in_a)) pair.known_depth.forget();
 }
 
-bool answer_within(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request, double reach_b,
-                   bool same, Pair::Implementation& pair, Spending& spending) noexcept {
+bool answer_within(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request,
+                   const math::Reaches& reaches, bool same, Pair::Implementation& pair, Spending& spending) noexcept {
   pair.within_is_of_front = false;
   if (!request.solids || request.polygon_free) return false;
   const bool before = pair.within == Within::b_in_a || pair.within == Within::a_in_b;
@@ -76,7 +76,7 @@ bool answer_within(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
       answer.probability = 1.0;
       pair.carried.forget();
       if (request.max_contacts > 0) {
-        const double most_depth = pair.known_depth.most(meshes.pose(), reach_b);
+        const double most_depth = pair.known_depth.most(meshes.pose(), reaches);
         make_way_out(meshes, pose_b_in_a, most_depth, !before, pair, spending);
       }
     }

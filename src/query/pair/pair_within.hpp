@@ -11,10 +11,11 @@ namespace odds::query {
 void note_clear(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request,
                 Pair::Implementation& pair) noexcept;
 
-/// Where no surfaces meet, and solids are asked for: whether one shape lies within the other all the same. `reach_b` of
-/// B's surface from its tree's origin; `same`: no surface has been crossed since `pair.within` was last looked at.
-/// False if not; then the answer stands.
+/// Where no surfaces meet, and solids are asked for: whether one shape lies within the other all the same. `reaches`
+/// from the trees' origins; `same`: no surface has been crossed since `pair.within` was last looked at. False if not;
+/// then the answer stands.
 [[nodiscard]] bool answer_within(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request,
-                                 double reach_b, bool same, Pair::Implementation& pair, Spending& spending) noexcept;
+                                 const math::Reaches& reaches, bool same, Pair::Implementation& pair,
+                                 Spending& spending) noexcept;
 
 }  // namespace odds::query

@@ -17,8 +17,8 @@
 namespace odds::query::wide {
 
 /// One opened pair of nodes, or a pair of leaves: the bottom of the test tree as in Li and Chen 1998, with an expiry
-/// instead of a test at every call. A pair that was found apart by a gap stays apart until some point of B has moved by
-/// that gap; `travelled` sums up bounds of that motion, and an entry is looked at only once `travelled` reaches its
+/// instead of a test at every call. A pair that was found apart by a gap stays apart until the bodies have come nearer
+/// by that gap; `travelled` sums up bounds of that motion, and an entry is looked at only once `travelled` reaches its
 /// expiry. What was not looked into, because the search ended early, expires at once. Fixed capacity.
 ///
 /// The pairs of leaves that met in the last search stand first: surfaces that cross go on crossing, so that even a
@@ -50,13 +50,14 @@ class KineticFront {
   }
 
   /// Whether nothing can have expired since a search that found all apart: it would find all apart again.
-  [[nodiscard]] bool is_apart(const math::Pose& pose, double reach) const noexcept {
-    return size_ > 0 && travelled_ + math::motion_bound(pose_, pose, reach) < next_expiry_;
+  [[nodiscard]] bool is_apart(const math::Pose& pose, const math::Reaches& reaches) const noexcept {
+    return size_ > 0 && travelled_ + math::approach_bound(pose_, pose, reaches) < next_expiry_;
   }
-  /// Notes where B stands now; `reach` bounds the distance of B's surface from its tree's origin. Starts from the roots
-  /// if there is nothing yet, if the last search found no room, or if much of what is kept is of no use any more.
-  void move_to(const math::Pose& pose, double reach) noexcept {
-    const bool lost = last_.irreplaceable && lost_work_ >= patience && travelled_ > lost_after * reach;
+  /// Notes where B stands now; `reaches`: from the trees' origins. Starts from the roots if there is nothing yet, if
+  /// the last search found no room, or if much of what is kept is of no use any more.
+  void move_to(const math::Pose& pose, const math::Reaches& reaches) noexcept {
+    const bool lost =
+        last_.irreplaceable && lost_work_ >= patience && travelled_ > lost_after * reaches.of_the_moving();
     if (size_ == 0 || overflowed_ || lost || (!fresh_ && size_ > 2 * fresh_size_ + least_size)) {
       lost_work_ = 0;
       clear();
@@ -66,7 +67,7 @@ class KineticFront {
       motion_ = 0.0;
       add({tree::WideTree::root, tree::WideTree::root, 0}, at_once);
     } else {
-      const double motion = math::motion_bound(pose_, pose, reach);
+      const double motion = math::approach_bound(pose_, pose, reaches);
       motion_ = motion / std::max(runs_, 1);
       travelled_ += motion;
       turned_ += math::turn_between(pose_, pose);
@@ -203,8 +204,9 @@ class KineticFront {
 
  private:
   static constexpr std::uint32_t least_size = 64;
-  /// Units of runs in a row that found nothing to meet and were ended by their budget, and the share of B's reach that
-  /// it has moved since the front was new, after which all of it is stale: what opening it took is not worth keeping.
+  /// Units of runs in a row that found nothing to meet and were ended by their budget, and the share of its reach
+  /// that a body has moved since the front was new, after which all of it is stale: what opening it took is not
+  /// worth keeping.
   static constexpr std::uint64_t patience = 200;
   static constexpr double lost_after = 0.1;
 
