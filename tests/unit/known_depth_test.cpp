@@ -72,5 +72,12 @@ TEST(KnownDepth, HoldsASingleContactInHillsWhicheverComesFirst) {
   EXPECT_LT(deepest_in_hills(true, 1), 0.03);
 }
 
+// Whence the rod came was taken from the middle of a triangle of the hills, metres away: it was pushed out of a sheet
+// sideways, from end to end.
+TEST(Hills, AreLeftToTheSideFromWhichARodThatRocksHasCome) {
+  EXPECT_LT(deepest_in_hills(false, 4), 0.03);
+  EXPECT_LT(deepest_in_hills(true, 4), 0.03);
+}
+
 }  // namespace
 }  // namespace odds::query

@@ -116,8 +116,9 @@ void note_first_contact(const PosedMeshes& meshes, Pair::Implementation& pair) n
 /// a tremor.
 void note_side(const PosedMeshes& meshes, Pair::Implementation& pair) noexcept {
   if (!pair.apart_at) return;
-  const tree::TriangleCorners met = meshes.corners_b(pair.hits.pairs().front().b);
-  const Vec3 came = math::motion_of((met[0] + met[1] + met[2]) / 3.0, *pair.apart_at, meshes.pose());
+  // Not of its triangles: the middle of one of a floor is far away, and where bodies turn it goes elsewhere.
+  const Vec3 place = Crossing::of(meshes, pair.hits.pairs().front()).middle();
+  const Vec3 came = math::motion_of(place, *pair.apart_at, meshes.pose());
   if (!(came.norm() > unmeasured_depth(pair))) return;
   pair.came = came.normalized();
   pair.apart_at.reset();
