@@ -285,6 +285,44 @@ TEST(IncrementalOfFlushFaces, LooksForFewPlanesInVain) {
   EXPECT_GT(fresh, 1000);
 }
 
+/// Small tetrahedra along the x axis, each with its top first and its base from there.
+std::shared_ptr<const Shape> tips(const std::vector<std::pair<double, double>>& tops_and_bases) {
+  constexpr double side = 1e-3;
+  std::vector<Vec3> corners;
+  std::vector<mesh::Triangle> triangles;
+  for (const auto& [top, base] : tops_and_bases) {
+    const auto first = static_cast<std::uint32_t>(corners.size());
+    corners.insert(corners.end(), {{top, 0, 0}, {base, side, 0}, {base, -side, side}, {base, -side, -side}});
+    for (const auto& [i, j, k] : {mesh::Triangle{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}}) {
+      triangles.push_back({first + i, first + j, first + k});
+    }
+  }
+  auto mesh = mesh::TriangleMesh::make(std::move(corners), std::move(triangles)).value();
+  return Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(mesh))).value();
+}
+
+// A tip a metre out nearly touches another. A pose that is stretched along it by half of what it may be off carries it
+// farther than a turn would that changes the pose as much.
+TEST(IncrementalAtPosesThatAreOnlyJustRigid, DoesNotMissWhatAStretchBringsTogether) {
+  const auto b = tips({{1.0, 0.999}, {0.999, 0.998}, {0.998, 0.997}, {-1.0, -0.999}, {-0.999, -0.998}});
+  int hits = 0;
+  for (double gap = 2.5e-7; gap < 5.5e-7; gap += 1e-8) {
+    const auto a = tips({{1.0 + gap, 1.001 + gap}, {1.001, 1.002}, {1.002, 1.003}});
+    Pair pair = Pair::make(a, b).value();
+    Pair fresh = Pair::make(a, b).value();
+    const Request request{.method = Method::incremental, .max_contacts = 0};
+    math::Pose pose;
+    for (int i = 0; i < 3; ++i) ASSERT_EQ(pair.run(pose, request).verdict, Verdict::clear);
+    pose.rotation(0, 0) = 1.0 + 4.9e-7;
+    const Verdict expected = fresh.run(pose, {.method = Method::exact}).verdict;
+    hits += expected == Verdict::hit ? 1 : 0;
+    const Answer& answer = pair.run(pose, request);
+    EXPECT_EQ(answer.verdict, expected) << gap;
+    EXPECT_EQ(answer.basis, Basis::proved);
+  }
+  EXPECT_GT(hits, 20);
+}
+
 // Where a ball came first, all of the hills around it moved in its frame as it rocked, and were looked at again.
 TEST(IncrementalOnHills, TakesAsLittleWorkWhicheverComesFirst) {
   const auto hills = mesh::made::make_shape("made:terrain").value();

@@ -1,6 +1,8 @@
 // How far a motion carries a body at most.
 #pragma once
 
+#include <algorithm>
+
 #include "odds/math/pose.hpp"
 #include "odds/math/tolerances.hpp"
 
@@ -12,9 +14,19 @@ namespace odds::math {
   return root_half * (to.rotation - from.rotation).norm();
 }
 
-/// No point within `reach` of the moved frame's origin goes farther from pose `from` to pose `to`. Metres. A rotation
-/// by an angle differs from the identity by 2 sin(angle / 2) in the spectral norm, and by sqrt(2) times that in the
-/// Frobenius norm.
+/// No point at distance 1 from the moved frame's origin goes farther as that frame turns, also where both poses are
+/// only just rigid: what they are off their nearest rotations, up to 1.5 times the tolerance in the spectral norm and
+/// in that of Frobenius, may be a stretch along one axis, of which both norms are the same.
+[[nodiscard]] inline double turn_bound(const Pose& from, const Pose& to) noexcept {
+  constexpr double root_half = 0.70710678118654757;
+  constexpr double stretches = 6.0 * tolerances::pose_orthonormality;  // 1.5 of each pose, times 1 + root_half
+  const double norm = (to.rotation - from.rotation).norm();
+  return std::min(norm, root_half * norm + stretches);
+}
+
+/// No point within `reach` of the moved frame's origin goes farther from pose `from` to pose `to`, if both are rigid.
+/// Metres. A rotation by an angle differs from the identity by 2 sin(angle / 2) in the spectral norm, and by sqrt(2)
+/// times that in the Frobenius norm.
 [[nodiscard]] inline double motion_bound(const Pose& from, const Pose& to, double reach) noexcept {
   return ((to.translation - from.translation).norm() + reach * turn_between(from, to)) * (1.0 + 1e-12);
 }
@@ -31,16 +43,17 @@ struct Reaches {
 };
 
 /// By how much at most two bodies come nearer to each other, or deeper into each other, as B goes from pose `from` to
-/// pose `to` in A's frame. Metres; of several motions one after the other, the sum. No more than any point of B moves in A's frame, and no more than any point of A does in B's: where a crate that
+/// pose `to` in A's frame, also where both are only just rigid. Metres; of several motions one after the other, the
+/// sum. No more than any point of B moves in A's frame, and no more than any point of A does in B's: where a crate that
 /// rocks is A, its ground is carried far in its frame, and it is not in that of the ground. Which of them depends on
 /// the bodies alone, for at poses that are only just rigid distances differ by 1.5 times the tolerance between both
 /// frames, and not only once where they take turns.
 [[nodiscard]] inline double approach_bound(const Pose& from, const Pose& to, const Reaches& reaches) noexcept {
   if (!reaches.is_a_much_smaller()) {
-    return motion_bound(from, to, reaches.b);
+    return ((to.translation - from.translation).norm() + reaches.b * turn_bound(from, to)) * (1.0 + 1e-12);
   }
   const Vec3 moved = to.inverse().translation - from.inverse().translation;
-  const double motion = moved.norm() + reaches.a * turn_between(from, to);
+  const double motion = moved.norm() + reaches.a * turn_bound(from, to);
   if (motion == 0.0) return 0.0;
   const double rounding = 0x1p-48 * (from.translation.lpNorm<1>() + to.translation.lpNorm<1>());  // of inverse poses
   return motion * (1.0 + 4.0 * tolerances::pose_orthonormality) + rounding;

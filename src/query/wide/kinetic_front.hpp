@@ -70,7 +70,7 @@ class KineticFront {
       const double motion = math::approach_bound(pose_, pose, reaches);
       motion_ = motion / std::max(runs_, 1);
       travelled_ += motion;
-      turned_ += math::turn_between(pose_, pose);
+      turned_ += math::turn_bound(pose_, pose);
     }
     runs_ = 0;
     pose_ = pose;
@@ -256,7 +256,7 @@ class KineticFront {
   bool fresh_ = false;
   bool overflowed_ = false;
   double travelled_ = 0.0;
-  double turned_ = 0.0;  ///< sum of turns
+  double turned_ = 0.0;  ///< sum of bounds of turns
   double motion_ = 0.0;  ///< a run, since the search before
   int runs_ = 0;         ///< since that one
   LastMet last_met_;

@@ -23,7 +23,7 @@ struct PartingPlane {
   double until;     ///< sum of B's motions at which pairs of triangles that it does not part may meet, metres
 
   /// All of B's triangles that it parts are at least so far beyond A's, metres; 0 or less says nothing. `turned_now`:
-  /// the sum of turns by now (math::turn_between), each of which brings no point of B's leaf nearer to A's by more than
+  /// the sum of turns by now (math::turn_bound), each of which brings no point of B's leaf nearer to A's by more than
   /// the radius times it.
   [[nodiscard]] double gap(const math::Pose& pose_b_in_a, double turned_now) const noexcept {
     const double along = along_normal(pose_b_in_a);
