@@ -107,6 +107,43 @@ TEST(MeshWithinASolid, GoesBackTheWayItCame) {
   }
 }
 
+// In the frame of a crate that turns as it falls in, it is the ground's middle that goes far, and sideways.
+TEST(MeshWithinASolid, GoesBackTheWayItCameAlsoWhereItTurns) {
+  const auto ground = made("box:x=1000,y=1000,z=100,cells=4");
+  const auto crate = made("box:x=1,y=1,z=1");
+  const Request request{.method = Method::incremental, .max_contacts = 4, .solids = true};
+  for (const bool crate_first : {false, true}) {
+    Pair pair = (crate_first ? Pair::make(crate, ground) : Pair::make(ground, crate)).value();
+    const auto run = [&](double height, double turn) {
+      const Mat3 rotation = Eigen::AngleAxisd(turn, Vec3(1, 0.2, 0.1).normalized()).toRotationMatrix();
+      const math::Pose pose{rotation, Vec3(40, 30, 50.0 + height)};
+      const Answer answer = pair.run(crate_first ? pose.inverse() : pose, request);
+      if (answer.contacts.empty()) return Vec3(Vec3::Zero());
+      return crate_first ? Vec3(rotation * answer.contacts[0].normal) : Vec3(-answer.contacts[0].normal);
+    };
+    ASSERT_TRUE(run(1.0, 0.0).isZero());
+    EXPECT_GT(run(-1.0, 0.1).z(), 0.999) << crate_first;
+  }
+}
+
+// Of a map of 10 km a thin wall: a disc that flew into it, almost through, goes back although it flew no farther than a
+// hundred-thousandth of the map.
+TEST(MeshWithinASolid, GoesBackTheWayItCameHoweverLargeTheOtherIs) {
+  const auto wall = made("box:x=0.05,y=10000,z=100");
+  const auto disc = made("box:x=0.004,y=0.1,z=0.1");
+  const Request request{.method = Method::incremental, .max_contacts = 4, .solids = true};
+  for (const bool disc_first : {false, true}) {
+    Pair pair = (disc_first ? Pair::make(disc, wall) : Pair::make(wall, disc)).value();
+    const auto run = [&](double x) {
+      const Answer answer = pair.run(disc_first ? at({-x, 0, 0}) : at({x, 0, 0}), request);
+      if (answer.contacts.empty()) return 0.0;
+      return disc_first ? answer.contacts[0].normal.x() : -answer.contacts[0].normal.x();
+    };
+    ASSERT_EQ(run(-0.0275), 0.0);
+    EXPECT_LT(run(0.005), -0.999) << disc_first;
+  }
+}
+
 TEST(MeshWithinASolid, OneThatJumpedInGoesBackAndIsNotThrown) {
   const auto floor = made("box:x=1,y=1,z=0.2,cells=4");
   const auto ball = made("icosphere:radius=0.02");

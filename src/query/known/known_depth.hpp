@@ -31,6 +31,11 @@ class KnownDepth {
   [[nodiscard]] Vec3 motion_of(const Vec3& place, const math::Pose& pose) const noexcept {
     return known_ ? math::motion_of(place, pose_, pose) : Vec3(Vec3::Zero());
   }
+  /// How the origin of A's frame has moved in B's since, along the axes of A's now; zero if nothing is known.
+  [[nodiscard]] Vec3 motion_of_a(const math::Pose& pose) const noexcept {
+    return known_ ? Vec3(pose.rotation * (pose.inverse().translation - pose_.inverse().translation))
+                  : Vec3(Vec3::Zero());
+  }
   /// What is believed of one contact, metres: what was known, and how far B has since come along its normal there; a
   /// small share of how far it has slid, for surfaces have slopes. `place` in A's frame, `normal` unit and into A; 0 if
   /// nothing is known.

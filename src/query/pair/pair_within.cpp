@@ -19,9 +19,10 @@ void make_way_out(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, doub
   std::array<Vec3, 2> preferred;
   std::size_t count = 0;
   if (!pair.previous_normal.isZero()) preferred[count++] = -pair.previous_normal;
-  const Vec3 came = pair.known_depth.motion_of(meshes.pose().translation, meshes.pose());
-  if (enters && came.norm() > tolerances::resting_motion * pair.a->mesh().size())
-    preferred[count++] = -came.normalized();
+  // By the inner one: as it turns, the middle of what is around it goes far in its frame.
+  const Vec3 came = pair.within == Within::b_in_a ? pair.known_depth.motion_of(meshes.pose().translation, meshes.pose())
+                                                  : Vec3(-pair.known_depth.motion_of_a(meshes.pose()));
+  if (enters && came.norm() > tolerances::resting_motion * smaller_size(pair)) preferred[count++] = -came.normalized();
   const std::optional<Contact> out =
       way_out(*pair.a, *pair.b, pose_b_in_a, pair.within, std::span(preferred).first(count), spending);
   pair.answer.contacts_complete = out.has_value();
