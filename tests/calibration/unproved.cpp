@@ -52,7 +52,7 @@ std::optional<Unproved> search(const Tree& a, const Tree& b, const query::Shape&
     if (request.method == query::Method::exact) searches.exact(task);
     if (request.method == query::Method::incremental) {
       memory.front.reset();
-      memory.front.move_to(meshes.pose(), b.reach());
+      memory.front.move_to(meshes.pose(), {a.reach(), b.reach()});
       searches.incremental(task, memory.front);
     }
     return left_at_end(met, result, spending, request.polygon_free);
