@@ -95,6 +95,21 @@ TEST_P(PolygonFree, AnswersStateAboutHowManyOfThemAreHits) {
 INSTANTIATE_TEST_SUITE_P(AllVolumes, PolygonFree, ::testing::ValuesIn(testing::all_kinds()),
                          [](const auto& tested) { return testing::name_of(tested.param); });
 
+/// What a pair learns of itself, it learns of searches with polygons.
+TEST(PolygonFreePairs, StateWhatTheyWouldHadTheyLearntNothing) {
+  const auto shape = Shape::build(testing::wavy_sphere(40)).value();
+  PairOptions options;
+  options.calibration_poses = 48;
+  Pair learnt = Pair::make(shape, shape, options).value();
+  Pair plain = Pair::make(shape, shape).value();
+  const math::Pose pose{Mat3::Identity(), {1.6, 0.8, 0.3}};
+  Request request;
+  request.budget = Budget::work(64);
+  EXPECT_NE(learnt.run(pose, request).probability, plain.run(pose, request).probability);
+  request.polygon_free = true;
+  EXPECT_EQ(learnt.run(pose, request).probability, plain.run(pose, request).probability);
+}
+
 /// Volumes hold all of their surfaces: that none overlap is a proof, with polygons or without.
 TEST(PolygonFreePairs, AreProvedApartWhereNoLeavesOverlap) {
   const auto shape = Shape::build(testing::wavy_sphere(24)).value()->without_polygons();

@@ -63,7 +63,7 @@ struct Request {
   /// generic framework only: the wide engine tests the eight leaves of a node at once with their siblings and has
   /// nothing to leave out.
   bool leaf_test = true;
-  bool polygon_free = false;  ///< leaves are judged by probability >= 0.5 instead of by their triangles (footnote 6)
+  bool polygon_free = false;  ///< no triangles: a pair of leaves of probability >= 0.5 ends the search (footnote 6)
 };
 
 }  // namespace odds::query

@@ -194,8 +194,9 @@ void forecast(const Met& met, const math::Pose& pose_b_in_a, const SearchResult&
     const NodePair& likeliest = result.shortlist.highest();
     const AnswerOdds& odds = odds_for(pair.a->volume(), request.estimator, result.method, request.polygon_free);
     cell_probability = met.probability(likeliest.a, likeliest.b);
-    undecided = pair.recalibration(
-        probability_of_hit(odds, remains_of(met, result, spending.so_far(), cell_probability, request.polygon_free)));
+    undecided =
+        probability_of_hit(odds, remains_of(met, result, spending.so_far(), cell_probability, request.polygon_free));
+    if (!request.polygon_free) undecided = pair.recalibration(undecided);  // learnt with polygons
   }
   judge(result, undecided, !pair.hits.empty(), answer);
   if (answer.basis == Basis::proved || result.shortlist.empty()) return;
