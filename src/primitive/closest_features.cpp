@@ -63,6 +63,24 @@ struct Closest {
   }
 };
 
+/// How far along a triangle's first edge and the one back to its last corner a point above it is, in their lengths.
+struct Foot {
+  double along_u = 0.0;
+  double along_v = 0.0;
+
+  /// Of the point first corner + w.
+  [[nodiscard]] static Foot of(const Vec3& w, const Side& side, const Vec3& normal, double normal2) noexcept {
+    return {w.cross(-side.edge[2]).dot(normal) / normal2, side.edge[0].cross(w).dot(normal) / normal2};
+  }
+  // Whatever rounding does to a sliver's normal, the point offered is one of the triangle's.
+  template <class Offer>
+  void offer_if_within(const Side& side, const Offer& offer) const noexcept {
+    if (along_u >= 0.0 && along_v >= 0.0 && along_u + along_v <= 1.0) {
+      offer(side.corner[0] + along_u * side.edge[0] + along_v * -side.edge[2]);
+    }
+  }
+};
+
 // A corner against all edges and the face of a polygon; calls offer(point of polygon).
 template <class Offer>
 void corner_to_polygon(const Vec3& x, const Side& side, const Closest& closest, const Offer& offer) noexcept {
@@ -82,13 +100,7 @@ void corner_to_polygon(const Vec3& x, const Side& side, const Closest& closest, 
   const Vec3 w = x - side.corner[0];
   const double height = side.normal.dot(w);
   if (height * height >= closest.best.squared_distance * side.normal2) return;
-  const Vec3 v = -side.edge[2];
-  const double along_u = w.cross(v).dot(side.normal) / side.normal2;
-  const double along_v = side.edge[0].cross(w).dot(side.normal) / side.normal2;
-  // Whatever rounding does to a sliver's normal, the point offered is one of the triangle's.
-  if (along_u >= 0.0 && along_v >= 0.0 && along_u + along_v <= 1.0) {
-    offer(side.corner[0] + along_u * side.edge[0] + along_v * v);
-  }
+  Foot::of(w, side, side.normal, side.normal2).offer_if_within(side, offer);
 }
 
 // The pair of points inside both segments at which they pass; corners are left to corner_to_polygon. Dividing by the
@@ -118,17 +130,14 @@ void corner_to_sliver(const Vec3& x, const Side& side, const Offer& offer) noexc
   const Vec3 normal = careful_cross(side.corner[0], side.corner[1], side.corner[0], side.corner[2]);
   const double normal2 = normal.squaredNorm();
   if (!(normal2 > 0.0)) return;
-  const Vec3 v = -side.edge[2];
-  double along_u = 0.0;
-  double along_v = 0.0;
+  Foot foot;
   for (int step = 0; step <= careful_steps; ++step) {
-    const Vec3 left = x - side.corner[0] - along_u * side.edge[0] - along_v * v;
-    along_u += left.cross(v).dot(normal) / normal2;
-    along_v += side.edge[0].cross(left).dot(normal) / normal2;
+    const Vec3 left = x - side.corner[0] - foot.along_u * side.edge[0] + foot.along_v * side.edge[2];
+    const Foot farther = Foot::of(left, side, normal, normal2);
+    foot.along_u += farther.along_u;
+    foot.along_v += farther.along_v;
   }
-  if (along_u >= 0.0 && along_v >= 0.0 && along_u + along_v <= 1.0) {
-    offer(side.corner[0] + along_u * side.edge[0] + along_v * v);
-  }
+  foot.offer_if_within(side, offer);
 }
 
 // Of edges, if they are nearly parallel.

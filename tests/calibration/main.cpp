@@ -160,7 +160,9 @@ std::string distance_name(double offset) {
 
 void judge(const std::vector<Kept>& all, const query::AnswerOdds& odds, const char* title) {
   std::vector<report::Forecast> apart;
-  std::vector<report::Forecast> nested, yes, no;
+  std::vector<report::Forecast> nested;
+  std::vector<report::Forecast> judged_hits;  // without polygons
+  std::vector<report::Forecast> judged_clear;
   std::map<std::string, std::vector<report::Forecast>> by_distance;
   std::vector<double> alone;  // errors of each pair of meshes
   fmt::print(stderr, "{}\n{:>8}{:>9}{:>8}{:>8}\n", title, "answers", "P said", "hits", "error");
@@ -174,7 +176,7 @@ void judge(const std::vector<Kept>& all, const query::AnswerOdds& odds, const ch
     std::vector<report::Forecast> here;
     for (const Unproved& one : kept.answers) {
       here.push_back({query::probability_of_hit(odds, one.remains), one.hit});
-      if (one.judged) (one.remains.logit >= 0 ? yes : no).push_back(here.back());
+      if (one.judged) (one.remains.logit >= 0.0F ? judged_hits : judged_clear).push_back(here.back());
       if (kept.meeting.procedure != Procedure::nested) by_distance[distance_name(one.offset)].push_back(here.back());
     }
     line(here, kept.meeting.a + " + " + kept.meeting.b);
@@ -189,8 +191,8 @@ void judge(const std::vector<Kept>& all, const query::AnswerOdds& odds, const ch
       apart.empty() ? 0.0 : report::judge_forecasts(apart).brier);
   for (const auto& [name, forecasts] : by_distance) line(forecasts, "of these at " + name);
   line(nested, "all nested");
-  line(yes, "judged hits");
-  line(no, "judged clear");
+  line(judged_hits, "judged hits");
+  line(judged_clear, "judged clear");
 }
 
 void print(const query::AnswerOdds& odds, const std::string& comment) {

@@ -107,22 +107,37 @@ TEST(MeshWithinASolid, GoesBackTheWayItCame) {
   }
 }
 
+/// A body that may be within a solid, and is the first or the second of the pair.
+class WithinSolid {
+ public:
+  WithinSolid(const std::shared_ptr<const Shape>& body, const std::shared_ptr<const Shape>& solid, bool body_first)
+      : body_first_(body_first), pair_((body_first ? Pair::make(body, solid) : Pair::make(solid, body)).value()) {}
+
+  /// The way in which the body is pushed there, in the solid's frame; zero if it is not.
+  Vec3 push(const math::Pose& body_in_solid) {
+    const Request request{.method = Method::incremental, .max_contacts = 4, .solids = true};
+    const Answer answer = pair_.run(body_first_ ? body_in_solid.inverse() : body_in_solid, request);
+    if (answer.contacts.empty()) return Vec3::Zero();
+    const Vec3& into_first = answer.contacts[0].normal;
+    return body_first_ ? Vec3(body_in_solid.rotation * into_first) : Vec3(-into_first);
+  }
+
+ private:
+  bool body_first_;
+  Pair pair_;
+};
+
 // In the frame of a crate that turns as it falls in, it is the ground's middle that goes far, and sideways.
 TEST(MeshWithinASolid, GoesBackTheWayItCameAlsoWhereItTurns) {
   const auto ground = made("box:x=1000,y=1000,z=100,cells=4");
   const auto crate = made("box:x=1,y=1,z=1");
-  const Request request{.method = Method::incremental, .max_contacts = 4, .solids = true};
   for (const bool crate_first : {false, true}) {
-    Pair pair = (crate_first ? Pair::make(crate, ground) : Pair::make(ground, crate)).value();
-    const auto run = [&](double height, double turn) {
-      const Mat3 rotation = Eigen::AngleAxisd(turn, Vec3(1, 0.2, 0.1).normalized()).toRotationMatrix();
-      const math::Pose pose{rotation, Vec3(40, 30, 50.0 + height)};
-      const Answer answer = pair.run(crate_first ? pose.inverse() : pose, request);
-      if (answer.contacts.empty()) return Vec3(Vec3::Zero());
-      return crate_first ? Vec3(rotation * answer.contacts[0].normal) : Vec3(-answer.contacts[0].normal);
+    WithinSolid falling(crate, ground, crate_first);
+    const auto at_height = [](double height, double turn) -> math::Pose {
+      return {Eigen::AngleAxisd(turn, Vec3(1, 0.2, 0.1).normalized()).toRotationMatrix(), Vec3(40, 30, 50.0 + height)};
     };
-    ASSERT_TRUE(run(1.0, 0.0).isZero());
-    EXPECT_GT(run(-1.0, 0.1).z(), 0.999) << crate_first;
+    ASSERT_TRUE(falling.push(at_height(1.0, 0.0)).isZero());
+    EXPECT_GT(falling.push(at_height(-1.0, 0.1)).z(), 0.999) << crate_first;
   }
 }
 
@@ -131,16 +146,10 @@ TEST(MeshWithinASolid, GoesBackTheWayItCameAlsoWhereItTurns) {
 TEST(MeshWithinASolid, GoesBackTheWayItCameHoweverLargeTheOtherIs) {
   const auto wall = made("box:x=0.05,y=10000,z=100");
   const auto disc = made("box:x=0.004,y=0.1,z=0.1");
-  const Request request{.method = Method::incremental, .max_contacts = 4, .solids = true};
   for (const bool disc_first : {false, true}) {
-    Pair pair = (disc_first ? Pair::make(disc, wall) : Pair::make(wall, disc)).value();
-    const auto run = [&](double x) {
-      const Answer answer = pair.run(disc_first ? at({-x, 0, 0}) : at({x, 0, 0}), request);
-      if (answer.contacts.empty()) return 0.0;
-      return disc_first ? answer.contacts[0].normal.x() : -answer.contacts[0].normal.x();
-    };
-    ASSERT_EQ(run(-0.0275), 0.0);
-    EXPECT_LT(run(0.005), -0.999) << disc_first;
+    WithinSolid flying(disc, wall, disc_first);
+    ASSERT_TRUE(flying.push(at({-0.0275, 0, 0})).isZero());
+    EXPECT_LT(flying.push(at({0.005, 0, 0})).x(), -0.999) << disc_first;
   }
 }
 

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "odds/query/pair.hpp"
-#include "query/answer_odds/answer_odds_table.hpp"
+#include "query/answer_odds/odds_for.hpp"
 #include "query/memory/recalibration.hpp"
 #include "support/all_kinds.hpp"
 #include "support/shapes.hpp"
@@ -15,16 +15,19 @@
 namespace odds::query {
 namespace {
 
-TEST(AnswerOdds, EveryTableAscendsWithinZeroAndOne) {
-  for (const AnswerOdds& odds : answer_odds) {
-    for (const auto& seen : {odds.seen, odds.seen_of_shells}) {
-      EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
-      EXPECT_GE(seen.front(), 0.0F);
-      EXPECT_LE(seen.back(), 1.0F);
-      EXPECT_GT(seen.back(), 0.0F);  // fitted at all
-    }
-    EXPECT_LT(odds.seen.front(), odds.seen.back());
+void expect_ascending_shares(const AnswerOdds& odds) {
+  for (const auto& seen : {odds.seen, odds.seen_of_shells}) {
+    EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
+    EXPECT_GE(seen.front(), 0.0F);
+    EXPECT_LE(seen.back(), 1.0F);
+    EXPECT_GT(seen.back(), 0.0F);  // fitted at all
   }
+  EXPECT_LT(odds.seen.front(), odds.seen.back());
+}
+
+TEST(AnswerOdds, EveryTableAscendsWithinZeroAndOne) {
+  for (const AnswerOdds& odds : answer_odds) expect_ascending_shares(odds);
+  for (const AnswerOdds& odds : polygon_free_odds) expect_ascending_shares(odds);
 }
 
 TEST(AnswerOdds, TheRegressionIsTheLogisticFunction) {

@@ -1,30 +1,17 @@
 // What answers without polygons state: see answer_odds_test.cpp for those with them.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "odds/math/random.hpp"
 #include "odds/query/pair.hpp"
-#include "query/answer_odds/odds_for.hpp"
 #include "support/all_kinds.hpp"
 #include "support/shapes.hpp"
 
 namespace odds::query {
 namespace {
-
-TEST(PolygonFreeOdds, EveryTableAscendsWithinZeroAndOne) {
-  for (const AnswerOdds& odds : polygon_free_odds) {
-    for (const auto& seen : {odds.seen, odds.seen_of_shells}) {
-      EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
-      EXPECT_GE(seen.front(), 0.0F);
-      EXPECT_LE(seen.back(), 1.0F);
-      EXPECT_LT(seen.front(), seen.back());
-    }
-  }
-}
 
 /// Poses of one body beside its copy, half of them hits: a part of their size deep or apart, 0 to 3 %.
 struct Beside {

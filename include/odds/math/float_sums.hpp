@@ -29,16 +29,4 @@ namespace odds::math {
   return product;
 }
 
-/// M^T v.
-[[nodiscard]] inline Vec3f transposed_times(const Mat3f& m, const Vec3f& v) noexcept {
-  return {dot(m.col(0), v), dot(m.col(1), v), dot(m.col(2), v)};
-}
-
-/// M^T N.
-[[nodiscard]] inline Mat3f transposed_times(const Mat3f& m, const Mat3f& n) noexcept {
-  Mat3f product;
-  for (int j = 0; j < 3; ++j) product.col(j) = transposed_times(m, Vec3f(n.col(j)));
-  return product;
-}
-
 }  // namespace odds::math

@@ -22,8 +22,8 @@ struct BoxPairView {
                                         float margin) noexcept {
   const Vec3f reach_a = ha + math::times(view.abs_r, hb);
   if (((view.t.cwiseAbs() - reach_a).array() > margin).any()) return false;
-  const Vec3f t_in_b = math::transposed_times(view.r, view.t);
-  const Vec3f reach_b = hb + math::transposed_times(view.abs_r, ha);
+  const Vec3f t_in_b = math::times(view.r.transpose(), view.t);
+  const Vec3f reach_b = hb + math::times(view.abs_r.transpose(), ha);
   return !((t_in_b.cwiseAbs() - reach_b).array() > margin).any();
 }
 
@@ -66,8 +66,8 @@ struct BoxPairView {
   const Vec3f ha = floored(half_a);
   const Vec3f hb = floored(half_b);
   const Vec3f eb = math::times(view.abs_r, hb);
-  const Vec3f ea = math::transposed_times(view.abs_r, ha);
-  const Vec3f t_in_b = math::transposed_times(view.r, view.t);
+  const Vec3f ea = math::times(view.abs_r.transpose(), ha);
+  const Vec3f t_in_b = math::times(view.r.transpose(), view.t);
   double product_a = 1.0;
   double product_b = 1.0;
   double enclosure_a = 1.0;

@@ -44,8 +44,9 @@ struct Obb {
 
 [[nodiscard]] inline BoxPairView view_of(const Obb& a, const Obb& b, const RelativePose& pose) noexcept {
   BoxPairView view;
-  view.t = math::transposed_times(a.axes_, Vec3f(math::times(pose.rotation, b.center_) + pose.translation - a.center_));
-  view.r = math::transposed_times(a.axes_, math::times(pose.rotation, b.axes_));
+  view.t =
+      math::times(a.axes_.transpose(), Vec3f(math::times(pose.rotation, b.center_) + pose.translation - a.center_));
+  view.r = math::times(a.axes_.transpose(), math::times(pose.rotation, b.axes_));
   view.abs_r = view.r.cwiseAbs().array() + 1e-6F;
   return view;
 }
@@ -60,8 +61,8 @@ struct Obb {
 }
 
 [[nodiscard]] inline bool met_by(const Obb& box, const RaySegment& ray) noexcept {
-  return segment_meets_box(box.half_, math::transposed_times(box.axes_, Vec3f(ray.origin - box.center_)),
-                           math::transposed_times(box.axes_, ray.direction), ray);
+  return segment_meets_box(box.half_, math::times(box.axes_.transpose(), Vec3f(ray.origin - box.center_)),
+                           math::times(box.axes_.transpose(), ray.direction), ray);
 }
 
 static_assert(BoundingVolume<Obb>);
