@@ -28,6 +28,7 @@ class Spending {
   explicit Spending(const Budget& budget) noexcept : Spending(budget, Kept{}) {}
   Spending(const Budget& budget, const Kept& kept) noexcept
       : clock_(budget.clock.now_ns != nullptr ? budget.clock : realtime::fastest_clock()),
+        polled_clock_(realtime::without_waiting(clock_)),
         start_ns_(clock_()),
         ledger_(start_ns_),
         kept_(kept),
@@ -156,7 +157,7 @@ class Spending {
     cost_.longest_unpolled_units = std::max(cost_.longest_unpolled_units, unpolled_units_);
     unpolled_units_ = 0;
     if (!timed_) return 0;
-    const std::int64_t now = clock_();
+    const std::int64_t now = std::max(polled_clock_(), start_ns_ + ledger_.gross_ns());
     note_time(now);
     return now;
   }
@@ -213,6 +214,7 @@ class Spending {
   }
 
   realtime::Clock clock_;
+  realtime::Clock polled_clock_;  ///< to wait for all work before each look made queries a quarter longer
   std::int64_t start_ns_;
   std::int64_t deadline_ns_ = std::numeric_limits<std::int64_t>::max();
   std::int64_t search_deadline_ns_ = std::numeric_limits<std::int64_t>::max();

@@ -40,10 +40,15 @@ std::uint64_t read_ticks() noexcept {
   return __rdtscp(&processor);
 }
 
-std::int64_t read_counter(void* state) noexcept {
-  const auto& chosen = *static_cast<const Chosen*>(state);
-  const std::uint64_t ticks = read_ticks() - chosen.origin_ticks;
-  return chosen.origin_ns + static_cast<std::int64_t>((static_cast<uint128>(ticks) * chosen.ns_per_tick_32) >> 32);
+std::int64_t ns_of(const Chosen& chosen, std::uint64_t ticks) noexcept {
+  const auto since = static_cast<uint128>(ticks - chosen.origin_ticks);
+  return chosen.origin_ns + static_cast<std::int64_t>((since * chosen.ns_per_tick_32) >> 32);
+}
+
+std::int64_t read_counter(void* state) noexcept { return ns_of(*static_cast<const Chosen*>(state), read_ticks()); }
+
+std::int64_t read_counter_without_waiting(void* state) noexcept {
+  return ns_of(*static_cast<const Chosen*>(state), __rdtsc());
 }
 
 bool processor_has_invariant_counter() noexcept {
@@ -155,6 +160,14 @@ const Chosen& chosen_clock() noexcept {
 Clock monotonic_clock() noexcept { return {&read_monotonic, nullptr}; }
 
 Clock fastest_clock() noexcept { return chosen_clock().clock; }
+
+#if defined(__x86_64__)
+Clock without_waiting(Clock clock) noexcept {
+  return clock.now_ns == &read_counter ? Clock{&read_counter_without_waiting, clock.state} : clock;
+}
+#else
+Clock without_waiting(Clock clock) noexcept { return clock; }
+#endif
 
 ClockChoice fastest_clock_choice() noexcept { return chosen_clock().choice; }
 

@@ -41,6 +41,29 @@ TEST(Clock, fastest_clock_counts_the_nanoseconds_of_the_monotonic_clock) {
   EXPECT_LE(static_cast<double>(fast_end - fast_begin), static_cast<double>(outer_end - outer_begin) + drift_allowed);
 }
 
+// Work before it may still be under way: a little early, but never late.
+TEST(Clock, read_without_waiting_tells_the_same_time) {
+  constexpr std::int64_t early_ns = 10'000;
+  const Clock clock = fastest_clock();
+  const Clock hasty = without_waiting(clock);
+  EXPECT_EQ(hasty.now_ns != clock.now_ns, fastest_clock_choice().time_stamp_counter);
+  for (int i = 0; i < 100'000; ++i) {
+    const std::int64_t before = clock();
+    const std::int64_t now = hasty();
+    const std::int64_t after = clock();
+    ASSERT_GE(now, before - early_ns);
+    ASSERT_LE(now, after);
+  }
+}
+
+TEST(Clock, that_is_another_is_read_as_it_is) {
+  ManualClock manual;
+  for (const Clock clock : {monotonic_clock(), manual.clock()}) {
+    EXPECT_EQ(without_waiting(clock).now_ns, clock.now_ns);
+    EXPECT_EQ(without_waiting(clock).state, clock.state);
+  }
+}
+
 TEST(Clock, is_chosen_once_for_all_threads) {
   std::vector<Clock> seen(4);
   std::vector<std::thread> threads;
