@@ -29,7 +29,7 @@ class Spending {
   Spending(const Budget& budget, const Kept& kept) noexcept
       : clock_(budget.clock.now_ns != nullptr ? budget.clock : realtime::fastest_clock()),
         polled_clock_(realtime::without_waiting(clock_)),
-        start_ns_(clock_()),
+        start_ns_(polled_clock_()),
         ledger_(start_ns_),
         kept_(kept),
         units_left_(budget.work_units) {
