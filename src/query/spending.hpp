@@ -65,7 +65,7 @@ class Spending {
 
   /// Polls the clock if there is a deadline. False once the search should stop.
   [[nodiscard]] bool may_go_on() noexcept {
-    const std::int64_t now = poll();
+    const std::int64_t now = last_piece_ns_ = poll();
     nears_end_ = now >= search_deadline_ns_ - notice_ns;
     if (now < search_deadline_ns_) return true;
     told_to_stop_ = true;
@@ -89,7 +89,7 @@ class Spending {
     if (units_left_ <= start_units_end_) return false;
     if (unpolled_units_ < units) return true;
     // Of a very short time the share may be more than the search has before its answer has to be made.
-    const std::int64_t now = poll();
+    const std::int64_t now = last_piece_ns_ = poll();
     nears_end_ = now >= search_deadline_ns_ - notice_ns;
     return now < std::min(start_deadline_ns_, search_deadline_ns_);
   }
@@ -102,6 +102,14 @@ class Spending {
     contacts_reserve_ = &reserve;
     last_moment_ns_ = deadline_ns_ - kept_ns(reserve.ns());
     contacts_deadline_ns_ = last_moment_ns_ - hasty_ns;
+  }
+  /// There is no time left but for ending: `reserve` learns how long that takes from the search's last piece on.
+  void end_from_last_piece(EndingReserve& reserve) noexcept {
+    if (!timed_) return;
+    if (contacts_ended_) note_contacts_ending(poll());
+    contacts_reserve_ = &reserve;
+    last_moment_ns_ = last_piece_ns_;
+    contacts_ended_ = true;
   }
   [[nodiscard]] bool may_make_contacts() noexcept { return poll_of_contacts() < contacts_deadline_ns_; }
   [[nodiscard]] bool may_finish_contacts() noexcept { return poll_of_contacts() < last_moment_ns_; }
@@ -222,6 +230,7 @@ class Spending {
   std::uint64_t start_units_end_ = 0;
   std::int64_t contacts_deadline_ns_ = std::numeric_limits<std::int64_t>::max();
   std::int64_t last_moment_ns_ = std::numeric_limits<std::int64_t>::max();  ///< to begin to end in
+  std::int64_t last_piece_ns_ = start_ns_;  ///< when the search last asked whether it may go on
   EndingReserve* contacts_reserve_ = nullptr;
   bool contacts_wait_ = false;   ///< time is kept for them
   bool contacts_ended_ = false;  ///< they were told to be finished

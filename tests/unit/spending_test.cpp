@@ -101,6 +101,21 @@ TEST(Spending, WhatIsHeardLateIsLearntToo) {
   EXPECT_GE(reserve.ns(), 1'500);
 }
 
+TEST(Spending, OfTheLastHitItsPieceIsPartOfTheEnding) {
+  for (const std::int64_t contact_ns : {200, 1'200}) {
+    EndingReserve reserve({1200, 300, 5000, 50, 300, 4});
+    for (int i = 0; i < 400; ++i) {
+      Query query(10.0);
+      static_cast<void>(query.spending.may_go_on());
+      query.clock.advance(400);  // the piece
+      query.spending.end_from_last_piece(reserve);
+      query.clock.advance(contact_ns);
+      static_cast<void>(query.spending.close());
+    }
+    EXPECT_NEAR(static_cast<double>(reserve.ns()), static_cast<double>(400 + contact_ns), 40.0);
+  }
+}
+
 TEST(Spending, OfASearchTheLastPieceIsPartOfTheEnding) {
   Query query(10.0);             // of which 0.6 us are kept
   for (int i = 0; i < 3; ++i) {  // longer gaps would be stalls

@@ -137,7 +137,11 @@ void make_rough_contacts(const PosedMeshes& meshes, const Vec3* known_normal, bo
   const Vec3 by_place = (meshes.origin_a() - centre_b).stableNormalized();
   const Vec3 towards_a =
       pair.previous_normal.isZero() ? Vec3(by_place + tolerances::came_side * pair.came) : pair.previous_normal;
-  spending.reserve_for_contacts(pair.endings.rough);
+  if (request.max_contacts > 1) {
+    spending.reserve_for_contacts(pair.endings.rough);
+  } else {
+    spending.end_from_last_piece(pair.endings.last);
+  }
   const std::span<Contact> room = room_for_contacts(request, pair);
   const std::size_t count = rough_contacts(meshes, pair.hits.pairs(), pair.a->is_solid() && pair.b->is_solid(),
                                            towards_a, known_normal, room, [&] { return spending.may_make_contacts(); });

@@ -314,7 +314,8 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
             Pair::Implementation& pair) noexcept {
   // A hit that the search finds last still wants its contact, a rough one; of pages and triangles that its reserve pays
   // for, the search has just touched some.
-  const std::int64_t last_contact_ns = request.max_contacts > 0 ? pair.endings.rough.ns() * 2 / 3 : 0;
+  const std::int64_t last_contacts_ns = request.max_contacts > 1 ? pair.endings.rough.ns() * 2 / 3 : 0;
+  const std::int64_t last_contact_ns = request.max_contacts == 1 ? pair.endings.last.ns() : last_contacts_ns;
   Spending spending(request.budget,
                     {.search_ns = pair.endings.search.ns(),
                      .contacts_ns = (request.max_contacts > 1 ? pair.endings.rough : pair.endings.single).ns(),
