@@ -182,10 +182,49 @@ TEST(WayApart, IsAlongTheSideOfLeastOverlap) {
   const auto slab = made("box:x=4,y=1,z=0.1,cells=1");
   const auto brick = made("box:x=0.2,y=0.1,z=0.057,cells=1");
   const Mat3 turned = Eigen::AngleAxisd(0.5, Vec3::UnitX()).toRotationMatrix();
-  EXPECT_EQ(way_apart(slab->mesh(), brick->mesh(), {Mat3::Identity(), Vec3(1.9, 0.4, 0.07)}), -Vec3::UnitZ());
-  EXPECT_EQ(way_apart(slab->mesh(), brick->mesh(), {Mat3::Identity(), Vec3(1.9, 0.4, -0.07)}), Vec3::UnitZ());
-  EXPECT_EQ(way_apart(brick->mesh(), slab->mesh(), {turned, turned * Vec3(1.9, 0.4, 0.07)}), -turned.col(2));
-  EXPECT_TRUE(way_apart(slab->mesh(), slab->mesh(), {}).allFinite()) << "of bodies in each other";
+  const auto direction = [](const auto& a, const auto& b, const math::Pose& pose) -> Vec3 {
+    return way_apart(a->mesh(), b->mesh(), pose).direction;
+  };
+  EXPECT_EQ(direction(slab, brick, {Mat3::Identity(), Vec3(1.9, 0.4, 0.07)}), -Vec3::UnitZ());
+  EXPECT_EQ(direction(slab, brick, {Mat3::Identity(), Vec3(1.9, 0.4, -0.07)}), Vec3::UnitZ());
+  EXPECT_EQ(direction(brick, slab, {turned, turned * Vec3(1.9, 0.4, 0.07)}), -turned.col(2));
+  EXPECT_TRUE(direction(slab, slab, {}).allFinite()) << "of bodies in each other";
+}
+
+TEST(WayApart, IsWorthMoreTheLessTheBoxesOverlap) {
+  const auto slab = made("box:x=4,y=1,z=0.1,cells=1");
+  const auto brick = made("box:x=0.2,y=0.1,z=0.06,cells=1");
+  const auto worth = [&](double height) {
+    const math::Pose pose{Mat3::Identity(), Vec3(0.3, 0.1, height)};
+    const WayApart way = way_apart(slab->mesh(), brick->mesh(), pose);
+    EXPECT_EQ(way.worth, way_apart(brick->mesh(), slab->mesh(), pose.inverse()).worth);
+    return way.worth;
+  };
+  EXPECT_NEAR(worth(0.08), 1.0, 1e-9);
+  EXPECT_NEAR(worth(0.077), 0.5, 1e-9);
+  EXPECT_EQ(worth(0.07), 0.0);
+  EXPECT_EQ(worth(0.0), 0.0);
+}
+
+// Of corners and sides beside the faces that lie on each other, a search without time sees as much as of these.
+TEST(LikeliestPlace, OfFacesOnEachOtherPushesAcrossThem) {
+  for (const char* const name : {"box:x=0.2,y=0.5,z=0.248,cells=1", "box:x=0.2,y=0.5,z=0.248,cells=8"}) {
+    const auto brick = made(name);
+    int guessed = 0;
+    for (const double aside : {0.0, 0.03}) {
+      for (const double overlap : {0.0, 1e-4}) {
+        for (const std::uint64_t units : {1U, 8U, 16U, 24U, 40U}) {
+          auto pair = std::move(Pair::make(brick, brick)).value();
+          const math::Pose pose{Mat3::Identity(), Vec3(aside, aside, 0.248 - overlap)};
+          const Answer& answer = pair.run(pose, {.budget = Budget::work(units)});
+          if (answer.basis == Basis::proved || !answer.has_cell_pair) continue;
+          ++guessed;
+          EXPECT_LT(answer.cell_pair.normal.z(), -0.9) << name << " " << aside << " " << overlap << " " << units;
+        }
+      }
+    }
+    EXPECT_GT(guessed, 10);
+  }
 }
 
 }  // namespace

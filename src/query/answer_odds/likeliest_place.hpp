@@ -7,6 +7,7 @@
 
 #include "odds/math/elementary.hpp"
 #include "odds/query/answer.hpp"
+#include "query/answer_odds/way_apart.hpp"
 #include "query/node_odds/met_place.hpp"
 #include "query/search/shortlist.hpp"
 
@@ -17,7 +18,8 @@ namespace odds::query {
 /// edge those beside the ones that meet are as near. Two patches that nobody has looked into cannot be told to overlap
 /// deeper than the thinner of them is thick, and they may not meet at all: the depth is the expected one, for
 /// `probability` of a hit, so that a force made of it grows with what is known. `apart()`: the way that solids come
-/// apart where no patch faces another, into A. Precondition: the list is not empty.
+/// apart by all that is known of them without the list, into A; it decides where no patch faces another, and has a say
+/// of its worth elsewhere. Precondition: the list is not empty.
 template <class Met, class Apart>
 [[nodiscard]] Contact likeliest_place(const Met& met, const Shortlist& list, double probability, bool both_solid,
                                       const Apart& apart) noexcept {
@@ -45,7 +47,11 @@ template <class Met, class Apart>
     opposed += weight * place.facing.opposition;
     flat += weight * place.flatness;
   }
-  if (both_solid && opposed < unopposed * flat) facing = apart();
+  if (both_solid) {
+    constexpr double most_said = 2.0;  // as much as patches that face each other
+    const WayApart way = apart();
+    facing = opposed < unopposed * flat ? way.direction : Vec3(facing + most_said * way.worth * sum * way.direction);
+  }
   const double length = facing.norm();
   if (!(sum > 0.0) || !std::isfinite(sum) || !(length > 0.0) || !std::isfinite(length)) return mean;
   mean.position = position / sum;

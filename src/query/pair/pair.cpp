@@ -203,7 +203,7 @@ void forecast(const Met& met, const math::Pose& pose_b_in_a, const SearchResult&
   answer.has_cell_pair = true;
   const auto apart = [&]() noexcept {
     return pair.previous_normal.isZero() ? way_apart(pair.a->mesh(), pair.b->mesh(), pose_b_in_a)
-                                         : pair.previous_normal;
+                                         : WayApart{pair.previous_normal, 0.0};
   };
   const bool both_solid = pair.a->is_solid() && pair.b->is_solid();
   answer.cell_pair = likeliest_place(met, result.shortlist, answer.probability, both_solid, apart);
@@ -214,7 +214,7 @@ void forecast(const Met& met, const math::Pose& pose_b_in_a, const SearchResult&
 /// How all are known to be apart without a search.
 enum class Apart : std::uint8_t { unknown, far, still };
 
-/// `far`: farther than both reach; `still`: they were apart, and have hardly moved since.
+/// `far`: farther than both reach, or their boxes are apart; `still`: they were apart, and have hardly moved since.
 template <volume::BoundingVolume V>
 Apart known_apart(const tree::Hierarchy<V>&, const tree::Hierarchy<V>&, const PosedMeshes&, const Request&,
                   const Pair::Implementation&) noexcept {
@@ -225,8 +225,11 @@ Apart known_apart(const tree::WideTree& a, const tree::WideTree& b, const PosedM
                   const Pair::Implementation& pair) noexcept {
   if (request.polygon_free) return Apart::unknown;
   if (wide::Encounter::are_far_apart(a, b, meshes.pose())) return Apart::far;
-  if (order_of(request) != Method::incremental) return Apart::unknown;
-  return pair.front.is_apart(meshes.pose(), {a.reach(), b.reach()}) ? Apart::still : Apart::unknown;
+  if (order_of(request) == Method::incremental && pair.front.is_apart(meshes.pose(), {a.reach(), b.reach()})) {
+    return Apart::still;
+  }
+  const bool met_before = pair.has_witness;
+  return !met_before && wide::Encounter::are_roots_apart(a, b, meshes.pose()) ? Apart::far : Apart::unknown;
 }
 
 /// Bodies that have gone by more than half of the smaller one between two runs may have been anywhere: nothing is known
