@@ -255,6 +255,28 @@ TEST_F(Import, MassesThatSdfLeavesToDensitiesAreThoseOfTheShapes) {
   EXPECT_EQ(mass_of("<inertial/>"), 1.0);
 }
 
+// As a mesh does whose file has its corners in the other order: its mass went missing without a word, and with no other
+// shape beside it the link's density, too.
+TEST_F(Import, MassesByDensityDoNotDependOnTheWayAMeshFaces) {
+  const auto cube = mesh::made::make_shape("made:box:x=1,y=1,z=1");
+  ASSERT_TRUE(cube.ok());
+  std::vector<mesh::Triangle> turned(cube.value().triangles().begin(), cube.value().triangles().end());
+  for (mesh::Triangle& t : turned) std::swap(t[1], t[2]);
+  const auto inside_out = mesh::TriangleMesh::make({cube.value().vertices().begin(), cube.value().vertices().end()},
+                                                   std::move(turned), "inside out");
+  ASSERT_TRUE(inside_out.ok());
+  ASSERT_FALSE(mesh::write(inside_out.value(), folder_.path() / "cube.obj"));
+  const std::string mesh = "<collision name=\"c\"><geometry><mesh><uri>cube.obj</uri></mesh></geometry></collision>";
+  const std::string box = "<collision name=\"d\"><geometry><box><size>1 1 2</size></box></geometry></collision>";
+  for (const auto& [shapes, mass_kg] : {std::pair{mesh, 500.0}, std::pair{mesh + box, 1500.0}}) {
+    const ImportedScene imported = good(
+        "w.sdf", sdf("<model name=\"m\"><link name=\"a\"><inertial auto=\"true\"><density>500</density></inertial>" +
+                     shapes + "</link></model>"));
+    EXPECT_NEAR(scene_of(imported).bodies.at(0).mass.mass_kg, mass_kg, 1e-9);
+    EXPECT_FALSE(assumes(imported, "'m::a' has no mass: its density is 1000 kg/m^3"));
+  }
+}
+
 // What xacro has made of a robot keeps its namespace.
 TEST_F(Import, TakesWhatXacroHasMade) {
   const ImportedScene imported = good("r.urdf", "<robot name=\"r\" xmlns:xacro=\"http://www.ros.org/wiki/xacro\">" +

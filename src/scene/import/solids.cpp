@@ -86,7 +86,7 @@ double Soup::volume(std::size_t first, const Vec3& from) const {
     const auto& [a, b, c] = triangles[i];
     six_times += (vertices[a] - from).dot((vertices[b] - from).cross(vertices[c] - from));
   }
-  return std::max(0.0, six_times / 6.0);
+  return std::abs(six_times) / 6.0;  // as masses of scenes, a part may be wound inside out
 }
 
 Soup solid_of(const Geometry& geometry) {

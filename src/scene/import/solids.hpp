@@ -20,7 +20,8 @@ struct Soup {
   /// Adds a part, moved by `pose` after scaling; a scale that mirrors turns its triangles round.
   void add(const std::vector<Vec3>& more, const std::vector<mesh::Triangle>& faces, const math::Pose& pose,
            const Vec3& scale);
-  /// What the triangles from `first` on enclose, m^3, told from a point near to them; of an open surface meaningless.
+  /// What the triangles from `first` on enclose, m^3, told from a point near to them, whichever way they face; of an
+  /// open surface meaningless.
   [[nodiscard]] double volume(std::size_t first, const Vec3& from) const;
 };
 
