@@ -109,6 +109,7 @@ TEST_F(Import, MeshesAreScaledAndFoundInPackages) {
   EXPECT_EQ(good("r.urdf", text("package://elsewhere/meshes/block.stl", ""), options).bodies, 1U);
   EXPECT_EQ(good("r.urdf", text("pack/meshes/block.stl", "")).bodies, 1U);
   EXPECT_EQ(good("r.urdf", text("file://" + folder_ / "pack/meshes/block.stl", "")).bodies, 1U);
+  EXPECT_EQ(good("r.urdf", text("file://pack/meshes/block.stl", "")).bodies, 1U) << "wherever import is called";
 }
 
 TEST_F(Import, RoundShapesAreClosedAndOfTheirSize) {

@@ -66,7 +66,7 @@ std::vector<fs::path> Resources::candidates(const std::string& uri) const {
     }
     return found;
   }
-  if (uri.starts_with("file://")) return {fs::path(uri.substr(7))};
+  if (uri.starts_with("file://")) return {here / uri.substr(7)};  // an absolute path stays as it is
   return {here / uri};
 }
 
