@@ -373,6 +373,8 @@ TEST_F(Import, RefusesWithPlaceAndRemedy) {
        "2:", "leads back to itself"},
       {sdf("<model name=\"m\"><link name=\"a\"><pose>1 2 3</pose></link></model>"), "2:", "pose has 3 numbers, not 6"},
       {sdf("<model name=\"m\"></model>"), "2:", "the model 'm' has no link"},
+      {sdf("<model name=\"m\"><link name=\"a\"/></model>\n<model name=\"m\"><link name=\"a\"/></model>"),
+       "3:", "a second frame named 'm'"},
       {sdf(""), "1:", "there is no model"}};
   for (const auto& [text, place, what] : cases) {
     const Error error = refused("bad.xml", text);

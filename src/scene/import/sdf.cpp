@@ -108,8 +108,8 @@ class SdfReader {
     const std::string inside = own + "::";
     const std::string frame = inside + "__model__";
     const std::string_view relative_to = node.child("pose").attribute("relative_to").value();
+    frames_.add(own, frame, {}, node);  // first, so that a name taken twice is told as it was written
     frames_.add(frame, relative_to.empty() ? outer : scoped(scope, relative_to), pose_of(node), node);
-    frames_.add(own, frame, {}, node);
     for (const pugi::xml_node part : node.children()) {
       const std::string_view name = part.name();
       if (name == "link") {

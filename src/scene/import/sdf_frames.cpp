@@ -8,7 +8,8 @@ namespace odds::scene {
 void SdfFrames::add(const std::string& name, const std::string& base, const math::Pose& in_base,
                     pugi::xml_node said_by) {
   if (!frames_.emplace(name, Frame{base, in_base, said_by, std::nullopt, false}).second) {
-    xml_.fail(said_by, fmt::format("a second frame named '{}'", name), "give each link, joint and frame its own name");
+    xml_.fail(said_by, fmt::format("a second frame named '{}'", name),
+              "give each model, link, joint and frame its own name");
   }
 }
 
