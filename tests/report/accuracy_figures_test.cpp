@@ -256,6 +256,23 @@ ContactRegion region_of_boxes(const query::Shape& box, query::Pair& pair) {
   return {box, box, pose, pair.crossings()};
 }
 
+// The note of the first shard, of a quiet machine, told that the machine was fit where times were called inconclusive.
+TEST(AccuracyMerge, TellsWhyAMachineWasUnfit) {
+  std::vector<Study> shards(3);
+  for (std::uint64_t i = 0; i < shards.size(); ++i) {
+    shards[i].settings.poses_per_band = 0;
+    shards[i].shard = {i, shards.size()};
+    shards[i].machine_fit = i == 0;
+    shards[i].machine_note = i == 0 ? "fit" : "unfit " + std::to_string(i);
+  }
+  const Result<Study> merged = merge_studies(shards, {"a", "b", "c"});
+  ASSERT_TRUE(merged.ok());
+  EXPECT_FALSE(merged.value().machine_fit);
+  EXPECT_EQ(merged.value().machine_note, "unfit 1");
+  for (Study& shard : shards) shard.machine_fit = true;
+  EXPECT_EQ(merge_studies(shards, {"a", "b", "c"}).value().machine_note, "fit");
+}
+
 TEST(ContactRegions, AreTheSpaceThatBothFillAndTheCurvesAroundIt) {
   const auto box = shape_of("made:box:x=1,y=1,z=1,cells=4");
   query::Pair pair = query::Pair::make(box, box).value();

@@ -154,8 +154,11 @@ Result<Study> merge_studies(std::vector<Study> studies, const std::vector<std::s
   merged.samples.resize(merged.settings.trials.size());
   for (const Study& study : studies) {
     merged.started_epoch_s = std::min(merged.started_epoch_s, study.started_epoch_s);
+    // The note says why a machine is unfit: of the first such one, if there is any.
+    if (merged.machine_note.empty() || (merged.machine_fit && !study.machine_fit)) {
+      merged.machine_note = study.machine_note;
+    }
     merged.machine_fit = merged.machine_fit && study.machine_fit;
-    if (merged.machine_note.empty()) merged.machine_note = study.machine_note;
   }
   for (std::uint64_t index = 0; index < merged.settings.pose_count(); ++index) {
     const Study& study = studies[place[index % shards]];

@@ -105,7 +105,7 @@ struct Study {
   std::string version;
   double started_epoch_s = 0.0;
   bool machine_fit = true;   ///< to measure times on; of a merged study: every machine
-  std::string machine_note;  ///< why not
+  std::string machine_note;  ///< why not, or what was seen
   std::vector<PoseTruth> poses;
   std::vector<std::vector<Sample>> samples;
 };
