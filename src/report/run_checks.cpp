@@ -43,6 +43,16 @@ Check deadline(const RunInfo& info, const RunSummary& s) {
   return check;
 }
 
+/// What is told of the limit of all collisions of a step, if there is one.
+std::string budget_of_a_step(const RunInfo& info) {
+  if (std::isfinite(info.frame_us)) {
+    return fmt::format("; all of a step in {}: at most {} beyond it", limit_text(info.frame_us, info.frame_work_units),
+                       duration(info.frame_overshoot_us * 1e3));
+  }
+  if (info.frame_work_units == RunInfo{}.frame_work_units) return "";
+  return fmt::format("; {} for all of a step", limit_text(info.frame_us, info.frame_work_units));
+}
+
 Check budget(const RunInfo& info, const RunSummary& s) {
   Check check{"budget", "Did every query end within its budget?", "", State::met};
   if (!std::isfinite(info.budget_us) || s.ticks_with_query == 0) {
@@ -51,11 +61,9 @@ Check budget(const RunInfo& info, const RunSummary& s) {
       check.finding = "no query was made";
     } else {
       const std::string limit = limit_text(info.budget_us, info.work_units);
-      check.finding = limit == "none" ? "no budget was set" : limit + " for a query: counted work, without a clock";
+      check.finding = limit == "none" ? "no query had a budget" : limit + " for a query: counted work, without a clock";
     }
-    if (info.frame_work_units != RunInfo{}.frame_work_units) {
-      check.finding += fmt::format("; {} for all of a step", limit_text(info.frame_us, info.frame_work_units));
-    }
+    check.finding += budget_of_a_step(info);
     return check;
   }
   const auto overshoot_ns = static_cast<double>(s.query_overshoot.value_at_percentile(99.9));
@@ -64,10 +72,7 @@ Check budget(const RunInfo& info, const RunSummary& s) {
                               duration(info.budget_us * 1e3), duration(overshoot_ns),
                               duration(static_cast<double>(s.query_overshoot.max())),
                               duration(info.allowed_overshoot_us * 1e3), duration(s.longest_overshoot_us * 1e3));
-  if (std::isfinite(info.frame_us)) {
-    check.finding += fmt::format("; all of a step in {}: at most {} beyond it", duration(info.frame_us * 1e3),
-                                 duration(info.frame_overshoot_us * 1e3));
-  }
+  check.finding += budget_of_a_step(info);
   return check;
 }
 

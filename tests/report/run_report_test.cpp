@@ -137,6 +137,30 @@ TEST(RunSummary, simulated_time_passes_no_promise_about_times) {
   }
 }
 
+// A scene with a limit for steps only was told that no budget was set, and not whether its steps kept theirs.
+TEST(RunSummary, the_limit_of_a_step_is_told_with_or_without_one_of_queries) {
+  const auto finding = [](double budget_us, double frame_us, std::uint64_t frame_work_units) {
+    MadeRecording made = calm_recording();
+    made.info.budget_us = budget_us;
+    made.info.frame_us = frame_us;
+    made.info.frame_work_units = frame_work_units;
+    made.info.frame_overshoot_us = 1.5;
+    for (const Check& check : summarize(made.info, made.ticks).checks) {
+      if (check.key == "budget") return check.finding;
+    }
+    return std::string();
+  };
+  constexpr double none = std::numeric_limits<double>::infinity();
+  const std::uint64_t no_units = RunInfo{}.frame_work_units;
+  EXPECT_EQ(finding(none, 330.0, no_units),
+            "no query had a budget; all of a step in 330 µs: at most 1.50 µs beyond it");
+  EXPECT_TRUE(finding(100.0, 330.0, 7000)
+                  .ends_with("; all of a step in 330 µs and 7,000 work units: at most 1.50 µs "
+                             "beyond it"));
+  EXPECT_TRUE(finding(100.0, none, 7000).ends_with("; 7,000 work units for all of a step"));
+  EXPECT_EQ(finding(none, none, no_units), "no query had a budget");
+}
+
 TEST_F(RunReport, says_which_limits_and_which_contacts_were_in_use) {
   MadeRecording made = simulated_recording();
   RunFiles files = write(made);
