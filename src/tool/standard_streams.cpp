@@ -1,10 +1,11 @@
-// Occupying closed descriptors, and the last flush.
+// Occupying closed descriptors, outliving limits, and the last flush.
 #include "tool/standard_streams.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <system_error>
 
@@ -17,6 +18,8 @@ void occupy_closed_streams() noexcept {
     if (fcntl(descriptor, F_GETFD) == -1) (void)open("/dev/null", descriptor == 2 ? O_WRONLY : O_RDONLY);
   }
 }
+
+void survive_size_limits() noexcept { (void)std::signal(SIGXFSZ, SIG_IGN); }
 
 std::optional<Error> flush_standard_output() {
   errno = 0;

@@ -109,6 +109,16 @@ TEST_F(HostileUse, AFullOrClosedStandardOutputIsAnError) {
   }
 }
 
+// The system's way is to end the program without a word; its temporary files stayed.
+TEST_F(HostileUse, ALimitOnTheSizeOfFilesIsAnError) {
+  const Ran ran = run_tool(
+      folder, std::string("--help >/dev/null && ulimit -f 8 && \"") + ODDS_TOOL + "\" build made:gear -o gear.odds");
+  expect_one_line_with(ran, "gear.odds: cannot be written: File too large");
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
+    EXPECT_NE(entry.path().extension(), ".part") << entry.path();
+  }
+}
+
 TEST_F(HostileUse, MessagesNeverGetIntoAnOutputFileForWantOfStandardStreams) {
   const std::string tool = std::string("\"") + ODDS_TOOL + "\" ";
   (void)run_tool(folder, "--help >/dev/null && (" + tool +
