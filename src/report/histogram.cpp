@@ -72,7 +72,8 @@ std::int64_t Histogram::middle_of(std::size_t counter) const noexcept {
 void Histogram::record(std::int64_t value, std::uint64_t times) noexcept {
   if (times == 0) return;
   const std::int64_t kept = std::clamp<std::int64_t>(value, 0, range_.highest);
-  if (kept != value) outside_ += times;
+  if (value < 0) below_ += times;
+  if (value > range_.highest) above_ += times;
   counters_[counter_of(kept)] += times;
   total_ += times;
   max_ = std::max(max_, value);
@@ -89,19 +90,16 @@ void Histogram::add_to_counter(std::size_t counter, std::uint64_t times) noexcep
 
 void Histogram::merge(const Histogram& other) noexcept {
   if (other.total_ == 0) return;
-  if (other.range_ == range_) {
-    for (std::size_t i = 0; i < counters_.size(); ++i) counters_[i] += other.counters_[i];
-    total_ += other.total_;
-  } else {
-    const std::int64_t most = max_;
-    const std::int64_t least = min_;
-    for (std::size_t i = 0; i < other.counters_.size(); ++i) {
-      if (other.counters_[i] > 0) record(other.middle_of(i), other.counters_[i]);
-    }
-    max_ = most;  // the other's own extremes are exact
-    min_ = least;
+  std::uint64_t beyond = 0;  // what the other held, and this one cannot
+  for (std::size_t i = 0; i < other.counters_.size(); ++i) {
+    const std::uint64_t times = other.counters_[i];
+    if (times == 0) continue;
+    counters_[other.range_ == range_ ? i : counter_of(std::min(other.middle_of(i), range_.highest))] += times;
+    if (other.lowest_of(i) > range_.highest) beyond += times;
   }
-  outside_ += other.outside_;
+  total_ += other.total_;
+  below_ += other.below_;
+  above_ += std::max(beyond, other.above_);  // the other's own, kept as its highest, are among them
   max_ = std::max(max_, other.max_);
   min_ = std::min(min_, other.min_);
 }

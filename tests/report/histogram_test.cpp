@@ -88,6 +88,30 @@ TEST(Histogram, values_outside_its_range_are_counted_and_said) {
   EXPECT_EQ(histogram.max(), 2'000'000) << "the largest value is never hidden";
 }
 
+// The middle of a coarse counter may lie beyond the range though no value did; what lay beyond both ranges counted
+// twice.
+TEST(Histogram, merging_counts_what_is_outside_once) {
+  Histogram coarse({1, 1'000, 1});
+  coarse.record(1'000);
+  Histogram fine({1, 1'000, 3});
+  fine.merge(coarse);
+  EXPECT_EQ(fine.outside(), 0u);
+  EXPECT_EQ(fine.max(), 1'000);
+  Histogram wide({1, 2'000, 3});
+  wide.record(-1);
+  wide.record(500);
+  wide.record(1'500);
+  wide.record(5'000);
+  fine.merge(wide);
+  EXPECT_EQ(fine.count(), 5u);
+  EXPECT_EQ(fine.outside(), 3u);
+  EXPECT_EQ(fine.max(), 5'000);
+  EXPECT_EQ(fine.min(), 0);
+  wide.merge(fine);
+  EXPECT_EQ(wide.count(), 9u);
+  EXPECT_EQ(wide.outside(), 5u) << "-1 and 5000, and what the other held as -1, 1500 and 5000";
+}
+
 TEST(Histogram, empty_gives_zeros) {
   const Histogram histogram;
   EXPECT_EQ(histogram.value_at_percentile(99.0), 0);

@@ -34,7 +34,7 @@ class Histogram {
   void merge(const Histogram& other) noexcept;
 
   [[nodiscard]] std::uint64_t count() const noexcept { return total_; }
-  [[nodiscard]] std::uint64_t outside() const noexcept { return outside_; }
+  [[nodiscard]] std::uint64_t outside() const noexcept { return below_ + above_; }
   /// Exact where values were recorded; of the outermost occupied counters where counts were read from a file.
   /// 0 if empty. A value above the range shows here as it was.
   [[nodiscard]] std::int64_t max() const noexcept { return total_ == 0 ? 0 : max_; }
@@ -67,7 +67,8 @@ class Histogram {
   int buckets_ = 0;
   std::vector<std::uint64_t> counters_;
   std::uint64_t total_ = 0;
-  std::uint64_t outside_ = 0;
+  std::uint64_t below_ = 0;  ///< of values below 0, and above the range
+  std::uint64_t above_ = 0;
   std::int64_t max_ = 0;
   std::int64_t min_ = INT64_MAX;
 };
