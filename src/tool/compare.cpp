@@ -190,8 +190,11 @@ void add_compare(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand(
       "compare", "Compare one scene under several budgets in simulated time: force error, noise and onset of contact");
   command->add_option("scene", arguments->scene, "the scene, a TOML file with a device")->required();
-  command->add_option("--budgets-us", arguments->budgets_us, "of a query, microseconds, as 20 work units each")
+  command
+      ->add_option("--budgets-us", arguments->budgets_us,
+                   "of a query, microseconds, as 20 work units each; a list like 5,20")
       ->delimiter(',')
+      ->allow_extra_args(false)  // else the scene after it would be taken for another
       ->check(positive_and_finite())
       ->capture_default_str();
   command->add_option("--seconds", arguments->seconds, "how long to run (default: as the scene says)")

@@ -58,8 +58,10 @@ void add_import(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("import", "Make a scene from a URDF or SDFormat description");
   command->add_option("description", arguments->description, "a URDF or SDFormat file")->required();
   command->add_option("--out", arguments->out, "folder for scene.toml and its meshes")->capture_default_str();
-  command->add_option("--package", arguments->packages,
-                      "NAME=FOLDER: where package://NAME and model://NAME are; may be given several times");
+  command
+      ->add_option("--package", arguments->packages,
+                   "NAME=FOLDER: where package://NAME and model://NAME are; may be given several times")
+      ->allow_extra_args(false);  // else the description after it would be taken for another
   command->add_option("--motion", arguments->motion, "whether the bodies move")
       ->check(CLI::IsMember({"described", "fixed", "dynamic"}))
       ->capture_default_str();

@@ -67,6 +67,15 @@ TEST(Compare, ABudgetOfMoreThanCanBeCountedIsNone) {
   EXPECT_NE(ran.output.find("1e+300 us: force off by 0.00 % (p95 0.00 %)"), std::string::npos) << ran.output;
 }
 
+// It was taken for another budget.
+TEST(Compare, TakesTheSceneBehindItsBudgets) {
+  const TemporaryFolder folder;
+  folder.write("scene.toml", scene(""));
+  const Ran ran = run_tool(folder, "compare --budgets-us 5,20 scene.toml --seconds 0.01 --out out");
+  ASSERT_EQ(ran.status, 0) << ran.errors;
+  EXPECT_NE(ran.output.find("20 us: "), std::string::npos) << ran.output;
+}
+
 TEST(Compare, NamesTheBandOfNoiseThatItsRateHas) {
   const TemporaryFolder folder;
   for (const auto& [rate, band] : {std::pair{"500", "50-250 Hz"}, {"1000", "50-500 Hz"}, {"80", "39.2-40 Hz"}}) {
