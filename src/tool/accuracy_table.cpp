@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "odds/report/accuracy/report.hpp"
+#include "tool/one_line.hpp"
 
 namespace odds::tool {
 namespace {
@@ -86,9 +87,9 @@ std::string places(const report::Study& study, const std::vector<AccuracyRow>& r
 
 std::string accuracy_table(const report::Study& study, const std::vector<AccuracyRow>& rows) {
   const report::StudySettings& s = study.settings;
-  std::string text =
-      fmt::format("{} ({} triangles) and {} ({} triangles), {} poses by {}, {}, {}\n", s.mesh_a, s.triangles_a,
-                  s.mesh_b, s.triangles_b, study.poses.size(), name(s.procedure), s.bounding_volume, s.estimator);
+  std::string text = fmt::format("{} ({} triangles) and {} ({} triangles), {} poses by {}, {}, {}\n",
+                                 on_one_line(s.mesh_a), s.triangles_a, on_one_line(s.mesh_b), s.triangles_b,
+                                 study.poses.size(), name(s.procedure), s.bounding_volume, s.estimator);
   text += report::headline(study, rows) + "\n\n" + head(s);
   for (const AccuracyRow& row : rows) {
     if (row.scope == "all") text += line(s.trials[row.trial], row) + shares_by_group(s, rows, row.trial) + "\n";
@@ -97,7 +98,7 @@ std::string accuracy_table(const report::Study& study, const std::vector<Accurac
   text +=
       "wrong: verdicts against the truth, f.hit and f.miss their two kinds (counts); P said and hits: of the answers "
       "without proof;\nover: net overshoot in us, p99; last columns: share wrong by distance\n";
-  if (!study.machine_fit) text += "times are inconclusive on this machine: " + study.machine_note + "\n";
+  if (!study.machine_fit) text += "times are inconclusive on this machine: " + on_one_line(study.machine_note) + "\n";
   if (study.shard.of > 1) {
     text +=
         fmt::format("shard {}/{}: merge all of them with odds accuracy --merge\n", study.shard.number, study.shard.of);

@@ -8,6 +8,7 @@
 #include "odds/scene/explain.hpp"
 #include "tool/build_progress.hpp"
 #include "tool/command.hpp"
+#include "tool/one_line.hpp"
 #include "tool/shared_options.hpp"
 
 namespace odds::tool {
@@ -28,14 +29,14 @@ void print(const scene::Scene& scene, const scene::Explanation& explanation) {
     fmt::print("  on   {:<18} line {:<4} {:8.2f} us a tick (p90 {:.2f})  {}; needs {}\n", effect.name,
                effect.place.line, effect.cost_us, effect.cost_p90_us, effect.work, effect.needs);
   }
-  if (!explanation.device.empty()) fmt::print("device {}\n", explanation.device);
+  if (!explanation.device.empty()) fmt::print("device {}\n", on_one_line(explanation.device));
   std::uint64_t samples = 0;
   for (const scene::EffectLine& effect : explanation.effects) samples = std::max(samples, effect.samples);
   fmt::print(
       "measured on this machine: median of {} pairs of steps with and without the effect, from the same states of a\n"
       "trial of {} ticks in simulated time; a whole step took {:.2f} us (median)\n",
       samples, explanation.ticks, explanation.step_us);
-  for (const std::string& warning : explanation.warnings) fmt::print("warning: {}\n", warning);
+  for (const std::string& warning : explanation.warnings) fmt::print("warning: {}\n", on_one_line(warning));
 }
 
 int explain(const ExplainArguments& arguments) {

@@ -4,11 +4,12 @@
 #include <unistd.h>
 
 #include <cstdio>
-#include <utility>
+
+#include "tool/one_line.hpp"
 
 namespace odds::tool {
 
-ProgressLine::ProgressLine(std::string what) : what_(std::move(what)), visible_(isatty(STDERR_FILENO) == 1) {
+ProgressLine::ProgressLine(std::string_view what) : what_(on_one_line(what)), visible_(isatty(STDERR_FILENO) == 1) {
   show(0.0);
 }
 

@@ -3,12 +3,13 @@
 
 #include <chrono>
 #include <string>
+#include <string_view>
 
 namespace odds::tool {
 
 class ProgressLine {
  public:
-  explicit ProgressLine(std::string what);
+  explicit ProgressLine(std::string_view what);
   /// Wipes the line.
   ~ProgressLine();
   ProgressLine(const ProgressLine&) = delete;

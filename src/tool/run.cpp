@@ -18,6 +18,7 @@
 #include "tool/allocation_probe.hpp"
 #include "tool/build_progress.hpp"
 #include "tool/command.hpp"
+#include "tool/one_line.hpp"
 #include "tool/output_folder.hpp"
 #include "tool/replay_folder.hpp"
 #include "tool/replay_view.hpp"
@@ -118,7 +119,7 @@ int run(const RunArguments& arguments) {
   progress.done();
   if (!made) return fail(made.error());
   scene::Simulation& simulation = *made.value();
-  const auto warn = [](const std::string& warning) { fmt::print(stderr, "warning: {}\n", warning); };
+  const auto warn = [](const std::string& warning) { fmt::print(stderr, "warning: {}\n", on_one_line(warning)); };
   for (const std::string& warning : simulation.warnings()) warn(warning);
 
   const std::chrono::duration<double> epoch = std::chrono::system_clock::now().time_since_epoch();

@@ -142,6 +142,23 @@ TEST_F(HostileUse, WhatIsQuotedStaysOnOneLineAndCannotSteerTheTerminal) {
   ASSERT_EQ(imported.status, 0) << imported.errors;
   EXPECT_EQ(imported.output.find('\x1b'), std::string::npos) << imported.output;
   EXPECT_NE(imported.output.find("'r::l\\x1b[31m' has no mass"), std::string::npos) << imported.output;
+  folder.write("scene.toml",
+               "format = \"odds.scene/1\"\n[[mesh]]\nname = \"t\"\nfile = \"triangle.obj\"\n[[body]]\nmesh = \"t\"\n"
+               "name = \"b\\u001b[31m\\nerror: c\"\nmotion = \"dynamic\"\nmass_kg = 1\n[effects.gravity]\n");
+  for (const char* command : {"run scene.toml --fast --seconds 0.01 --out run", "explain scene.toml --samples 1"}) {
+    const Ran warned = run_tool(folder, command);
+    ASSERT_EQ(warned.status, 0) << warned.errors;
+    EXPECT_NE((warned.output + warned.errors).find("mesh of 'b\\x1b[31m\\nerror: c' encloses no"), std::string::npos)
+        << warned.output << warned.errors;
+  }
+}
+
+TEST_F(HostileUse, ADescriptionBehindItsPackagesIsNotTakenForAnother) {
+  folder.write("r.urdf",
+               "<robot name=\"r\"><link name=\"l\"><collision><geometry><mesh filename=\"package://p/triangle.obj\"/>"
+               "</geometry></collision></link></robot>");
+  const Ran ran = run_tool(folder, "import --package o=. --package p=. r.urdf --out out");
+  EXPECT_EQ(ran.status, 0) << ran.errors;
 }
 
 TEST_F(HostileUse, AnEndlessOrVeryLongLineOfPosesEndsInAShortError) {
