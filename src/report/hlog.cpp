@@ -61,17 +61,23 @@ Result<HlogInterval> read_interval(std::string_view line, const std::string& nam
 
 }  // namespace
 
-void write_hlog(std::ostream& out, const Hlog& log) {
-  // Not the C library's numbers: a program may have set a locale in which they have commas.
+// Not the C library's numbers: a program may have set a locale in which they have commas.
+void write_hlog_head(std::ostream& out, double start_epoch_s) {
   out << "#[Histogram log format version 1.3]\n";
-  out << fmt::format("#[StartTime: {:.3f} (seconds since epoch)]\n", log.start_epoch_s);
+  out << fmt::format("#[StartTime: {:.3f} (seconds since epoch)]\n", start_epoch_s);
   out << "\"StartTimestamp\",\"Interval_Length\",\"Interval_Max\",\"Interval_Compressed_Histogram\"\n";
-  for (const HlogInterval& interval : log.intervals) {
-    if (!interval.tag.empty()) out << "Tag=" << interval.tag << ',';
-    out << fmt::format("{:.3f},{:.3f},{:.3f},", interval.start_s, interval.length_s,
-                       static_cast<double>(interval.histogram.max()) * 1e-6)
-        << encode_histogram(interval.histogram) << '\n';
-  }
+}
+
+void write_hlog_interval(std::ostream& out, const HlogInterval& interval) {
+  if (!interval.tag.empty()) out << "Tag=" << interval.tag << ',';
+  out << fmt::format("{:.3f},{:.3f},{:.3f},", interval.start_s, interval.length_s,
+                     static_cast<double>(interval.histogram.max()) * 1e-6)
+      << encode_histogram(interval.histogram) << '\n';
+}
+
+void write_hlog(std::ostream& out, const Hlog& log) {
+  write_hlog_head(out, log.start_epoch_s);
+  for (const HlogInterval& interval : log.intervals) write_hlog_interval(out, interval);
 }
 
 Result<Hlog> read_hlog(std::istream& in, const std::string& name) {

@@ -7,11 +7,10 @@
 
 namespace odds::report {
 
-Hlog latency_log(const RunInfo& info, std::span<const haptics::TickRecord> ticks) {
+void for_each_second(const RunInfo& info, std::span<const haptics::TickRecord> ticks,
+                     const std::function<void(const HlogInterval&)>& take) {
   constexpr double second_ns = 1e9;
-  Hlog log;
-  log.start_epoch_s = info.started_epoch_s;
-  if (ticks.empty()) return log;
+  if (ticks.empty()) return;
   const std::int64_t start_ns = ticks.front().planned_ns;
   const auto second_of = [&](const haptics::TickRecord& tick) {
     return std::floor(static_cast<double>(tick.planned_ns - start_ns) / second_ns);
@@ -34,10 +33,9 @@ Hlog latency_log(const RunInfo& info, std::span<const haptics::TickRecord> ticks
     if (end == ticks.size()) {
       for (const std::int64_t wait_ns : waits_at_the_end(info, ticks)) tick.histogram.record(wait_ns);
     }
-    for (HlogInterval* interval : {&tick, &wake, &query}) log.intervals.push_back(std::move(*interval));
+    for (const HlogInterval* interval : {&tick, &wake, &query}) take(*interval);
     begin = end;
   }
-  return log;
 }
 
 }  // namespace odds::report

@@ -17,10 +17,22 @@ std::string hgrm_text(const Histogram& histogram) {
   return text.str();
 }
 
-std::string hlog_text(const Hlog& log) {
-  std::ostringstream text;
-  write_hlog(text, log);
-  return text.str();
+/// As write_file, of what is written piece by piece.
+template <class Write>
+std::optional<Error> write_pieces(const std::filesystem::path& path, const Write& write) {
+  Result<mesh::OutputFile> file = mesh::OutputFile::open(path);
+  if (!file.ok()) return file.error();
+  write(file.value());
+  return file.value().commit();
+}
+
+std::optional<Error> write_log(const std::filesystem::path& path, const RunInfo& info,
+                               std::span<const haptics::TickRecord> ticks) {
+  return write_pieces(path, [&](mesh::OutputFile& file) {
+    mesh::OutputStream out(file);
+    write_hlog_head(out, info.started_epoch_s);
+    for_each_second(info, ticks, [&](const HlogInterval& interval) { write_hlog_interval(out, interval); });
+  });
 }
 
 }  // namespace
@@ -37,12 +49,13 @@ Result<RunFiles> write_run_report(const std::filesystem::path& directory, const 
   const RunFiles files{directory / "report.html",  directory / "ticks.csv", directory / "summary.json",
                        directory / "latency.hgrm", directory / "wake.hgrm", directory / "query.hgrm",
                        directory / "latency.hlog"};
-  if (auto error = write_file(files.ticks, ticks_csv(ticks))) return *error;
+  const auto all_ticks = [&](mesh::OutputFile& file) { write_ticks_csv(file, ticks); };
+  if (auto error = write_pieces(files.ticks, all_ticks)) return *error;
   if (auto error = write_file(files.summary, summary_json(info, summary))) return *error;
   if (auto error = write_file(files.tick_latency, hgrm_text(summary.tick))) return *error;
   if (auto error = write_file(files.wake_latency, hgrm_text(summary.wake))) return *error;
   if (auto error = write_file(files.query_time, hgrm_text(summary.query_gross))) return *error;
-  if (auto error = write_file(files.log, hlog_text(latency_log(info, ticks)))) return *error;
+  if (auto error = write_log(files.log, info, ticks)) return *error;
   if (auto error = write_file(files.page, page(info, summary, ticks, replay))) return *error;
   return files;
 }

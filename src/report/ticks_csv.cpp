@@ -19,7 +19,8 @@ constexpr const char* heading =
 
 }  // namespace
 
-std::string ticks_csv(std::span<const haptics::TickRecord> ticks) {
+void write_ticks_csv(mesh::OutputFile& file, std::span<const haptics::TickRecord> ticks) {
+  constexpr std::size_t piece_bytes = std::size_t{1} << 20;
   fmt::memory_buffer text;
   const auto out = std::back_inserter(text);
   fmt::format_to(out, "{}", heading);
@@ -46,8 +47,11 @@ std::string ticks_csv(std::span<const haptics::TickRecord> ticks) {
     fmt::format_to(out, ",{:.9g},{:.9g},", t.observed_energy_j, t.contact_work_j);
     if (t.processor_us > 0.0) fmt::format_to(out, "{:.3f}", t.processor_us);
     text.push_back('\n');
+    if (text.size() < piece_bytes) continue;
+    file.write({text.data(), text.size()});
+    text.clear();
   }
-  return fmt::to_string(text);
+  file.write({text.data(), text.size()});
 }
 
 }  // namespace odds::report

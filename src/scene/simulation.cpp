@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <thread>
 
 #include "odds/haptics/device_registry.hpp"
@@ -30,6 +31,29 @@ void note_usage(const realtime::ThreadUsage& used, TickRecord& record) {
   record.voluntary_switches = static_cast<std::uint32_t>(used.voluntary_switches);
   record.involuntary_switches = static_cast<std::uint32_t>(used.involuntary_switches);
   record.processor_us = 1e-3 * static_cast<double>(used.processor_ns);
+}
+
+/// Whether the system promises so much memory, all at once. Nothing of it is touched.
+bool memory_can_be_had(double bytes) noexcept {
+  void* volatile trial = std::malloc(static_cast<std::size_t>(bytes));  // volatile: compilers may leave a pair out
+  const bool got = trial != nullptr;
+  std::free(trial);
+  return got;
+}
+
+/// An error if a run of so many ticks cannot be, or cannot be recorded.
+std::optional<Error> refuse_length(const Scene& scene, double seconds, double ticks) {
+  if (!(ticks >= 1.0) || ticks > most_ticks) {
+    return Error{scene.file, "", fmt::format("a run of {} s is not possible", seconds),
+                 "give more than 0 s and at most 86.4 million ticks"};
+  }
+  const double bytes =
+      ticks * static_cast<double>(sizeof(TickRecord) + (scene.device ? sizeof(haptics::DeviceState) : 0));
+  if (memory_can_be_had(bytes)) return std::nullopt;
+  return Error{
+      scene.file, "",
+      fmt::format("the records of a run of {} s take {:.1f} GB, more memory than there is", seconds, 1e-9 * bytes),
+      "run for fewer seconds, or at a lower rate"};
 }
 
 }  // namespace
@@ -66,10 +90,7 @@ Result<std::unique_ptr<Simulation>> Simulation::make(Scene scene, const Simulati
 std::optional<Error> Simulation::load() {
   const double seconds = options_.seconds.value_or(scene_.loop.seconds);
   const double wanted = std::ceil(seconds / scene_.loop.period_s() - 1e-9);
-  if (!(wanted >= 1.0) || wanted > most_ticks) {
-    return Error{scene_.file, "", fmt::format("a run of {} s is not possible", seconds),
-                 "give more than 0 s and at most 86.4 million ticks"};
-  }
+  if (auto error = refuse_length(scene_, seconds, wanted)) return error;
   ticks_ = static_cast<std::uint64_t>(wanted);
   if (options_.simulated_time) {
     scene_.query.budget = in_work_units(scene_.query.budget);

@@ -239,6 +239,22 @@ TEST_F(HostileUse, ASceneWithMorePairsThanMemoryHoldsAsksForMemory) {
   EXPECT_NE(ran.errors.find("; free memory, or use fewer bodies\n"), std::string::npos) << ran.errors;
 }
 
+// The histograms of every second of it stood in memory at once, 0.8 MB for each, and its table as text, when it was
+// over.
+TEST_F(HostileUse, TheReportOfALongRunTakesNoMoreMemoryThanItsRecords) {
+  if (support::under_sanitizer) GTEST_SKIP() << "a sanitizer needs all addresses";
+  const auto run_for = [&](const std::string& seconds, const std::string& rate_hz) {
+    folder.write("scene.toml",
+                 "format = \"odds.scene/1\"\n[loop]\nrate_hz = " + rate_hz +
+                     "\n[[mesh]]\nname = \"t\"\nfile = \"triangle.obj\"\n[[body]]\nmesh = \"t\"\nname = \"b\"\n");
+    return run_tool(folder, std::string("--help >/dev/null && (ulimit -v 600000; '") + ODDS_TOOL +
+                                "' run scene.toml --fast --out out --seconds " + seconds + ")");
+  };
+  const Ran long_run = run_for("2000", "1");
+  EXPECT_EQ(long_run.status, 0) << long_run.errors;
+  expect_one_line_with(run_for("3000", "20000"), "more memory than there is; run for fewer seconds");
+}
+
 TEST_F(HostileUse, ASceneWithKeysNestedWithoutEndIsRefused) {
   std::string deep = "[a";
   for (int i = 0; i < 100'000; ++i) deep += ".a";

@@ -32,6 +32,9 @@ struct Hlog {
 
 /// Writes format version 1.3; the column Interval_Max is in milliseconds, as its readers expect of nanoseconds.
 void write_hlog(std::ostream& out, const Hlog& log);
+/// The same piece by piece, for logs whose histograms would fill the memory: the head, then every interval.
+void write_hlog_head(std::ostream& out, double start_epoch_s);
+void write_hlog_interval(std::ostream& out, const HlogInterval& interval);
 
 /// Reads a log; `name` is for messages. Errors name the line. Any bytes are safe.
 [[nodiscard]] Result<Hlog> read_hlog(std::istream& in, const std::string& name);
