@@ -275,7 +275,12 @@ TEST_F(Import, MassesByDensityDoNotDependOnTheWayAMeshFaces) {
                      shapes + "</link></model>"));
     EXPECT_NEAR(scene_of(imported).bodies.at(0).mass.mass_kg, mass_kg, 1e-9);
     EXPECT_FALSE(assumes(imported, "'m::a' has no mass: its density is 1000 kg/m^3"));
+    EXPECT_FALSE(assumes(imported, "1 meshes whose densities give masses are not closed"));
   }
+  std::ofstream(folder_.path() / "cube.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n";
+  const ImportedScene open =
+      good("w.sdf", sdf("<model name=\"m\"><link name=\"a\"><inertial auto=\"true\"/>" + mesh + "</link></model>"));
+  EXPECT_TRUE(assumes(open, "1 meshes whose densities give masses are not closed"));
 }
 
 // What xacro has made of a robot keeps its namespace.

@@ -7,6 +7,8 @@
 #include <map>
 #include <numeric>
 
+#include "odds/mesh/enclosed_volume.hpp"
+
 namespace odds::scene {
 namespace {
 
@@ -43,6 +45,12 @@ class Assembly {
     if (bare_ > 0) assume(fmt::format("{} links without collision geometry make no body", bare_));
     if (planes_ > 0) {
       assume(fmt::format("{} planes are slabs of {} m by {} m", planes_, 2 * plane_half_side_m, 2 * plane_half_side_m));
+    }
+    if (open_ > 0) {
+      assume(
+          fmt::format("{} meshes whose densities give masses are not closed: what they enclose, and so the mass, is a "
+                      "guess",
+                      open_));
     }
     if (merged_ > 0) {
       assume(fmt::format("the inertia of {} dynamic bodies follows from their collision meshes, not from <inertial>",
@@ -101,6 +109,7 @@ class Assembly {
         const double volume_m3 =
             add_shape(collision, world_in_body * link.in_world * collision.in_link, body.triangles);
         if (!link.density_kg_per_m3) continue;
+        if (moves && is_open(collision)) ++open_;
         body.mass_kg += volume_m3 * collision.density_kg_per_m3.value_or(*link.density_kg_per_m3);
       }
     }
@@ -113,6 +122,12 @@ class Assembly {
       }
     }
     bodies_.push_back(std::move(body));
+  }
+
+  [[nodiscard]] bool is_open(const Collision& collision) const {
+    const Geometry& geometry = collision.geometry;
+    return geometry.kind == Geometry::Kind::mesh &&
+           !mesh::enclosed_volume(*resources_.mesh(geometry.uri, collision.place));
   }
 
   /// Adds to `soup`; returns the volume of what was added.
@@ -150,6 +165,7 @@ class Assembly {
   std::string held_name_;
   std::size_t bare_ = 0;
   std::size_t planes_ = 0;
+  std::size_t open_ = 0;
   std::size_t merged_ = 0;
 };
 
