@@ -210,6 +210,11 @@ TEST(Accuracy, RefusesToMergeDamagedFiles) {
                                  {"\"procedure\": \"distance\"", "\"procedure\": \"far\""}}) {
     refused_with("a/summary.json", from, to);
   }
+  const std::string summary = file_in(folder, "a/summary.json");
+  folder.write("a/summary.json", "{\"format\": \"odds accuracy summary 2\"}");
+  EXPECT_NE(run_tool(folder, "accuracy --merge a --out m").errors.find("has the format 'odds accuracy summary 2'"),
+            std::string::npos);
+  folder.write("a/summary.json", summary);
   const std::string poses = file_in(folder, "a/poses.csv");
   const std::string first = poses.substr(poses.find('\n') + 1);
   const std::string line = first.substr(0, first.find('\n'));

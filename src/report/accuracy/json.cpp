@@ -177,7 +177,11 @@ Result<Study> read_study_json(const std::string& file, const std::string& text) 
                       "give a folder that `odds accuracy` wrote"};
   try {
     const Json json = Json::parse(text);
-    if (json.at("format").get<std::string>() != format) return refusal;
+    if (const auto found = json.at("format").get<std::string>(); found != format) {
+      if (!found.starts_with("odds accuracy summary ")) return refusal;
+      return Error{file, "", "has the format '" + found + "', and this odds reads '" + format + "'",
+                   "use the version of odds that wrote it"};
+    }
     Study study;
     json.at("version").get_to(study.version);
     json.at("started_epoch_s").get_to(study.started_epoch_s);
