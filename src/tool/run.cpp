@@ -9,6 +9,7 @@
 #include <string>
 #include <thread>
 
+#include "mesh/output_file.hpp"
 #include "odds/realtime/fitness.hpp"
 #include "odds/realtime/host.hpp"
 #include "odds/report/replay_glb.hpp"
@@ -100,9 +101,23 @@ report::RunInfo describe(const scene::Simulation& simulation, const RunArguments
   return info;
 }
 
+/// An error if the run's own recordings would replace those that it repeats.
+std::optional<Error> refuse_replacing(const scene::Scene& scene, const RunArguments& arguments) {
+  const std::filesystem::path out = arguments.out;
+  const haptics::Setting* file = scene.device ? scene.device->settings.find("file") : nullptr;
+  const auto* track = file != nullptr ? std::get_if<std::string>(&file->value.data) : nullptr;
+  auto error = mesh::refuse_overwriting((out / "ticks.csv").string(), {arguments.ticks_of});
+  if (!error && track != nullptr) {
+    error = mesh::refuse_overwriting((out / "replay" / "device.csv").string(), {scene.base_directory / *track});
+  }
+  if (error) error->remedy = "give another --out";
+  return error;
+}
+
 int run(const RunArguments& arguments) {
   Result<scene::Scene> scene = scene::read_scene(arguments.scene);
   if (!scene) return fail(scene.error());
+  if (const auto error = refuse_replacing(scene.value(), arguments)) return fail(*error);
   if (const auto error = prepare_folder(arguments.out, {"replay"})) return fail(*error);
   scene::SimulationOptions options;
   options.simulated_time = arguments.fast;

@@ -235,6 +235,28 @@ TEST(Run, ReplacesWhatAnEarlierSceneLeftInTheReplay) {
   EXPECT_TRUE(there("mine.txt"));
 }
 
+// A replay of less than the whole track, into the folder that both runs have by default, left that much of the track.
+TEST(Run, RefusesToReplaceTheRecordingThatItRepeats) {
+  const TemporaryFolder folder;
+  folder.write("scene.toml", scene);
+  ASSERT_EQ(run_tool(folder, "run scene.toml --fast").status, 0);
+  const std::string track = contents_of(folder / "odds_run/replay/device.csv");
+  const std::string ticks = contents_of(folder / "odds_run/ticks.csv");
+  folder.write("replay.toml", scene.substr(0, scene.find("[device.hand]")) +
+                                  "[device.hand]\ntype = \"replay\"\nfile = \"odds_run/replay/device.csv\"\n" +
+                                  scene.substr(scene.find("[effects.contact]")));
+  for (const char* command : {"run replay.toml --fast --seconds 0.1", "run replay.toml --fast --out ./odds_run",
+                              "run scene.toml --fast --ticks-of odds_run/ticks.csv"}) {
+    const Ran ran = run_tool(folder, command);
+    EXPECT_EQ(ran.status, 1) << command;
+    EXPECT_NE(ran.errors.find("is also an input, which would be overwritten; give another --out"), std::string::npos)
+        << ran.errors;
+  }
+  EXPECT_EQ(contents_of(folder / "odds_run/replay/device.csv"), track);
+  EXPECT_EQ(contents_of(folder / "odds_run/ticks.csv"), ticks);
+  EXPECT_EQ(run_tool(folder, "run replay.toml --fast --seconds 0.1 --out other").status, 0);
+}
+
 TEST(Run, RefusesTicksThatAreNone) {
   const TemporaryFolder folder;
   folder.write("scene.toml", scene);
