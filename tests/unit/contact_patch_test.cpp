@@ -463,6 +463,15 @@ TEST(ContactPatch, TessellationDoesNotMoveTheContacts) {
   }
 }
 
+// Where the ground was the first, contacts counted as one by how far its own middle is: a crate stood on one of them.
+TEST(ContactPatch, StandsOnAllCornersFarFromTheMiddleOfTheGround) {
+  const Body crate = Body::box(0.4, 0.4, 0.4, 2);
+  const Body ground = Body::box(2000.0, 2000.0, 1.0);
+  const math::Pose there = shift(900.0, 90.0, 0.699);
+  EXPECT_NEAR(hull_area(WorldScene{crate, there, ground, {}}.contacts()), 0.16, 1e-6);
+  EXPECT_NEAR(hull_area(WorldScene{ground, {}, crate, there}.contacts()), 0.16, 1e-6);
+}
+
 TEST(ContactPatch, AnExpiredDeadlineStillGivesAContact) {
   ContactScene scene{Body::box(0.2, 0.5, 0.248, 8), Body::box(1.0, 1.2, 0.3, 8), shift(-0.03, 0.02, -0.274 + 1e-4)};
   scene.find_hits();

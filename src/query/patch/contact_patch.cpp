@@ -270,7 +270,8 @@ Patch PatchBuilder::Scratch::patch_along(const Vec3& normal, const PatchInput& i
   }
   if (watch.late()) return made;
   made.centre = centre;
-  const double lever = (input.reference_a - centre).norm();
+  // Of a small body on large ground its own weight counts: the ground's middle may be anywhere.
+  const double lever = std::min((input.reference_a - centre).norm(), (input.reference_b - centre).norm());
   made.depth = deepest.depth;
   made.chosen = patch::choose(extremes.all(), frame, most_contacts, patch::spacing(made.depth, lever));
   Measured measured;

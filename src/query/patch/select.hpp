@@ -65,8 +65,8 @@ struct Chosen {
   std::size_t count = 0;
 };
 
-/// Of contacts nearer to each other one is enough: by the depth of the overlap, and by how far from it the body's
-/// weight is, or how wide it is; metres.
+/// Of contacts nearer to each other one is enough: by the depth of the overlap, and by how far from it the nearer
+/// body's weight is, or how wide it is; metres.
 [[nodiscard]] inline double spacing(double depth, double lever) noexcept {
   return std::max(tolerances::spacing_by_depth * depth, tolerances::spacing_by_lever * lever);
 }
