@@ -1,10 +1,12 @@
 // Bodies that were apart stay on their sides of a sheet, and are no deeper than they have come since.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "odds/mesh/made/by_name.hpp"
 #include "odds/query/pair.hpp"
+#include "support/short_request.hpp"
 
 namespace odds::query {
 namespace {
@@ -117,6 +119,66 @@ TEST(SheetInAHurry, APoseThatIsNoneSaysNothing) {
   none.rotation *= 2.0;
   pair.note_apart(none);
   EXPECT_GT(normal_at(pair, -0.001, Budget::unlimited()).z(), 0.9);
+}
+
+std::shared_ptr<const Shape> shape_of(mesh::TriangleMesh mesh) {
+  return Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(mesh))).value();
+}
+
+/// Open, 2 m wide.
+std::shared_ptr<const Shape> uneven_ground() {
+  constexpr std::uint32_t side = 40;
+  std::vector<Vec3> corners;
+  std::vector<mesh::Triangle> triangles;
+  for (std::uint32_t y = 0; y <= side; ++y) {
+    for (std::uint32_t x = 0; x <= side; ++x) {
+      const auto here = static_cast<std::uint32_t>(corners.size());
+      corners.emplace_back(0.05 * x - 1.0, 0.05 * y - 1.0, 0.002 * std::sin(1.0 * here));
+      if (x == side || y == side) continue;
+      triangles.push_back({here, here + 1, here + side + 2});
+      triangles.push_back({here, here + side + 2, here + side + 1});
+    }
+  }
+  return shape_of(mesh::TriangleMesh::make(std::move(corners), std::move(triangles)).value());
+}
+
+// The side was told by where the ground's middle is, which lies sideways: half of what was guessed pushed into the
+// ground.
+TEST(SheetInAHurry, ABallFarFromTheMiddleOfTheGroundIsPushedUp) {
+  const auto ground = uneven_ground();
+  const auto small = shape_of(mesh::made::make_shape("icosphere:radius=0.005,frequency=12").value());
+  for (const int kind : {0, 1, 2, 3}) {
+    const bool late = kind % 2 == 0;
+    const bool ground_first = kind < 2;
+    int guessed = 0;
+    int upwards = 0;
+    for (int place = 0; place < 24; ++place) {
+      const auto pair_of = [&] {
+        const PairOptions options{.late_contacts = late};
+        return std::move(ground_first ? Pair::make(ground, small, options) : Pair::make(small, ground, options))
+            .value();
+      };
+      const auto pose = [&](double z) {
+        const math::Pose there{Mat3::Identity(), {0.8 * std::cos(place), 0.8 * std::sin(place), z}};
+        return ground_first ? there : there.inverse();
+      };
+      Pair sinks = pair_of();
+      double touching = 0.01;
+      while (sinks.run(pose(touching), {}).verdict == Verdict::clear) touching -= 1e-4;
+      Pair pair = pair_of();
+      realtime::ManualClock clock(100);
+      Request request = testing::short_request(clock, 8.0);
+      request.late_contacts = late;
+      for (int run = 0; run < 6; ++run) {
+        for (const Contact& contact : pair.run(pose(touching - 5e-4), request).contacts) {
+          ++guessed;
+          upwards += (ground_first ? -1.0 : 1.0) * contact.normal.z() > 0.5 ? 1 : 0;
+        }
+      }
+    }
+    EXPECT_GT(guessed, 200) << kind;
+    EXPECT_EQ(upwards, guessed) << kind;
+  }
 }
 
 }  // namespace

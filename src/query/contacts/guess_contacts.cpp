@@ -54,12 +54,12 @@ Sample sample_of(const PosedMeshes& meshes, std::span<const TrianglePair> hits, 
 /// What a crossing says of the direction in which the bodies part.
 class Judge {
  public:
-  /// `anew`: whatever is known of other places.
-  Judge(const PosedMeshes& meshes, const Pair::Implementation& pair, bool anew) noexcept
+  /// Of crossings about `place`. `anew`: whatever is known of other places.
+  Judge(const PosedMeshes& meshes, const Vec3& place, const Pair::Implementation& pair, bool anew) noexcept
       : both_solid_(pair.a->is_solid() && pair.b->is_solid()),
         expected_(anew ? Vec3(Vec3::Zero()) : pair.previous_normal),
         little_(tolerances::hasty_alike * smaller_size(pair)) {
-    const Vec3 by_place = (-meshes.pose().translation).stableNormalized();
+    const Vec3 by_place = side_of_place(meshes, pair.a->is_solid(), pair.b->is_solid(), place);
     towards_a_ = expected_.isZero() ? Vec3(by_place + tolerances::came_side * pair.came) : expected_;
   }
 
@@ -146,8 +146,9 @@ bool guess_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, co
   // Beside such faces the rest has a direction of its own, of which nothing is known; and so has what crosses elsewhere
   // than before, which must not push as that did: a body that comes off a wall onto the floor is held from below.
   const bool beside = pair.flush.overlap();
-  const Judge anew(meshes, pair, true);
-  const Judge as_before(meshes, pair, false);
+  const Vec3 middle = middle_of(sample.made());
+  const Judge anew(meshes, middle, pair, true);
+  const Judge as_before(meshes, middle, pair, false);
   const Vec3 expected = expected_direction(pair, known_normal);
   const std::size_t known = beside ? 0 : sample.partition([&](const Crossing& crossing) noexcept {
     return !as_before.is_elsewhere(crossing, expected);

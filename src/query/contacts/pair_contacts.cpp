@@ -133,18 +133,20 @@ bool knows_nothing_here(bool moved_little, const Pair::Implementation& pair) noe
 /// What single pairs of triangles say, when there is no time for a patch.
 void make_rough_contacts(const PosedMeshes& meshes, const Vec3* known_normal, bool moved_little, const Request& request,
                          Pair::Implementation& pair, Spending& spending) noexcept {
-  const Vec3 centre_b = meshes.pose().translation + meshes.origin_a();
-  const Vec3 by_place = (meshes.origin_a() - centre_b).stableNormalized();
-  const Vec3 towards_a =
-      pair.previous_normal.isZero() ? Vec3(by_place + tolerances::came_side * pair.came) : pair.previous_normal;
+  const bool solid_a = pair.a->is_solid();
+  const bool solid_b = pair.b->is_solid();
+  const auto towards_a = [&](const Vec3& place) noexcept -> Vec3 {
+    if (!pair.previous_normal.isZero()) return pair.previous_normal;
+    return side_of_place(meshes, solid_a, solid_b, place) + tolerances::came_side * pair.came;
+  };
   if (request.max_contacts > 1) {
     spending.reserve_for_contacts(pair.endings.rough);
   } else {
     spending.end_from_last_piece(pair.endings.last);
   }
   const std::span<Contact> room = room_for_contacts(request, pair);
-  const std::size_t count = rough_contacts(meshes, pair.hits.pairs(), pair.a->is_solid() && pair.b->is_solid(),
-                                           towards_a, known_normal, room, [&] { return spending.may_make_contacts(); });
+  const std::size_t count = rough_contacts(meshes, pair.hits.pairs(), solid_a && solid_b, towards_a, known_normal, room,
+                                           [&] { return spending.may_make_contacts(); });
   pair.answer.contacts = room.first(count);
   limit_to_believed(meshes, 1.0, pair);
   pair.answer.contacts_complete = false;

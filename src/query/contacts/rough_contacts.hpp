@@ -52,17 +52,32 @@ struct Crossing {
   }
 };
 
+/// Of some crossings, one at least.
+[[nodiscard]] inline Vec3 middle_of(std::span<const Crossing> crossings) noexcept {
+  Vec3 middle = Vec3::Zero();
+  for (const Crossing& crossing : crossings) middle += crossing.middle() / static_cast<double>(crossings.size());
+  return middle;
+}
+
+/// Towards A, as bodies lie that meet at `place`, in A's hierarchy frame; unit, or zero where it says nothing. The
+/// middle of a sheet, as of ground, may be anywhere: the other body's says on which side of it that is.
+[[nodiscard]] inline Vec3 side_of_place(const PosedMeshes& meshes, bool solid_a, bool solid_b,
+                                        const Vec3& place) noexcept {
+  const Vec3& centre_b = meshes.pose().translation;
+  if (solid_a == solid_b) return (-centre_b).stableNormalized();
+  return (solid_a ? Vec3(-place) : Vec3(place - centre_b)).stableNormalized();
+}
+
 /// The direction into A of least common volume, from some of the crossings of one overlap: the vector area that their
 /// segments span about their middle (see PatchBuilder; exact if they are all), or where they span none the sum of the
 /// differences of normals, for what the sides of an overlap say sideways cancels out. `towards_a`: last resort, and the
 /// side of surfaces that have none. Unit.
 [[nodiscard]] inline Vec3 rough_direction(std::span<const Crossing> crossings, bool both_solid,
                                           const Vec3& towards_a) noexcept {
-  Vec3 middle = Vec3::Zero();
+  const Vec3 middle = middle_of(crossings);
   Vec3 apart = Vec3::Zero();
   double length = 0.0;
   for (const Crossing& crossing : crossings) {
-    middle += crossing.middle() / static_cast<double>(crossings.size());
     apart += crossing.normal_b - crossing.normal_a;
     length += (crossing.segment.end - crossing.segment.begin).norm();
   }
@@ -137,10 +152,11 @@ inline constexpr std::array<std::size_t, most_contacts> spread_eighths{0, 4, 2, 
 
 /// As many contacts as there is room for, spread over the hits, all with one direction and one depth: the least overlap
 /// of some pairs of triangles along it, at most the extent of what was cut. In A's mesh frame. About 0.4 us for each
-/// pair; `may_go_on()` is asked before every one after the first. `known`: the direction, or null. Returns how many.
-template <class MayGoOn>
+/// pair; `may_go_on()` is asked before every one after the first. `towards_a(place)`: the side of surfaces that have
+/// none, for bodies that meet there. `known`: the direction, or null. Returns how many.
+template <class TowardsA, class MayGoOn>
 std::size_t rough_contacts(const PosedMeshes& meshes, std::span<const TrianglePair> hits, bool both_solid,
-                           const Vec3& towards_a, const Vec3* known, std::span<Contact> written,
+                           TowardsA towards_a, const Vec3* known, std::span<Contact> written,
                            MayGoOn may_go_on) noexcept {
   std::array<Crossing, most_contacts> crossings;  // also for one contact: a direction is made of several
   std::array<TrianglePair, most_contacts> chosen;
@@ -155,7 +171,9 @@ std::size_t rough_contacts(const PosedMeshes& meshes, std::span<const TrianglePa
   }
   const std::span<const Crossing> made = std::span(crossings).first(count);
   const Vec3 direction =
-      known != nullptr ? *known : snapped_to_face(made, both_solid, rough_direction(made, both_solid, towards_a));
+      known != nullptr
+          ? *known
+          : snapped_to_face(made, both_solid, rough_direction(made, both_solid, towards_a(middle_of(made))));
   // A corner that has just come through is not deeper than its rim is wide, though the triangles reach on.
   double depth = extent_of(made);
   for (const Crossing& crossing : made) depth = std::min(depth, crossing.overlap_along(direction));
