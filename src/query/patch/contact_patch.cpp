@@ -233,20 +233,6 @@ Patch PatchBuilder::Scratch::make_patch(const PatchInput& input, const patch::Ri
   return shorter_way_out(made, normal.shortest_way, view, effort, watch);
 }
 
-/// The patch, or another way out of it that is shorter. `known`: the shortest, or zero.
-Patch PatchBuilder::Scratch::shorter_way_out(const Patch& made, const Vec3& known, const patch::PatchView& view,
-                                             const Effort& effort, Watch& watch) noexcept {
-  const patch::RimSums& sums = view.sums;
-  // A lump at the corner of two faces that nearly coincide has an area of its own, along which the bodies overlap from
-  // end to end. Where pieces of a rim are missing, what is left of it may be such a lump whatever its size.
-  const double wide = (patch::is_part_of_a_rim(view) ? 1.0 : tolerances::lump_depth) * sums.diagonal();
-  if (!(made.depth > wide) || sums.length == 0.0 || watch.late()) return made;
-  const Vec3 way = known == Vec3::Zero() ? patch::shortest_way_out(view, watch) : known;
-  if (way == made.normal) return made;
-  const Patch other = patch_along(way, view.input, sums, view.pieces, effort, watch);
-  return other.depth < made.depth ? other : made;
-}
-
 Patch PatchBuilder::Scratch::patch_along(const Vec3& normal, const PatchInput& input, const patch::RimSums& sums,
                                          Indices indices, const Effort& effort, Watch& watch) noexcept {
   Patch made;
@@ -270,8 +256,7 @@ Patch PatchBuilder::Scratch::patch_along(const Vec3& normal, const PatchInput& i
   }
   if (watch.late()) return made;
   made.centre = centre;
-  // Of a small body on large ground its own weight counts: the ground's middle may be anywhere.
-  const double lever = std::min((input.reference_a - centre).norm(), (input.reference_b - centre).norm());
+  const double lever = patch::lever_of(input, centre);
   made.depth = deepest.depth;
   made.chosen = patch::choose(extremes.all(), frame, most_contacts, patch::spacing(made.depth, lever));
   Measured measured;

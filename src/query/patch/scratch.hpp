@@ -78,6 +78,8 @@ struct PatchBuilder::Scratch {
                           const patch::Effort& effort, patch::Watch& watch) noexcept;
   patch::Patch shorter_way_out(const patch::Patch& made, const Vec3& known, const patch::PatchView& view,
                                const patch::Effort& effort, patch::Watch& watch) noexcept;
+  void reach_in(const patch::Patch& run_in, const patch::PatchView& view, patch::Patch& made,
+                patch::Watch& watch) noexcept;
   patch::Patch patch_along(const Vec3& normal, const PatchInput& input, const patch::RimSums& sums, Indices indices,
                            const patch::Effort& effort, patch::Watch& watch) noexcept;
   void find_witnesses(Indices indices, const patch::Frame& frame, patch::Watch& watch) noexcept;

@@ -71,6 +71,11 @@ struct Chosen {
   return std::max(tolerances::spacing_by_depth * depth, tolerances::spacing_by_lever * lever);
 }
 
+/// How far the nearer body's weight is from a patch, metres: that of large ground may be anywhere.
+[[nodiscard]] inline double lever_of(const PatchInput& input, const Vec3& centre) noexcept {
+  return std::min((input.reference_a - centre).norm(), (input.reference_b - centre).norm());
+}
+
 /// Orders at most `most` of the witnesses: the deepest (of those equally deep to 2 %, one far out), the farthest from
 /// it, the one that adds the largest triangle, and so on while the area grows. Leaves out shallow ones and ones nearer
 /// to a chosen one than `spacing`.
