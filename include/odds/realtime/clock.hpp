@@ -25,9 +25,9 @@ struct Clock {
 [[nodiscard]] Clock fastest_clock() noexcept;
 
 /// The same time as `clock` tells, but for looks that only ask whether a time is up: where it is fastest_clock() and
-/// that is the counter, it is read without waiting, at a third of the price for the work about it. Such a reading may
-/// be of some tenths of a microsecond ago, when work before it was still under way, and a little before an earlier
-/// reading. Any other clock is returned as it is. Thread-safe.
+/// that is the counter, it is read without waiting for the instructions before it, which costs the work about it less.
+/// Such a reading may be of some tenths of a microsecond ago, when work before it was still under way, and a little
+/// before an earlier reading. Any other clock is returned as it is. Thread-safe.
 [[nodiscard]] Clock without_waiting(Clock clock) noexcept;
 
 /// Which clock fastest_clock() is, and why.

@@ -30,6 +30,7 @@ struct WayApart {
   const std::array<Mat3, 2> sides{Mat3::Identity(), b_in_a.rotation};
   constexpr double thin = 0.1;
   WayApart way;
+  double thinner = 0.0;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t body = 0; body < 2; ++body) {
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
@@ -39,11 +40,10 @@ struct WayApart {
       least = overlap;
       way.direction = std::copysign(1.0, along) * sides[body].col(axis);
       const double own = (body == 0 ? half_a : half_b)[axis];
-      const double thinner = 2.0 * std::min(own, reach[body][axis] - own);
-      way.worth = std::clamp(1.0 - overlap / (thin * thinner), 0.0, 1.0);  // of boxes that are flat: no number
+      thinner = 2.0 * std::min(own, reach[body][axis] - own);
     }
   }
-  if (!(way.worth >= 0.0)) way.worth = 0.0;
+  if (thinner > 0.0) way.worth = std::clamp(1.0 - least / (thin * thinner), 0.0, 1.0);
   return way;
 }
 

@@ -228,8 +228,8 @@ Apart known_apart(const tree::WideTree& a, const tree::WideTree& b, const PosedM
   if (order_of(request) == Method::incremental && pair.front.is_apart(meshes.pose(), {a.reach(), b.reach()})) {
     return Apart::still;
   }
-  const bool met_before = pair.has_witness;
-  return !met_before && wide::Encounter::are_roots_apart(a, b, meshes.pose()) ? Apart::far : Apart::unknown;
+  if (pair.has_witness) return Apart::unknown;  // what met in the run before mostly meets now
+  return wide::Encounter::are_roots_apart(a, b, meshes.pose()) ? Apart::far : Apart::unknown;
 }
 
 /// Bodies that have gone by more than half of the smaller one between two runs may have been anywhere: nothing is known
@@ -312,17 +312,20 @@ void search_and_answer(const Tree& a, const Tree& b, const PosedMeshes& meshes, 
   conclude(meshes, pose_b_in_a, reaches, result, request, &scratch->patches, pair, spending);
 }
 
+/// A hit that the search finds last still wants its contact, a rough one.
+std::int64_t last_contact_ns(const Request& request, const EndingReserves& endings) noexcept {
+  if (request.max_contacts == 0) return 0;
+  if (request.max_contacts == 1) return endings.last.ns();
+  return endings.rough.ns() * 2 / 3;  // of pages and triangles that it pays for, the search has just touched some
+}
+
 template <class Tree>
 void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const Request& request,
             Pair::Implementation& pair) noexcept {
-  // A hit that the search finds last still wants its contact, a rough one; of pages and triangles that its reserve pays
-  // for, the search has just touched some.
-  const std::int64_t last_contacts_ns = request.max_contacts > 1 ? pair.endings.rough.ns() * 2 / 3 : 0;
-  const std::int64_t last_contact_ns = request.max_contacts == 1 ? pair.endings.last.ns() : last_contacts_ns;
   Spending spending(request.budget,
                     {.search_ns = pair.endings.search.ns(),
                      .contacts_ns = (request.max_contacts > 1 ? pair.endings.rough : pair.endings.single).ns(),
-                     .last_contact_ns = last_contact_ns,
+                     .last_contact_ns = last_contact_ns(request, pair.endings),
                      .pieces_are_long = are_pieces_long(pair.a->volume())});
   Answer& answer = pair.answer;
   answer = {};

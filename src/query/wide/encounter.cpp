@@ -43,42 +43,13 @@ Encounter::Encounter(const tree::WideTree& a, const tree::WideTree& b, const Pos
 bool Encounter::are_roots_apart(const tree::WideTree& a, const tree::WideTree& b, const math::Pose& b_in_a) noexcept {
   const volume::Aabb box_a = box(a, tree::WideTree::root);
   const volume::Aabb box_b = box(b, tree::WideTree::root);
-  const Vec3f& ha = box_a.half_;
-  const Vec3f& hb = box_b.half_;
-  const Vec3f t = (b_in_a * Vec3(box_b.center_.cast<double>()) - box_a.center_.cast<double>()).cast<float>();
-  // No axis parts boxes whose middles are nearer to each other than both are thick.
-  const float thick = ha.minCoeff() + hb.minCoeff();
-  if (math::squared_length(t) < thick * thick) return false;
-  const Mat3f r = b_in_a.rotation.cast<float>();
-  const auto three = [](const auto& v) noexcept { return Vector{v[0], v[1], v[2], 0.0F}; };
-  const auto magnitude = [](const Vector& v) noexcept -> Vector { return v < 0.0F ? -v : v; };
-  const Vector row[3] = {three(r.row(0)), three(r.row(1)), three(r.row(2))};
-  const Vector abs_row[3] = {magnitude(row[0]), magnitude(row[1]), magnitude(row[2])};
-  const Vector extents_b = three(hb);
-  // The axes of A, by its axes; those of B, by its.
-  const Vector enclosed =
-      (magnitude(three(r.col(0))) * hb[0] + magnitude(three(r.col(1))) * hb[1]) + magnitude(three(r.col(2))) * hb[2];
-  const Vector along_a = magnitude(three(t)) - (three(ha) + enclosed);
-  const Vector along_b = magnitude((t[0] * row[0] + t[1] * row[1]) + t[2] * row[2]) -
-                         (extents_b + ((ha[0] * abs_row[0] + ha[1] * abs_row[1]) + ha[2] * abs_row[2]));
-  Vector gap = along_a > along_b ? along_a : along_b;
-  // An axis of each, crossed: by those of B.
-  const auto next = [](const Vector& v) noexcept { return Vector{v[1], v[2], v[0], 0.0F}; };
-  const Vector next_b = next(extents_b);
-  const Vector last_b = next(next_b);
-  for (int i = 0; i < 3; ++i) {
-    const int i1 = (i + 1) % 3;
-    const int i2 = (i + 2) % 3;
-    const Vector next_row = next(abs_row[i]);
-    const Vector reach = (ha[i1] * abs_row[i2] + ha[i2] * abs_row[i1]) + (next_b * next(next_row) + last_b * next_row);
-    const Vector crossed = magnitude(t[i2] * row[i1] - t[i1] * row[i2]) - reach;
-    gap = crossed > gap ? crossed : gap;
-  }
-  // Covers rotations that are only just ones, and the rounding of a dozen floats.
-  constexpr double share = 8.0 * tolerances::pose_orthonormality + 32.0 * 0x1p-24;
-  const float margin =
-      static_cast<float>(share * (a.reach() + b.reach() + b_in_a.translation.norm())) + volume::least_margin;
-  return gap[0] > margin || gap[1] > margin || gap[2] > margin;
+  const double reach = std::max(a.reach() + b.reach(), b_in_a.translation.norm());
+  const volume::RelativePose relative = volume::RelativePose::make(b_in_a, reach);
+  const volume::BoxPairView view = view_of(box_a, box_b, relative);
+  // Rotations that are only just ones stretch boxes.
+  const float margin = relative.margin + static_cast<float>(8.0 * tolerances::pose_orthonormality * reach);
+  return !faces_overlap(box_a.half_, box_b.half_, view, margin) ||
+         !edges_overlap(box_a.half_, box_b.half_, view, margin);
 }
 
 bool Encounter::triangles_meet(std::uint32_t triangle_a, std::uint32_t triangle_b) const noexcept {
