@@ -208,7 +208,7 @@ TEST(PatchEight, FindsTheCornersThatOneAtATimeFinds) {
         });
         std::vector<Witness> found;
         for (std::size_t kind = 0; kind < CornersOfEight::kinds; ++kind) {
-          if ((kinds[lane] >> kind & 1U) != 0) found.push_back(corners.witness(*asked[lane], frame, kind, lane));
+          if ((kinds[lane] >> kind & 1U) != 0) found.push_back(corners.witness(*asked[lane], frame.normal, kind, lane));
         }
         if (stream % 3 == 0) continue;  // of round coordinates much is on a border, and either is right
         ASSERT_EQ(found.size(), expected.size());
@@ -238,10 +238,9 @@ TEST(PatchEight, MeasuresTheDepthsThatOneAtATimeMeasures) {
     for (std::size_t i = 0; i < stream % eight + 1; ++i) asked.push_back(&pairs[i]);
     CornersOfEight corners;
     kernels.corners(asked, frame, shift, 0.0, corners);
-    const std::array<double, eight> depths = corners.deepest_of_lanes();
     for (std::size_t lane = 0; lane < eight; ++lane) {
-      const double expected = lane < asked.size() ? pair_depth(*asked[lane], frame, shift) : 0.0;
-      EXPECT_NEAR(depths[lane], expected, 1e-9) << "stream " << stream << ", lane " << lane;
+      const double expected = pair_depth(*asked[lane < asked.size() ? lane : 0], frame, shift);
+      EXPECT_NEAR(corners.deepest[lane], expected, 1e-9) << "stream " << stream << ", lane " << lane;
       deep += expected > 0.0 ? 1U : 0U;
     }
   }

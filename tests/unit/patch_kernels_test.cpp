@@ -27,6 +27,7 @@ struct Calls {
   int place = 0;
   int cut = 0;
   int corners = 0;
+  int corners_along = 0;
   int same_faces = 0;
   int flat_faces = 0;
   int farthest = 0;
@@ -46,6 +47,11 @@ constexpr Kernels counted = {
        double least_depth, patch::CornersOfEight& corners) noexcept {
       ++calls.corners;
       portable().corners(pairs, frame, shift, least_depth, corners);
+    },
+    [](const patch::PlacedPair& pair, std::span<const Vec3> directions, const Vec3& shift,
+       patch::CornersOfEight& corners) noexcept {
+      ++calls.corners_along;
+      portable().corners_along(pair, directions, shift, corners);
     },
     [](const patch::EightPieces& pieces, const patch::Facing& facing, const Vec3& first,
        patch::FaceSums& sums) noexcept {

@@ -6,9 +6,11 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "odds/math/tolerances.hpp"
 #include "query/patch/eight.hpp"
+#include "query/patch/one_pair.hpp"
 #include "query/patch/scratch.hpp"
 #include "query/spread_step.hpp"
 
@@ -116,6 +118,17 @@ void PatchBuilder::Scratch::sort_by_patch(std::size_t count, Watch& watch) noexc
   }
 }
 
+/// False if the pair needs more care, or the time is up.
+bool PatchBuilder::Scratch::make_of_one_pair(const PatchInput& input, Watch& watch) noexcept {
+  if (watch.late()) return false;
+  const std::optional<Contact> contact = patch::contact_of_one_pair(input, *kernels);
+  if (!contact) return false;
+  finished = true;
+  pair_count = contact_count = 1;
+  contacts[0] = *contact;
+  return true;
+}
+
 /// False if the time was up before all was done.
 bool PatchBuilder::Scratch::make_patches(const PatchInput& input, Watch& watch) noexcept {
   patch_count = 0;
@@ -145,7 +158,7 @@ void PatchBuilder::Scratch::add_witnesses(std::span<const patch::PlacedPair* con
     for (unsigned left = kinds[lane]; left != 0; left &= left - 1U) {
       if (witness_count == witnesses.size()) return;
       const auto kind = static_cast<std::size_t>(std::countr_zero(left));
-      witnesses[witness_count++] = corners.witness(*asked[lane], frame, kind, lane);
+      witnesses[witness_count++] = corners.witness(*asked[lane], frame.normal, kind, lane);
     }
   }
 }
@@ -298,6 +311,7 @@ std::span<const Contact> PatchBuilder::build(const PatchInput& input, const Dead
   Scratch& s = *scratch_;
   s.kernels = input.kernels != nullptr ? input.kernels : &patch::best_kernels();
   Watch watch(deadline);
+  if (patch::is_of_one_pair(input) && s.make_of_one_pair(input, watch)) return {s.contacts.data(), s.contact_count};
   s.place_pairs(input, watch);
   s.piece_count = 0;
   s.finished = s.make_patches(input, watch);

@@ -27,21 +27,10 @@ std::array<std::uint16_t, eight> CornersOfEight::kinds_of_lanes() const noexcept
   return kinds_of;
 }
 
-std::array<double, eight> CornersOfEight::deepest_of_lanes() const noexcept {
-  std::array<double, eight> deepest{};
-  for (std::size_t kind = 0; kind < kinds; ++kind) {
-    for (unsigned left = found[kind]; left != 0; left &= left - 1U) {
-      const auto lane = static_cast<std::size_t>(std::countr_zero(left));
-      deepest[lane] = std::max(deepest[lane], depth[kind][lane]);
-    }
-  }
-  return deepest;
-}
-
-Witness CornersOfEight::witness(const PlacedPair& placed, const Frame& frame, std::size_t kind,
+Witness CornersOfEight::witness(const PlacedPair& placed, const Vec3& direction, std::size_t kind,
                                 std::size_t lane) const noexcept {
   const double deep = depth[kind][lane];
-  const Vec3 way = deep * frame.normal;
+  const Vec3 way = deep * direction;
   if (kind >= of_b && kind < crossing) {
     const Vec3& corner = placed.b[kind - of_b];
     return {corner - way, corner, deep, placed.index.a, placed.index.b};

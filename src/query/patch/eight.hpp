@@ -33,7 +33,8 @@ struct CutEight {
   }
 };
 
-/// What `overlap_corners` finds of eight pairs, by lanes, and by the kinds below.
+/// What `overlap_corners` finds of eight pairs, or of one along eight directions, by lanes, and by the kinds below.
+/// Lanes that were not asked for are as the first, but for `found`.
 struct CornersOfEight {
   static constexpr std::size_t of_a = 0;      ///< corners of A above B, 3
   static constexpr std::size_t of_b = 3;      ///< corners of B below A, 3
@@ -42,14 +43,13 @@ struct CornersOfEight {
 
   alignas(64) double depth[kinds][eight];
   alignas(64) double share[kinds][eight];  ///< along A's side; of crossings only
+  alignas(64) double deepest[eight];       ///< of what was found in each lane, at least 0
   std::array<std::uint8_t, kinds> found;   ///< lanes; depth is finite and no less than the least that was asked for
 
   /// What was found by lanes: bits of kinds.
   [[nodiscard]] std::array<std::uint16_t, eight> kinds_of_lanes() const noexcept;
-  /// The largest depths of the lanes, at least 0; of lanes that were not asked for 0.
-  [[nodiscard]] std::array<double, eight> deepest_of_lanes() const noexcept;
-  /// What was found in a lane, of the pair that it was asked for, without a shift.
-  [[nodiscard]] Witness witness(const PlacedPair& placed, const Frame& frame, std::size_t kind,
+  /// What was found in a lane, of the pair and along the direction that it was asked for, without a shift.
+  [[nodiscard]] Witness witness(const PlacedPair& placed, const Vec3& direction, std::size_t kind,
                                 std::size_t lane) const noexcept;
 };
 
@@ -113,6 +113,9 @@ struct Kernels {
   /// As `overlap_corners` of 1 .. 8 pairs.
   void (*corners)(std::span<const PlacedPair* const> pairs, const Frame& frame, const Vec3& shift, double least_depth,
                   CornersOfEight& corners) noexcept;
+  /// As `overlap_corners` of one pair along 1 .. 8 directions, unit, with a least depth of 0.
+  void (*corners_along)(const PlacedPair& pair, std::span<const Vec3> directions, const Vec3& shift,
+                        CornersOfEight& corners) noexcept;
   /// Adds the normals that agree with `first`. Returns those that face that way and do not, as bits: B's from bit 0 on,
   /// A's from bit 8 on.
   unsigned (*same_faces)(const EightPieces& pieces, const Facing& facing, const Vec3& first, FaceSums& sums) noexcept;

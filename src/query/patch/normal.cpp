@@ -9,70 +9,17 @@
 #include <limits>
 #include <numbers>
 
+#include "query/patch/directions.hpp"
 #include "query/patch/eight.hpp"
 #include "query/patch/overlap.hpp"
 
 namespace odds::query::patch {
 namespace {
 
-Vec3 unit_or_zero(const Vec3& v) noexcept {
-  const double length = v.norm();
-  return length > 0.0 && std::isfinite(length) ? Vec3(v / length) : Vec3::Zero();
-}
-
-double smooth_step(double from, double to, double x) noexcept {
-  const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
-}
-
-/// Where the bodies are, as seen from a patch with a sheet: a direction towards A's body and away from B's; zero if
-/// both are solid, for then the orientation of the surfaces says it exactly.
-Vec3 side_of_bodies(const PatchView& view) noexcept {
-  const PatchInput& input = view.input;
-  if (input.solid_a && input.solid_b) return Vec3::Zero();
-  const Vec3 centre = view.sums.centre(view.rim.origin);
-  Vec3 side = input.reference_a - input.reference_b;
-  if (input.solid_a) side = input.reference_a - centre;
-  if (input.solid_b) side = centre - input.reference_b;
-  side = unit_or_zero(side);
-  if (input.previous_normal != nullptr) side += tolerances::previous_side * *input.previous_normal;
-  if (input.came != nullptr) side += tolerances::came_side * *input.came;
-  return side;
-}
-
 /// The inner rim of a ring whose outer rim is missing, for the search was cut short: it runs the other way round.
 bool is_hole_alone(const PatchView& view, const Vec3& normal) noexcept {
   if (!view.input.solid_a || !view.input.solid_b) return false;
   return normal.dot(view.sums.normals_b - view.sums.normals_a) < -tolerances::hole_rim * view.sums.length;
-}
-
-/// A few directions with weights; directions within two degrees are one.
-struct Directions {
-  struct One {
-    Vec3 sum = Vec3::Zero();
-    Vec3 first = Vec3::Zero();
-    double weight = 0.0;
-  };
-  std::array<One, 8> ones;
-  std::size_t count = 0;
-
-  void add(const Vec3& direction, double weight) noexcept {
-    if (direction == Vec3::Zero()) return;
-    for (std::size_t i = 0; i < count; ++i) {
-      if (direction.dot(ones[i].first) > tolerances::same_face) {
-        ones[i].sum += weight * direction;
-        ones[i].weight += weight;
-        return;
-      }
-    }
-    if (count < ones.size()) ones[count++] = {weight * direction, direction, weight};
-  }
-};
-
-/// How much a face normal counts as the flat face `flat`: 1 up to half a degree, 0 from three degrees on.
-double flatness(const Vec3& normal, const Vec3& flat) noexcept {
-  if (normal.dot(flat) > flat_agreement) return 1.0;
-  return 1.0 - smooth_step(tolerances::flat_from, tolerances::flat_to, normal.cross(flat).norm());
 }
 
 /// The faces that a flat patch may lie on. Of some triangles of a rim one is on such a face and one is not, in no
@@ -101,8 +48,8 @@ class FlatFaces {
         const auto lane = static_cast<std::size_t>(std::countr_zero(left));
         const Vec3 face_b = facing_.of_b(*eight.pairs[lane]);
         const Vec3 face_a = facing_.of_a(*eight.pairs[lane]);
-        const double by_b = face_b == Vec3::Zero() ? 0.0 : flatness(face_b, flat);
-        const double by_a = face_a == Vec3::Zero() ? 0.0 : flatness(face_a, flat);
+        const double by_b = flatness(face_b, flat);
+        const double by_a = flatness(face_a, flat);
         share += eight.length[lane] * std::max(by_a, by_b);
         sum += eight.length[lane] * (by_b * face_b + by_a * face_a);
       }
@@ -168,7 +115,7 @@ Vec3 snap_to_face(const PatchView& view, const Vec3& normal, Watch& watch) noexc
 /// Compares directions by the overlap along them, on a sample of the patch's triangle pairs.
 class LeastOverlap {
  public:
-  LeastOverlap(const PatchView& view, Watch& watch) noexcept : view_(view), watch_(watch), side_(side_of_bodies(view)) {
+  LeastOverlap(const PatchView& view, Watch& watch) noexcept : view_(view), watch_(watch), side_(side_of_bodies(view.input, view.sums.centre(view.rim.origin))) {
     const Vec3 mean = unit_or_zero(view.sums.normals_b - view.sums.normals_a);
     Vec3 pressing = mean == Vec3::Zero() ? unit_or_zero(side_) : mean;
     if (pressing == Vec3::Zero()) pressing = unit_or_zero(view.input.reference_a - view.input.reference_b);
@@ -191,8 +138,7 @@ class LeastOverlap {
     const double facing = unit.dot(side_);
     if (found_ && watch_.late()) return;
     if (facing < -tolerances::weak_side) return;  // towards the wrong side of a sheet
-    const Vec3* previous = view_.input.previous_normal;
-    if (previous != nullptr && previous->dot(unit) > tolerances::same_as_before) factor *= tolerances::hysteresis;
+    factor *= hysteresis_of(view_.input, unit);
     const double of_pairs = overlap_of_pairs(unit, shift_, factor);
     if (found_ && !(factor * of_pairs < least_)) return;
     const double through = overlap_through(unit, factor);
@@ -245,7 +191,7 @@ class LeastOverlap {
     for (; i < view_.pieces.size() && count < asked.size(); i += stride()) asked[count++] = &pair_at(i);
     CornersOfEight corners;
     view_.kernels.corners({asked.data(), count}, frame, shift, 0.0, corners);
-    return corners.deepest_of_lanes();
+    return std::to_array(corners.deepest);
   }
 
   /// Places inside the overlap where directions are measured: the middle of the rim, and, between solids, a little
@@ -404,9 +350,7 @@ Vec3 least_overlap(const PatchView& view, const Vec3& area, Watch& watch) noexce
     faces.add(placed.normal_b, weight);
     faces.add(-placed.normal_a, weight);
   }
-  for (std::size_t i = 0; i < faces.count; ++i) {
-    offer(faces.ones[i].sum == Vec3::Zero() ? faces.ones[i].first : faces.ones[i].sum, 1.0);
-  }
+  for (std::size_t i = 0; i < faces.count; ++i) offer(faces.ones[i].mean(), 1.0);
   // Of a crumb along an edge, all that a sample has left of a long rim, the mean of the two faces' normals cuts the
   // corner: at places near the rim it seems shorter than it is.
   const bool is_crumb = is_part_of_a_rim(view) && !in_part && faces.count == 2 && view.input.max_contacts > 1;
@@ -436,7 +380,7 @@ PatchNormal patch_normal(const PatchView& view, Watch& watch) noexcept {
                      !(roundness > 1.0 && is_part_of_a_rim(view)) && !ends_at_a_border(view);
   if (noticeable && round) {
     normal = area.normalized();
-    if (normal.dot(side_of_bodies(view)) < 0.0) normal = -normal;
+    if (normal.dot(side_of_bodies(view.input, view.sums.centre(view.rim.origin))) < 0.0) normal = -normal;
     if (is_hole_alone(view, normal)) normal = -normal;
   } else {
     made.shortest_way = normal = least_overlap(view, area, watch);

@@ -16,7 +16,7 @@ template <class L>
 class PatchKernel {
  public:
   static constexpr patch::Kernels table() noexcept {
-    return {&place, &cut, &corners, &same_faces, &flat_faces, &farthest};
+    return {&place, &cut, &corners, &corners_along, &same_faces, &flat_faces, &farthest};
   }
 
  private:
@@ -210,7 +210,7 @@ class PatchKernel {
 
   /// Heights of the face above each corner, and which corners are over it at all.
   ODDS_LANES_INLINE static void corners_over(const Triangle& corners, const Triangle& face, const P& normal,
-                                             const P& up, D (&height)[3], unsigned (&over)[3]) noexcept {
+                                             const P& up, D (&height)[3], T (&over)[3]) noexcept {
     const D area = flat_cross(face[1] - face[0], face[2] - face[0]);
     const D zero = D::all(0.0);
     const T faces = (D::all(tolerances::edge_on) <= abs(dot(normal, up))) & (zero < abs(area));
@@ -221,7 +221,7 @@ class PatchKernel {
       const D w1 = flat_cross(face[2] - corners[k], face[0] - corners[k]) * inverse;
       const D w2 = (D::all(1.0) - w0) - w1;
       height[k] = (w0 * face[0].z + w1 * face[1].z) + w2 * face[2].z;
-      over[k] = (faces & (least <= min(min(w0, w1), w2))).bits();
+      over[k] = faces & (least <= min(min(w0, w1), w2));
     }
   }
 
@@ -237,40 +237,86 @@ class PatchKernel {
       at_normal[0][lane] = pair.normal_a.data();
       at_normal[1][lane] = pair.normal_b.data();
     }
-    const P axes[3] = {P::all(frame.u.data()), P::all(frame.v.data()), P::all(frame.normal.data())};
-    const P origin = P::from(at_b, 0);
-    const P moved = P::all(shift.data());
-    const Triangle a = {in_frame(axes, (P::from(at_a, 0) + moved) - origin),
-                        in_frame(axes, (P::from(at_a, 1) + moved) - origin),
-                        in_frame(axes, (P::from(at_a, 2) + moved) - origin)};
-    const Triangle b = {P::all(zeros), in_frame(axes, P::from(at_b, 1) - origin),
-                        in_frame(axes, P::from(at_b, 2) - origin)};
-    const Wanted wanted{D::all(least_depth), (1U << pairs.size()) - 1U};
-    D height[3];
-    unsigned over[3];
-    corners_over(a, b, P::from(at_normal[1]), axes[2], height, over);
-    for (std::size_t k = 0; k < 3; ++k) {
-      keep(wanted, patch::CornersOfEight::of_a + k, height[k] - a[k].z, over[k], found);
+    const Sight sight{{P::all(frame.u.data()), P::all(frame.v.data()), P::all(frame.normal.data())},
+                      P::from(at_normal[0]),
+                      P::from(at_normal[1])};
+    const Triangle a = {P::from(at_a, 0), P::from(at_a, 1), P::from(at_a, 2)};
+    const Triangle b = {P::from(at_b, 0), P::from(at_b, 1), P::from(at_b, 2)};
+    find_corners(a, b, sight, P::all(shift.data()), Wanted{D::all(least_depth), (1U << pairs.size()) - 1U}, found);
+  }
+
+  static void corners_along(const patch::PlacedPair& pair, std::span<const Vec3> directions, const Vec3& shift,
+                            patch::CornersOfEight& found) noexcept {
+    const double* at[patch::eight];
+    for (std::size_t lane = 0; lane < patch::eight; ++lane) {
+      at[lane] = directions.data()[lane < directions.size() ? lane : 0].data();
     }
-    corners_over(b, a, P::from(at_normal[0]), axes[2], height, over);
-    for (std::size_t k = 0; k < 3; ++k) {
-      keep(wanted, patch::CornersOfEight::of_b + k, b[k].z - height[k], over[k], found);
-    }
-    cross_sides(a, b, wanted, found);
+    const Sight sight(P::from(at), P::all(pair.normal_a.data()), P::all(pair.normal_b.data()));
+    const Triangle a = {P::all(pair.a.data()[0].data()), P::all(pair.a.data()[1].data()),
+                        P::all(pair.a.data()[2].data())};
+    const Triangle b = {P::all(pair.b.data()[0].data()), P::all(pair.b.data()[1].data()),
+                        P::all(pair.b.data()[2].data())};
+    find_corners(a, b, sight, P::all(shift.data()), Wanted{D::all(0.0), (1U << directions.size()) - 1U}, found);
   }
 
   static constexpr double zeros[3] = {0.0, 0.0, 0.0};
+
+  /// The axes of patch::Frame, and both triangles' normals.
+  struct Sight {
+    P axes[3];
+    P normal_a;
+    P normal_b;
+
+    ODDS_LANES_INLINE Sight(const P (&frame)[3], const P& of_a, const P& of_b) noexcept
+        : axes{frame[0], frame[1], frame[2]}, normal_a(of_a), normal_b(of_b) {}
+    ODDS_LANES_INLINE Sight(const P& up, const P& of_a, const P& of_b) noexcept
+        : axes{P::all(zeros), P::all(zeros), up}, normal_a(of_a), normal_b(of_b) {
+      const D one = D::all(1.0);
+      const D zero = D::all(0.0);
+      const D sign = choose(up.z < zero, D::all(-1.0), one);
+      const D p = D::all(-1.0) / (sign + up.z);
+      const D q = (up.x * up.y) * p;
+      axes[0] = {one + ((sign * up.x) * up.x) * p, sign * q, (zero - sign) * up.x};
+      axes[1] = {q, sign + (up.y * up.y) * p, zero - up.y};
+    }
+  };
 
   struct Wanted {
     D least_depth;
     unsigned lanes;
   };
 
-  ODDS_LANES_INLINE static void keep(const Wanted& wanted, std::size_t kind, const D& depth, unsigned found,
-                                     patch::CornersOfEight& corners) noexcept {
+  ODDS_LANES_INLINE static void find_corners(const Triangle& at_a, const Triangle& at_b, const Sight& sight,
+                                             const P& shift, const Wanted& wanted,
+                                             patch::CornersOfEight& found) noexcept {
+    const P& origin = at_b[0];
+    const Triangle a = {in_frame(sight.axes, (at_a[0] + shift) - origin),
+                        in_frame(sight.axes, (at_a[1] + shift) - origin),
+                        in_frame(sight.axes, (at_a[2] + shift) - origin)};
+    const Triangle b = {P::all(zeros), in_frame(sight.axes, at_b[1] - origin),
+                        in_frame(sight.axes, at_b[2] - origin)};
+    D height[3];
+    T over[3];
+    D deepest = D::all(0.0);
+    corners_over(a, b, sight.normal_b, sight.axes[2], height, over);
+    for (std::size_t k = 0; k < 3; ++k) {
+      keep(wanted, patch::CornersOfEight::of_a + k, height[k] - a[k].z, over[k], deepest, found);
+    }
+    corners_over(b, a, sight.normal_a, sight.axes[2], height, over);
+    for (std::size_t k = 0; k < 3; ++k) {
+      keep(wanted, patch::CornersOfEight::of_b + k, b[k].z - height[k], over[k], deepest, found);
+    }
+    cross_sides(a, b, wanted, deepest, found);
+    deepest.store(found.deepest);
+  }
+
+  ODDS_LANES_INLINE static void keep(const Wanted& wanted, std::size_t kind, const D& depth, const T& is_there,
+                                     D& deepest, patch::CornersOfEight& corners) noexcept {
     depth.store(corners.depth[kind]);
-    const T deep = (wanted.least_depth <= depth) & (depth <= D::all(std::numeric_limits<double>::max()));
-    corners.found.data()[kind] = static_cast<std::uint8_t>(found & deep.bits() & wanted.lanes);
+    const T deep =
+        is_there & (wanted.least_depth <= depth) & (depth <= D::all(std::numeric_limits<double>::max()));
+    deepest = max(deepest, choose(deep, depth, deepest));
+    corners.found.data()[kind] = static_cast<std::uint8_t>(deep.bits() & wanted.lanes);
   }
 
   /// A side of a triangle as seen along the normal.
@@ -286,7 +332,7 @@ class PatchKernel {
   };
 
   ODDS_LANES_INLINE static void cross_sides(const Triangle& a, const Triangle& b, const Wanted& wanted,
-                                            patch::CornersOfEight& found) noexcept {
+                                            D& deepest, patch::CornersOfEight& found) noexcept {
     const Side sides_a[3] = {{a[0], a[1]}, {a[1], a[2]}, {a[2], a[0]}};
     const Side sides_b[3] = {{b[0], b[1]}, {b[1], b[2]}, {b[2], b[0]}};
     const D low = D::all(-tolerances::on_border);
@@ -307,7 +353,7 @@ class PatchKernel {
         const D depth = (b[j].z + t * side_b.along.z) - (a[i].z + s * side_a.along.z);
         const std::size_t kind = patch::CornersOfEight::crossing + 3 * i + j;
         s.store(found.share[kind]);
-        keep(wanted, kind, depth, within.bits(), found);
+        keep(wanted, kind, depth, within, deepest, found);
       }
     }
   }

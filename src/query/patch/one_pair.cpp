@@ -1,0 +1,188 @@
+// One piece of rim has no area: the direction is that of least overlap among the faces' normals, their mean and the
+// last run's normal, and where that is a long way the line in which two walls cross (see normal.cpp).
+#include "query/patch/one_pair.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "odds/math/tolerances.hpp"
+#include "query/patch/directions.hpp"
+
+namespace odds::query::patch {
+namespace {
+
+bool place_one(const PatchInput& input, PlacedPair& placed) noexcept {
+  placed.index = input.hits[0];
+  if (placed.index.a >= input.triangles_a.size() || placed.index.b >= input.triangles_b.size()) return false;
+  const mesh::Triangle& of_a = input.triangles_a[placed.index.a];
+  const mesh::Triangle& of_b = input.triangles_b[placed.index.b];
+  bool finite = true;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (of_a[k] >= input.vertices_a.size() || of_b[k] >= input.vertices_b.size()) return false;
+    placed.a[k] = input.vertices_a[of_a[k]];
+    placed.b[k] = input.pose_b_in_a * input.vertices_b[of_b[k]];
+    finite = finite && placed.a[k].allFinite() && placed.b[k].allFinite();
+  }
+  return finite;
+}
+
+/// Unit, or zero if the triangle has no area.
+Vec3 normal_of(const std::array<Vec3, 3>& t) noexcept {
+  const Vec3 u = t[1] - t[0];
+  const Vec3 v = t[2] - t[0];
+  const Vec3 normal = u.cross(v);
+  const double longest = std::max({u.squaredNorm(), v.squaredNorm(), (t[2] - t[1]).squaredNorm()});
+  const double twice_area = normal.norm();
+  return twice_area > tolerances::degenerate_triangle * longest ? Vec3(normal / twice_area) : Vec3::Zero();
+}
+
+/// The pair's piece of rim, unless there are more or its ends are one point.
+bool cut_one(const PatchInput& input, const PlacedPair& placed, RimPiece& piece) noexcept {
+  std::array<RimPiece, most_pieces_of_a_pair> pieces;
+  if (rim_pieces(placed, input.solid_a && input.solid_b, 0, pieces) != 1) return false;
+  piece = pieces[0];
+  const double extent = 0.5 * piece.along().cwiseAbs().maxCoeff();
+  const double reach = piece.from.cwiseAbs().maxCoeff();
+  const double same_point = std::max(tolerances::same_joint * extent, tolerances::on_plane * reach);
+  return piece.from.allFinite() && piece.to.allFinite() && 2.0 * extent > same_point;
+}
+
+/// Up to eight directions.
+struct Asked {
+  std::array<Vec3, eight> of;
+  std::size_t count = 0;
+
+  /// Also turned round if a surface has no outside. One too many, or without a length, is left out.
+  void add(const Vec3& direction, bool both_ways) noexcept {
+    const Vec3 unit = unit_or_zero(direction);
+    if (unit == Vec3::Zero() || count + (both_ways ? 2 : 1) > of.size()) return;
+    of[count++] = unit;
+    if (both_ways) of[count++] = -unit;
+  }
+  [[nodiscard]] std::span<const Vec3> all() const noexcept { return {of.data(), count}; }
+};
+
+/// The direction of least overlap of those that were offered.
+class Least {
+ public:
+  Least(const PatchInput& input, const Vec3& side) noexcept : input_(input), side_(side) {}
+
+  void offer(const Asked& asked, std::size_t from, std::size_t to, const CornersOfEight& corners) noexcept {
+    for (std::size_t i = from; i < to; ++i) {
+      if (asked.of[i].dot(side_) < -tolerances::weak_side) continue;  // towards the wrong side of a sheet
+      const double overlap = hysteresis_of(input_, asked.of[i]) * corners.deepest[i];
+      if (found_ && !(overlap < least_)) continue;
+      found_ = true;
+      least_ = overlap;
+      best_ = i;
+    }
+  }
+  [[nodiscard]] bool found() const noexcept { return found_; }
+  [[nodiscard]] std::size_t best() const noexcept { return best_; }
+
+ private:
+  const PatchInput& input_;
+  const Vec3& side_;
+  double least_ = 0.0;
+  std::size_t best_ = 0;
+  bool found_ = false;
+};
+
+/// The direction, or the flat face that it is about, as snap_to_face has it.
+Vec3 snapped(const PatchInput& input, const PlacedPair& placed, const Vec3& direction) noexcept {
+  const Facing facing{direction, input.solid_a, input.solid_b};
+  const Vec3 face_b = facing.of_b(placed);
+  const Vec3 face_a = facing.of_a(placed);
+  Directions faces;
+  faces.add(face_b, 1.0);
+  faces.add(face_a, 1.0);
+  if (faces.count == 0) return direction;
+  const Vec3 flat = unit_or_zero(faces.ones[0].sum);
+  const double by_b = flatness(face_b, flat);
+  const double by_a = flatness(face_a, flat);
+  const double snap = smooth_step(tolerances::snap_from, tolerances::snap_to, std::max(by_b, by_a));
+  const Vec3 made = unit_or_zero((1.0 - snap) * direction + snap * unit_or_zero(by_b * face_b + by_a * face_a));
+  return made == Vec3::Zero() ? direction : made;
+}
+
+/// Over the middle of the rim, at the height of the deepest place.
+Contact contact_along(const PlacedPair& placed, const RimPiece& piece, const Vec3& direction,
+                      const CornersOfEight& corners, std::size_t lane) noexcept {
+  Contact contact{piece.middle(), direction, corners.deepest[lane], placed.index.a, placed.index.b};
+  for (std::size_t kind = 0; kind < CornersOfEight::kinds; ++kind) {
+    if ((corners.found[kind] >> lane & 1U) == 0 || corners.depth[kind][lane] != contact.depth) continue;
+    const Vec3 deepest = corners.witness(placed, direction, kind, lane).middle();
+    contact.position += direction.dot(deepest - contact.position) * direction;
+    break;
+  }
+  return contact;
+}
+
+}  // namespace
+
+bool is_of_one_pair(const PatchInput& input) noexcept {
+  return input.hits.size() == 1 && input.max_contacts <= 1 && !input.probe_a && !input.probe_b &&
+         input.believed_depth == 0.0;
+}
+
+std::optional<Contact> contact_of_one_pair(const PatchInput& input, const Kernels& kernels) noexcept {
+  PlacedPair placed;
+  if (!place_one(input, placed)) return std::nullopt;
+  placed.normal_a = normal_of(placed.a);
+  placed.normal_b = normal_of(placed.b);
+  RimPiece piece;
+  if (!cut_one(input, placed, piece)) return std::nullopt;
+  const bool solid = input.solid_a && input.solid_b;
+  const Vec3 side = side_of_bodies(input, piece.middle());
+
+  Asked asked;
+  Directions faces;
+  faces.add(placed.normal_b, 1.0);
+  faces.add(-placed.normal_a, 1.0);
+  for (std::size_t i = 0; i < faces.count; ++i) asked.add(faces.ones[i].mean(), !solid);
+  asked.add(placed.normal_b - placed.normal_a, !solid);
+  if (input.previous_normal != nullptr) asked.add(*input.previous_normal, false);
+  const std::size_t usual = asked.count;
+  const Vec3 line = placed.normal_b.cross(placed.normal_a);
+  const double steepness = line.norm();
+  // Along walls: only of solids, for of a sheet the rim says nothing of what is missing.
+  if (solid && steepness > tolerances::steep) asked.add(line, true);
+
+  // Pressed together by a trifle first, for where the bodies only touch every direction that parts them has no overlap.
+  Vec3 pressing = unit_or_zero(placed.normal_b - placed.normal_a);
+  if (pressing == Vec3::Zero()) pressing = unit_or_zero(side);
+  if (pressing == Vec3::Zero()) pressing = unit_or_zero(input.reference_a - input.reference_b);
+  const double size = std::min((placed.a[1] - placed.a[0]).norm(), (placed.b[1] - placed.b[0]).norm());
+  CornersOfEight corners;
+  kernels.corners_along(placed, asked.all(), -tolerances::pressing_share * size * pressing, corners);
+  Least least(input, side);
+  least.offer(asked, 0, usual, corners);
+  if (!least.found()) return std::nullopt;
+
+  // As they are, along what was found, along the walls, and along the faces that these are about.
+  Asked ways;
+  ways.add(asked.of[least.best()], false);
+  for (std::size_t i = usual; i < asked.count; ++i) ways.add(asked.of[i], false);
+  const std::size_t count = ways.count;
+  for (std::size_t i = 0; i < count; ++i) ways.of[ways.count++] = snapped(input, placed, ways.of[i]);
+  CornersOfEight as_they_are;
+  kernels.corners_along(placed, ways.all(), Vec3::Zero(), as_they_are);
+  std::size_t way = 0;
+  const double rounding = tolerances::rim_noise * piece.middle().cwiseAbs().maxCoeff();
+  if (solid && as_they_are.deepest[0] > piece.length + rounding) {
+    if (usual < asked.count) {
+      least.offer(asked, usual, asked.count, corners);
+      if (least.best() >= usual) way = least.best() - usual + 1;
+    } else if (steepness < tolerances::flat_from && placed.normal_a.dot(placed.normal_b) > 0.0) {
+      return std::nullopt;
+    }
+  }
+  // A flat face's normal is the better one, but not the longer way out of a lump.
+  std::size_t chosen = count + way;
+  const double wide = (solid ? 1.0 : tolerances::lump_depth) * piece.length;
+  if (as_they_are.deepest[chosen] > wide && as_they_are.deepest[way] < as_they_are.deepest[chosen]) chosen = way;
+  const Contact contact = contact_along(placed, piece, ways.of[chosen], as_they_are, chosen);
+  return contact.position.allFinite() ? std::optional(contact) : std::nullopt;
+}
+
+}  // namespace odds::query::patch
