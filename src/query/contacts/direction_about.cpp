@@ -26,10 +26,16 @@ void prefetch(const NodesAbout& nodes) noexcept {
   }
 }
 
-NodesAbout nodes_about(const tree::WideTree& tree, const wide::Searches& searches, const Vec3f& place) noexcept {
-  NodesAbout about;
-  const wide::SlotsAbout slots = searches.slots_about(tree, place);
-  for (std::size_t i = 0; i < sizes; ++i) about[i] = &tree.statistics(slots[i]);
+using OfBoth = std::array<NodesAbout, 2>;
+
+OfBoth nodes_about(const tree::WideTree& a, const Vec3f& place_a, const tree::WideTree& b, const Vec3f& place_b,
+                   const wide::Searches& searches) noexcept {
+  const auto slots = searches.slots_about({a, place_a}, {b, place_b});
+  OfBoth about;
+  for (std::size_t i = 0; i < sizes; ++i) {
+    about[0][i] = &a.statistics(slots[0][i]);
+    about[1][i] = &b.statistics(slots[1][i]);
+  }
   return about;
 }
 
@@ -43,7 +49,7 @@ float strangeness(const tree::NodeStatistics& statistics, float radius, const Ve
 }
 
 template <volume::BoundingVolume V>
-NodesAbout nodes_about(const tree::Hierarchy<V>& tree, const wide::Searches&, const Vec3f& place) noexcept {
+NodesAbout nodes_about(const tree::Hierarchy<V>& tree, const Vec3f& place) noexcept {
   constexpr std::size_t levels_between = 3;  // three levels of two are one of eight
   std::array<std::uint32_t, (sizes - 1) * levels_between + 1> last{};
   std::size_t count = 0;
@@ -64,10 +70,21 @@ NodesAbout nodes_about(const tree::Hierarchy<V>& tree, const wide::Searches&, co
   return about;
 }
 
-NodesAbout nodes_about(const Shape& shape, const wide::Searches& searches, const Vec3f& place) noexcept {
-  const NodesAbout about =
-      std::visit([&](const auto& tree) noexcept { return nodes_about(tree, searches, place); }, shape.data().tree);
-  prefetch(about);
+template <volume::BoundingVolume V>
+OfBoth nodes_about(const tree::Hierarchy<V>& a, const Vec3f& place_a, const tree::Hierarchy<V>& b, const Vec3f& place_b,
+                   const wide::Searches&) noexcept {
+  return {nodes_about(a, place_a), nodes_about(b, place_b)};
+}
+
+/// Of two bodies with trees of one kind.
+OfBoth nodes_about(const Shape& a, const Vec3f& place_a, const Shape& b, const Vec3f& place_b,
+                   const wide::Searches& searches) noexcept {
+  const OfBoth about = std::visit(
+      [&]<class Tree>(const Tree& tree_a) noexcept {
+        return nodes_about(tree_a, place_a, *std::get_if<Tree>(&b.data().tree), place_b, searches);
+      },
+      a.data().tree);
+  for (const NodesAbout& nodes : about) prefetch(nodes);
   return about;
 }
 
@@ -99,8 +116,8 @@ Vec3 direction_about(const Shape& a, const Shape& b, const wide::Searches& searc
                      const Contact& contact) noexcept {
   const math::Pose& b_in_a = meshes.pose();
   const Vec3 place = contact.position - meshes.origin_a();
-  const NodesAbout about_a = nodes_about(a, searches, place.cast<float>());
-  const NodesAbout about_b = nodes_about(b, searches, (b_in_a.inverse() * place).cast<float>());
+  const auto [about_a, about_b] =
+      nodes_about(a, place.cast<float>(), b, (b_in_a.inverse() * place).cast<float>(), searches);
   const bool both_solid = a.is_solid() && b.is_solid();
   if (!both_solid && is_met_from_behind(about_a, about_b, b_in_a, contact.normal)) return contact.normal;
   Vec3 sum = worth_of_triangles(meshes, contact, flatness_of(*about_a[0], *about_b[0])) * contact.normal;

@@ -69,6 +69,12 @@ using RayHits = std::array<std::optional<RayHit>, 2>;
 /// A leaf, its parent and the parent of that; the root repeats where there are fewer.
 using SlotsAbout = std::array<tree::Slot, 3>;
 
+/// In the frame of the tree.
+struct Place {
+  const tree::WideTree& tree;
+  Vec3f at;
+};
+
 /// One instruction set's searches. Each of two trees starts from the pair of roots, which is known to overlap.
 struct Searches {
   const char* instruction_set;
@@ -82,8 +88,8 @@ struct Searches {
   void (*nearest)(NearestTask& task) noexcept;
   std::optional<RayHit> (*ray)(const RayTask& task) noexcept;
   RayHits (*two_rays)(const RayTask& first, const RayTask& second) noexcept;
-  /// The leaf that a place, in the tree's frame, belongs to, and the next larger nodes about it.
-  SlotsAbout (*slots_about)(const tree::WideTree& tree, const Vec3f& place) noexcept;
+  /// The leaves that places in two trees belong to, and the next larger nodes about them.
+  std::array<SlotsAbout, 2> (*slots_about)(const Place& a, const Place& b) noexcept;
   patch::Kernels patch;
 };
 

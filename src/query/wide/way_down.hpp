@@ -1,4 +1,4 @@
-// From the root down to the leaf that a place belongs to: the nodes about it.
+// From the roots down to the leaves that a place belongs to: the nodes about it.
 #pragma once
 
 #include <algorithm>
@@ -11,21 +11,31 @@ namespace odds::query::wide {
 template <class L>
 class WayDown {
  public:
-  /// See Searches::slots_about.
-  static SlotsAbout run(const tree::WideTree& tree, const Vec3f& place) noexcept {
-    SlotsAbout about;
-    about.fill(tree::WideTree::root);
-    while (true) {
-      const tree::Slot slot = about.front();
-      const tree::ChildRef child = tree.nodes()[slot / tree::wide_lanes].child[slot % tree::wide_lanes];
-      if (child.is_leaf()) return about;
-      std::copy_backward(about.begin(), about.end() - 1, about.end());
-      about.front() = child.node_index() * tree::wide_lanes + lane_about(tree.nodes()[child.node_index()], place);
+  /// See Searches::slots_about. Both ways at the same time, for each step waits for the one before.
+  static std::array<SlotsAbout, 2> run(const Place& a, const Place& b) noexcept {
+    std::array<SlotsAbout, 2> about;
+    for (SlotsAbout& slots : about) slots.fill(tree::WideTree::root);
+    bool more = true;
+    while (more) {
+      more = step(a, about[0]);
+      more = step(b, about[1]) || more;
     }
+    return about;
   }
 
  private:
   using F = typename L::Float;
+
+  /// A level down; false at a leaf.
+  ODDS_LANES_INLINE static bool step(const Place& place, SlotsAbout& about) noexcept {
+    const tree::WideNode* const nodes = place.tree.nodes();
+    const tree::Slot slot = about.front();
+    const tree::ChildRef child = nodes[slot / tree::wide_lanes].child[slot % tree::wide_lanes];
+    if (child.is_leaf()) return false;
+    std::copy_backward(about.begin(), about.end() - 1, about.end());
+    about.front() = child.node_index() * tree::wide_lanes + lane_about(nodes[child.node_index()], place.at);
+    return true;
+  }
 
   /// That from whose middle the place is the least part of its size away, what lies outside counts more. Of lanes of
   /// 1e19 m, and of a place that is none, the first.
