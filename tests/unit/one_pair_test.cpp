@@ -23,7 +23,7 @@ constexpr std::array<mesh::Triangle, 1> one = {mesh::Triangle{0, 1, 2}};
 struct Meeting {
   std::array<Vec3, 3> a;
   std::array<Vec3, 3> b;
-  std::array<TrianglePair, 2> hits{};  ///< the same twice: what is no single pair goes the way of many
+  std::array<TrianglePair, 1> hits{};
   Vec3 previous_normal;
   Vec3 previous_position = Vec3::Zero();
   Vec3 came;
@@ -44,7 +44,7 @@ struct Meeting {
     } while (!primitive::triangles_intersect(a.data(), placed.data()));
     previous_normal = random.direction();
     came = random.direction();
-    input.hits = std::span(hits).first(1);
+    input.hits = hits;
     input.vertices_a = a;
     input.vertices_b = b;
     input.triangles_a = input.triangles_b = one;
@@ -71,9 +71,7 @@ struct Meeting {
   }
   /// The machinery's.
   [[nodiscard]] Contact by_many(PatchBuilder& builder) const {
-    PatchInput twice = input;
-    twice.hits = hits;
-    const std::span<const Contact> contacts = builder.build(twice);
+    const std::span<const Contact> contacts = builder.build(input);
     EXPECT_EQ(contacts.size(), 1U);
     return contacts.front();
   }
@@ -105,23 +103,6 @@ TEST(OnePair, IsWhatTheMachineryForManyMakesOfIt) {
   EXPECT_GT(taken, 19000U);
   EXPECT_GT(flat, 1000U);
   EXPECT_LT(flat, taken - 1000U);
-}
-
-TEST(OnePair, IsWhatABuilderGives) {
-  PatchBuilder builder(16);
-  const Meeting meeting(1);
-  const auto contact = contact_of_one_pair(meeting.input, best_kernels());
-  ASSERT_TRUE(contact.has_value());
-  const std::span<const Contact> built = builder.build(meeting.input);
-  ASSERT_EQ(built.size(), 1U);
-  EXPECT_EQ(built[0].position, contact->position);
-  EXPECT_EQ(built[0].normal, contact->normal);
-  EXPECT_EQ(built[0].depth, contact->depth);
-  EXPECT_TRUE(builder.finished());
-  EXPECT_EQ(builder.pairs_used(), 1U);
-  const Deadline never{[](void*) noexcept { return true; }, nullptr};
-  EXPECT_EQ(builder.build(meeting.input, never).size(), 1U);
-  EXPECT_FALSE(builder.finished());
 }
 
 TEST(OnePair, HasTheSameBitsOnAllInstructionSets) {
@@ -167,25 +148,6 @@ TEST(OnePair, LeavesToTheMachineryWhatNeedsMoreCare) {
   EXPECT_FALSE(contact_of(place({0.0, 0.0, 0.0}, {-1.0, 0.3, 1.0}, {-1.0, 0.2, 1.0})).has_value());
   EXPECT_FALSE(contact_of(place({0.1, 0.1, 0.0}, {0.1, 0.9, 0.0}, {0.9, 0.1, 0.0})).has_value());
   EXPECT_FALSE(contact_of(place({0.2, 0.2, -1.0}, {0.2, 0.2, 1.0}, {0.2, 0.2, 0.5})).has_value());
-}
-
-TEST(OnePair, IsOnlyForASingleContactWithoutRays) {
-  Meeting meeting(1);
-  EXPECT_TRUE(is_of_one_pair(meeting.input));
-  PatchInput other = meeting.input;
-  other.hits = meeting.hits;
-  EXPECT_FALSE(is_of_one_pair(other));
-  other = meeting.input;
-  other.max_contacts = 2;
-  EXPECT_FALSE(is_of_one_pair(other));
-  other = meeting.input;
-  other.believed_depth = 1e-3;
-  EXPECT_FALSE(is_of_one_pair(other));
-  other = meeting.input;
-  other.probe_a.ray = [](const void*, const Vec3&, const Vec3&, double, double*, std::uint32_t*) noexcept {
-    return false;
-  };
-  EXPECT_FALSE(is_of_one_pair(other));
 }
 
 }  // namespace

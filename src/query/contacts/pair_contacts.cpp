@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "odds/math/tolerances.hpp"
 #include "odds/query/ray.hpp"
@@ -10,6 +11,7 @@
 #include "query/contacts/flush_answer.hpp"
 #include "query/contacts/rough_contacts.hpp"
 #include "query/contacts/short_budget.hpp"
+#include "query/patch/one_pair.hpp"
 
 namespace odds::query {
 namespace {
@@ -158,8 +160,9 @@ void make_rough_contacts(const PosedMeshes& meshes, const Vec3* known_normal, bo
 /// depth remains that of the two along their own direction: along another they may overlap by as much as they are
 /// large.
 void look_around(const PosedMeshes& meshes, Pair::Implementation& pair, Spending& spending) noexcept {
-  constexpr double takes_us = 2.0;
-  if (!spending.may_make_contacts() || !(spending.left_us() > takes_us)) return;
+  constexpr double takes_us = 1.0;
+  if (!(spending.left_us() > takes_us)) return;
+  spending.reserve_for_contacts(pair.endings.single);
   for (Contact& contact : own_contacts(pair))
     contact.normal = direction_about(*pair.a, *pair.b, *pair.wide, meshes, contact);
   static_cast<void>(spending.may_finish_contacts());  // if this was too long the next run keeps more
@@ -199,12 +202,6 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
     make_contacts_over_runs(meshes, pose_b_in_a, known_normal, request, pair, spending);
     return;
   }
-  if (!spending.may_make_contacts()) {
-    (single ? pair.endings.single : pair.endings.patch).note(0);  // or it would never be tried again
-    make_rough_contacts(meshes, known_normal, moved_little, request, pair, spending);
-    note_unfinished(request, pair);
-    return;
-  }
   PatchInput input;
   input.hits = pair.hits.pairs();
   input.vertices_a = pair.a->mesh().vertices();
@@ -241,16 +238,30 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   const bool all = ended != Progressed::spent && !part;
   if (!all) input.believed_depth = believed_depth(meshes, pose_b_in_a, known_normal, pair);
   input.found_all = ended == Progressed::finished && pair.hits.size() <= input.most_pairs;
-  const Deadline deadline{[](void* state) noexcept { return !static_cast<Spending*>(state)->may_make_contacts(); },
-                          &spending};
-  const Deadline last{[](void* state) noexcept { return !static_cast<Spending*>(state)->may_finish_contacts(); },
-                      &spending};
-  keep(patches.build(input, deadline, last), pair);
-  if (pair.answer.contacts.empty()) return;
-  pair.answer.contact_pairs = patches.pairs_used();
-  pair.answer.contacts_complete = patches.finished() && all;
+  bool finished = true;
+  const auto one = single ? patch::contact_of_one_pair(input, pair.wide->patch) : std::nullopt;
+  if (one) {  // whatever the time: it takes no longer than a rough contact
+    keep({&*one, 1}, pair);
+    pair.answer.contact_pairs = 1;
+    spending.end_from_last_piece(pair.endings.last);
+  } else if (!spending.may_make_contacts()) {
+    (single ? pair.endings.single : pair.endings.patch).note(0);  // or it would never be tried again
+    make_rough_contacts(meshes, known_normal, moved_little, request, pair, spending);
+    note_unfinished(request, pair);
+    return;
+  } else {
+    const Deadline deadline{[](void* state) noexcept { return !static_cast<Spending*>(state)->may_make_contacts(); },
+                            &spending};
+    const Deadline last{[](void* state) noexcept { return !static_cast<Spending*>(state)->may_finish_contacts(); },
+                        &spending};
+    keep(patches.build(input, deadline, last), pair);
+    if (pair.answer.contacts.empty()) return;
+    pair.answer.contact_pairs = patches.pairs_used();
+    finished = patches.finished();
+  }
+  pair.answer.contacts_complete = finished && all;
   const bool whole = pair.answer.contacts_complete && ended == Progressed::finished;
-  if (!patches.finished() || (!all && pair.hits.size() < pair.hits.capacity())) note_unfinished(request, pair);
+  if (!finished || (!all && pair.hits.size() < pair.hits.capacity())) note_unfinished(request, pair);
   if (!pair.answer.contacts_complete) {
     limit_to_believed(meshes, 1.0, pair);
   } else if (!whole && request.max_contacts > 1 && pair.known_depth.known() && moved_little) {
@@ -258,9 +269,9 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   } else if (!whole) {  // a single contact, or one far from where the depth was known
     for (Contact& contact : own_contacts(pair)) contact.depth = std::min(contact.depth, most_depth);
   }
-  if (single && patches.finished()) look_around(meshes, pair, spending);
+  if (single && finished) look_around(meshes, pair, spending);
   const bool flush = answer_by_flat_faces(meshes, pose_b_in_a, request, pair, spending);
-  if (patches.finished() && request.max_contacts > 1) {
+  if (finished && request.max_contacts > 1) {
     const Contact& first = pair.answer.contacts.front();
     pair.known_direction.note(first.position, first.normal, pose_b_in_a, smaller, pair.answer.contacts_complete);
   }
@@ -271,7 +282,7 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   };
   const bool rests =
       pair.carried.rests(pair.answer.contacts.front().position, pose_b_in_a, request.carry_motion * smaller, smaller);
-  const bool as_known = rests && known_normal != nullptr && patches.finished() &&
+  const bool as_known = rests && known_normal != nullptr && finished &&
                         std::all_of(pair.answer.contacts.begin(), pair.answer.contacts.end(), is_known);
   const bool held_back = flush && !pair.flush.gives_all();
   if (!held_back && (pair.answer.contacts_complete || (as_known && request.max_contacts > 1))) {
@@ -283,7 +294,7 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   } else if (request.max_contacts > 1 && !flush) {
     if (knows_nothing_here(moved_little, pair)) {
       note_first_contact(meshes, pair);
-    } else if (patches.finished() && patches.pairs_used() >= pairs_of_a_depth) {
+    } else if (finished && pair.answer.contact_pairs >= pairs_of_a_depth) {
       note_part(meshes, pair);
     }
   }

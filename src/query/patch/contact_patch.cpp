@@ -6,11 +6,9 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "odds/math/tolerances.hpp"
 #include "query/patch/eight.hpp"
-#include "query/patch/one_pair.hpp"
 #include "query/patch/scratch.hpp"
 #include "query/spread_step.hpp"
 
@@ -116,17 +114,6 @@ void PatchBuilder::Scratch::sort_by_patch(std::size_t count, Watch& watch) noexc
   for (std::uint32_t i = 0; i < piece_count && !watch.late_in_small_steps(i); ++i) {
     if (pieces[i].component < count) by_patch[next[pieces[i].component]++] = i;
   }
-}
-
-/// False if the pair needs more care, or the time is up.
-bool PatchBuilder::Scratch::make_of_one_pair(const PatchInput& input, Watch& watch) noexcept {
-  if (watch.late()) return false;
-  const std::optional<Contact> contact = patch::contact_of_one_pair(input, *kernels);
-  if (!contact) return false;
-  finished = true;
-  pair_count = contact_count = 1;
-  contacts[0] = *contact;
-  return true;
 }
 
 /// False if the time was up before all was done.
@@ -311,7 +298,6 @@ std::span<const Contact> PatchBuilder::build(const PatchInput& input, const Dead
   Scratch& s = *scratch_;
   s.kernels = input.kernels != nullptr ? input.kernels : &patch::best_kernels();
   Watch watch(deadline);
-  if (patch::is_of_one_pair(input) && s.make_of_one_pair(input, watch)) return {s.contacts.data(), s.contact_count};
   s.place_pairs(input, watch);
   s.piece_count = 0;
   s.finished = s.make_patches(input, watch);

@@ -115,7 +115,8 @@ Vec3 snap_to_face(const PatchView& view, const Vec3& normal, Watch& watch) noexc
 /// Compares directions by the overlap along them, on a sample of the patch's triangle pairs.
 class LeastOverlap {
  public:
-  LeastOverlap(const PatchView& view, Watch& watch) noexcept : view_(view), watch_(watch), side_(side_of_bodies(view.input, view.sums.centre(view.rim.origin))) {
+  LeastOverlap(const PatchView& view, Watch& watch) noexcept
+      : view_(view), watch_(watch), side_(side_of_bodies(view.input, view.sums.centre(view.rim.origin))) {
     const Vec3 mean = unit_or_zero(view.sums.normals_b - view.sums.normals_a);
     Vec3 pressing = mean == Vec3::Zero() ? unit_or_zero(side_) : mean;
     if (pressing == Vec3::Zero()) pressing = unit_or_zero(view.input.reference_a - view.input.reference_b);

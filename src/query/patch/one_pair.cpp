@@ -120,11 +120,6 @@ Contact contact_along(const PlacedPair& placed, const RimPiece& piece, const Vec
 
 }  // namespace
 
-bool is_of_one_pair(const PatchInput& input) noexcept {
-  return input.hits.size() == 1 && input.max_contacts <= 1 && !input.probe_a && !input.probe_b &&
-         input.believed_depth == 0.0;
-}
-
 std::optional<Contact> contact_of_one_pair(const PatchInput& input, const Kernels& kernels) noexcept {
   PlacedPair placed;
   if (!place_one(input, placed)) return std::nullopt;

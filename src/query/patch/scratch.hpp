@@ -71,7 +71,6 @@ struct PatchBuilder::Scratch {
   [[nodiscard]] Indices pieces_of(std::size_t patch) const noexcept {
     return {by_patch.data() + first_of_patch[patch], first_of_patch[patch + 1] - first_of_patch[patch]};
   }
-  bool make_of_one_pair(const PatchInput& input, patch::Watch& watch) noexcept;
   bool make_patches(const PatchInput& input, patch::Watch& watch) noexcept;
   void straighten(const PatchInput& input, std::span<const patch::RimSums> sums, patch::Watch& watch) noexcept;
   void make_hasty_contacts(const PatchInput& input, const Deadline& last) noexcept;

@@ -293,8 +293,7 @@ class PatchKernel {
     const Triangle a = {in_frame(sight.axes, (at_a[0] + shift) - origin),
                         in_frame(sight.axes, (at_a[1] + shift) - origin),
                         in_frame(sight.axes, (at_a[2] + shift) - origin)};
-    const Triangle b = {P::all(zeros), in_frame(sight.axes, at_b[1] - origin),
-                        in_frame(sight.axes, at_b[2] - origin)};
+    const Triangle b = {P::all(zeros), in_frame(sight.axes, at_b[1] - origin), in_frame(sight.axes, at_b[2] - origin)};
     D height[3];
     T over[3];
     D deepest = D::all(0.0);
@@ -313,8 +312,7 @@ class PatchKernel {
   ODDS_LANES_INLINE static void keep(const Wanted& wanted, std::size_t kind, const D& depth, const T& is_there,
                                      D& deepest, patch::CornersOfEight& corners) noexcept {
     depth.store(corners.depth[kind]);
-    const T deep =
-        is_there & (wanted.least_depth <= depth) & (depth <= D::all(std::numeric_limits<double>::max()));
+    const T deep = is_there & (wanted.least_depth <= depth) & (depth <= D::all(std::numeric_limits<double>::max()));
     deepest = max(deepest, choose(deep, depth, deepest));
     corners.found.data()[kind] = static_cast<std::uint8_t>(deep.bits() & wanted.lanes);
   }
@@ -331,8 +329,8 @@ class PatchKernel {
           is_seen(D::all(tolerances::edge_on * tolerances::edge_on) * (seen + along.z * along.z) < seen) {}
   };
 
-  ODDS_LANES_INLINE static void cross_sides(const Triangle& a, const Triangle& b, const Wanted& wanted,
-                                            D& deepest, patch::CornersOfEight& found) noexcept {
+  ODDS_LANES_INLINE static void cross_sides(const Triangle& a, const Triangle& b, const Wanted& wanted, D& deepest,
+                                            patch::CornersOfEight& found) noexcept {
     const Side sides_a[3] = {{a[0], a[1]}, {a[1], a[2]}, {a[2], a[0]}};
     const Side sides_b[3] = {{b[0], b[1]}, {b[1], b[2]}, {b[2], b[0]}};
     const D low = D::all(-tolerances::on_border);
