@@ -108,10 +108,10 @@ TEST(SlidContacts, TurnWithTheSurface) {
   // By then the point itself has come off the surface, by what a ball's does.
   ASSERT_EQ(slid.pair.late->manifold().write(pose(angle), size, near, 0.01), 1u);
   const Vec3 into_a = -Vec3(std::sin(angle), 0.0, std::cos(angle));
-  EXPECT_GT(near[0].normal.dot(into_a), std::cos(0.035)) << "two facets lean by half of their size each";
-  EXPECT_LT(slid.found[0].normal.dot(into_a), std::cos(0.05)) << "as it was it leans";
+  EXPECT_GT(near[0].normal.dot(into_a), std::cos(0.05)) << "two facets lean by what it is to their corners each";
+  EXPECT_LT(slid.found[0].normal.dot(into_a), std::cos(0.065)) << "as it was it leans";
   const double from_centre = (pose(angle).translation - pose(0.02).translation.normalized() * 0.5).norm();
-  EXPECT_NEAR(near[0].depth, 1.0 - from_centre, 1e-3);
+  EXPECT_NEAR(near[0].depth, 1.0 - from_centre, 1.5e-3);
 }
 
 }  // namespace

@@ -224,8 +224,12 @@ inline constexpr double steep = 0.05;
 inline constexpr double flat_overlap = 0.05;
 /// How far inside of a spike's surface the next place is looked for, as a part of the step.
 inline constexpr double inside_surface = 1e-3;  ///< see flat_overlap
-/// An overlap that changes by less than this part of itself across the patch is level.
-inline constexpr double level_overlap = 0.01;
+/// An overlap that is nowhere deeper by more than this part of itself is level: more rays would cost time and hardly move
+/// a force. Test: SummitsOfConvex.BodiesAreFound.
+inline constexpr double level_overlap = 0.001;
+/// What is deeper than the deepest place that was known by more than this part of it is another place, and not the
+/// next corner of the same facets. Test: ContactPatch.SphereOnPlaneHasOneDeepContact.
+inline constexpr double another_summit = 0.01;
 /// Contacts of a patch nearer to each other than this part of the depth, or of the lever arm, are one.
 inline constexpr double spacing_by_depth = 0.5;
 inline constexpr double spacing_by_lever = 1e-3;  ///< see spacing_by_depth

@@ -10,6 +10,7 @@
 #include "odds/math/tolerances.hpp"
 #include "query/patch/eight.hpp"
 #include "query/patch/scratch.hpp"
+#include "query/patch/summit.hpp"
 #include "query/spread_step.hpp"
 
 namespace odds::query {
@@ -185,12 +186,23 @@ std::size_t PatchBuilder::Scratch::probe(const PatchInput& input, const patch::R
   };
   std::size_t count = 0;
   Witness inside;
-  if (measure(centre, inside)) measured[count++] = inside;
+  patch::Summit summit(input, frame, centre);
+  Witness start;  // the deepest, where it was measured
+  const auto note = [&](const Witness& w) noexcept {
+    summit.add(w);
+    if (count == 0 || w.depth > start.depth) start = w;
+  };
+  if (measure(centre, inside)) {
+    note(inside);
+    measured[count++] = inside;
+  }
   const bool has_centre = count > 0;
   for (std::size_t i = 0; i < spread.count; ++i) {
     Witness w = spread.witnesses[i];
     const Vec3 place = w.middle();
-    if (measure(place + 0.02 * (centre - place), inside) && inside.depth > w.depth) {
+    const bool is_measured = measure(place + 0.02 * (centre - place), inside);
+    note(is_measured && inside.depth > w.depth ? inside : w);
+    if (is_measured && inside.depth > w.depth) {
       w = inside;
       w.on_a = place + frame.normal * frame.normal.dot(inside.on_a - place);
       w.on_b = place + frame.normal * frame.normal.dot(inside.on_b - place);
@@ -208,17 +220,25 @@ std::size_t PatchBuilder::Scratch::probe(const PatchInput& input, const patch::R
       input.previous_normal->dot(frame.normal) > tolerances::same_as_before &&
       is_within(*input.previous_position, deepest.depth) && measure(*input.previous_position, inside) &&
       inside.depth > deepest.depth) {
+    note(inside);
     deepest = inside;
     measured[count++] = inside;
   }
-  const Witness higher =
-      patch::climb(input, deepest, has_centre ? measured[0] : deepest, frame.normal, 0.25 * reach, reach, watch);
-  if (higher.depth > (1.0 + tolerances::level_overlap) * deepest.depth) measured[count++] = deepest = higher;
+  Witness round_about = deepest;  // where it is roundest: among facets its lowest corner lies beside that
+  const Witness higher = summit.climb(start, has_centre ? measured[0] : start, 0.25 * reach, reach, watch);
+  if (higher.depth > (1.0 + tolerances::another_summit) * deepest.depth) {
+    measured[count++] = deepest = round_about = higher;
+  } else if (higher.depth > (1.0 + tolerances::level_overlap) * std::max(start.depth, deepest.depth)) {
+    // A few facets away: the same place.
+    const auto same = [&](const Witness& w) noexcept { return w.depth == deepest.depth && w.on_a == deepest.on_a; };
+    *std::find_if(measured.begin(), measured.begin() + static_cast<std::ptrdiff_t>(count) - 1, same) = higher;
+    deepest = higher;
+  }
   std::size_t kept = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const Witness& w = measured[i];
     const double linear = 0.5 * (w.depth + deepest.depth);
-    const bool round = w.depth < 0.5 * deepest.depth && measure(0.5 * (w.middle() + deepest.middle()), inside) &&
+    const bool round = w.depth < 0.5 * deepest.depth && measure(0.5 * (w.middle() + round_about.middle()), inside) &&
                        inside.depth > linear + tolerances::round_overlap * deepest.depth;
     if (!round) measured[kept++] = patch::pulled_in(w, deepest);
   }

@@ -80,27 +80,6 @@ class Exit {
   ProbeRay behind_;
 };
 
-/// How the height of a surface along `up` changes across it.
-Vec3 slope_of(const Vec3& surface_normal, const Vec3& up) noexcept {
-  const double facing = surface_normal.dot(up);
-  if (std::abs(facing) <= tolerances::steep * surface_normal.norm()) return Vec3::Zero();  // a wall tells nothing
-  return up - surface_normal / facing;
-}
-
-/// How the heights of both surfaces change across the normal.
-struct Slopes {
-  Vec3 of_a;
-  Vec3 of_b;
-
-  [[nodiscard]] Vec3 of_overlap() const noexcept { return of_b - of_a; }
-};
-
-Slopes slopes_at(const PatchInput& input, const Witness& w, const Vec3& normal) noexcept {
-  const Vec3 normal_a = normal_of({input.probe_a, input.vertices_a, input.triangles_a, input.solid_a}, w.triangle_a);
-  const Vec3 normal_b = normal_of({input.probe_b, input.vertices_b, input.triangles_b, input.solid_b}, w.triangle_b);
-  return {slope_of(normal_a, normal), slope_of(input.pose_b_in_a.rotation * normal_b, normal)};
-}
-
 }  // namespace
 
 double pair_depth(const PlacedPair& placed, const Frame& frame, const Vec3& shift) noexcept {
@@ -143,67 +122,13 @@ bool probe_overlap(const PatchInput& input, const Vec3& point, const Vec3& norma
   return probe_line(input, point, normal, reach, watch, witness) == Probing::overlap;
 }
 
-Witness climb(const PatchInput& input, const Witness& start, const Witness& beside, const Vec3& normal, double radius,
-              double reach, Watch& watch) noexcept {
-  constexpr int most_steps = 10;
-  constexpr int most_in_vain = 2;
-  Witness best = start;
-  Slopes slopes = slopes_at(input, best, normal);
-  Vec3 slope = slopes.of_overlap();
-  const auto probe_at = [&](const Vec3& place, Witness& next) noexcept {
-    return probe_overlap(input, place, normal, reach, watch, next);
-  };
-  // A spike that leans may lie beside the middle: it is followed just inside of its own surface. What is flat is none.
-  const bool may_lean = start.depth > tolerances::flat_overlap * radius;
-  const auto probe_beyond = [&](const Vec3& way, Witness& next) noexcept {
-    if (probe_at(best.middle() + way, next)) return true;
-    if (!may_lean) return false;
-    const double inside = tolerances::inside_surface * way.norm();
-    return slopes.of_b.squaredNorm() > slopes.of_a.squaredNorm()
-               ? probe_at(best.on_b + way + (slopes.of_b.dot(way) - inside) * normal, next)
-               : probe_at(best.on_a + way + (slopes.of_a.dot(way) + inside) * normal, next);
-  };
-  Vec3 across = Vec3::Zero();  // unit, across the ridge that has been reached; zero: none yet
-  double step = -1.0;
-  int in_vain = 0;  // steps out of the overlap, until there was one within it; -1: no longer counted
-  for (int i = 0; i < most_steps && !watch.late(); ++i) {
-    const Vec3 along = slope - across * across.dot(slope);
-    const double steepness = along.norm();
-    if (!(steepness * radius > tolerances::level_overlap * best.depth) || !std::isfinite(steepness)) break;
-    if (step < 0.0) step = std::clamp(best.depth / steepness, 0.05 * radius, 0.5 * radius);
-    const Vec3 uphill = along / steepness;
-    Witness next;
-    if (!probe_beyond(step * uphill, next)) {
-      step *= 0.35;  // out of the overlap
-      // At the side of a spike uphill leads out of it whatever the step.
-      if (may_lean && beside.depth < start.depth && in_vain >= 0 && ++in_vain == most_in_vain) {
-        best = beside;
-        slopes = slopes_at(input, best, normal);
-        slope = slopes.of_overlap();
-        step = -1.0;
-        in_vain = -1;
-      }
-      continue;
-    }
-    in_vain = -1;
-    const Slopes next_slopes = slopes_at(input, next, normal);
-    const Vec3 next_slope = next_slopes.of_overlap();
-    const double still_uphill = next_slope.dot(uphill);
-    if (next.depth > best.depth) {
-      step *= still_uphill > 0.0 ? 1.6 : steepness / (steepness - still_uphill);
-      best = next;
-      slopes = next_slopes;
-      // Between two facets of a spike the way leads along their ridge.
-      slope = may_lean ? Vec3(0.5 * (slope + next_slope)) : next_slope;
-    } else if (still_uphill < 0.0 && across == Vec3::Zero()) {
-      // Over the ridge: the two slopes differ across it, and agree along it.
-      across = (slope - next_slope).normalized();
-      step = 0.5 * radius;
-    } else {
-      step *= 0.35;
-    }
-  }
-  return best.depth > start.depth ? best : start;
+Vec3 normal_in_a(const PatchInput& input, std::uint32_t triangle) noexcept {
+  return normal_of({input.probe_a, input.vertices_a, input.triangles_a, input.solid_a}, triangle);
+}
+
+Vec3 normal_in_b(const PatchInput& input, std::uint32_t triangle) noexcept {
+  return input.pose_b_in_a.rotation *
+         normal_of({input.probe_b, input.vertices_b, input.triangles_b, input.solid_b}, triangle);
 }
 
 }  // namespace odds::query::patch

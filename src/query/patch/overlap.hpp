@@ -122,11 +122,8 @@ enum class Probing : std::uint8_t {
 [[nodiscard]] bool probe_overlap(const PatchInput& input, const Vec3& point, const Vec3& normal, double reach,
                                  Watch& watch, Witness& witness) noexcept;
 
-/// Walks from a witness of probe_overlap uphill to where the overlap is deepest, by the slopes of the two triangles and
-/// a few more probes, no step longer than `radius`. The overlap of a ring or a crescent is deepest along a ridge that
-/// its centre misses. Where no way leads on from `start`, goes on from another witness, `beside` it. Returns the
-/// deepest found, at least `start`.
-[[nodiscard]] Witness climb(const PatchInput& input, const Witness& start, const Witness& beside, const Vec3& normal,
-                            double radius, double reach, Watch& watch) noexcept;
+/// Normals of triangles of the meshes, both in A's frame, not of unit length; zero for an index out of range.
+[[nodiscard]] Vec3 normal_in_a(const PatchInput& input, std::uint32_t triangle) noexcept;
+[[nodiscard]] Vec3 normal_in_b(const PatchInput& input, std::uint32_t triangle) noexcept;
 
 }  // namespace odds::query::patch

@@ -1,0 +1,218 @@
+#include "query/patch/summit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "odds/math/tolerances.hpp"
+
+namespace odds::query::patch {
+namespace {
+
+using Place = Roof::Place;
+
+double dot(const Place& x, const Place& y) noexcept { return x.u * y.u + x.v * y.v; }
+Place along(const Place& from, double t, const Place& way) noexcept { return {from.u + t * way.u, from.v + t * way.v}; }
+
+/// The planes that meet in a roof's place, a few of them.
+struct Ridge {
+  static constexpr std::size_t most = 4;
+  std::array<Place, most> slopes;
+  std::size_t count = 0;
+  double height = std::numeric_limits<double>::infinity();
+
+  Ridge(const Roof& roof, const Place& place, double rounding) noexcept : height(roof.at(place)) {
+    for (const Roof::Plane& plane : roof) {
+      if (count < most && plane.at(place) <= height + rounding && !has(plane.slope)) slopes[count++] = plane.slope;
+    }
+  }
+  /// Triangles of a flat face have one plane.
+  [[nodiscard]] bool has(const Place& slope) const noexcept {
+    return std::any_of(slopes.begin(), slopes.begin() + static_cast<std::ptrdiff_t>(count), [&](const Place& known) {
+      return std::abs(known.u - slope.u) + std::abs(known.v - slope.v) <=
+             1e-12 * (1.0 + std::abs(slope.u) + std::abs(slope.v));
+    });
+  }
+  /// How fast it rises, at least.
+  [[nodiscard]] double rate(const Place& way) const noexcept {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < count; ++i) least = std::min(least, dot(slopes[i], way));
+    return count > 0 ? least : 0.0;
+  }
+};
+
+/// The point nearest to the origin of the convex hull of some points; the origin if it is inside.
+Place nearest_to_origin(std::span<const Place> points) noexcept {
+  const auto is_nearest = [&](const Place& p) noexcept {
+    const double least = dot(p, p) * (1.0 - 1e-9);
+    return std::all_of(points.begin(), points.end(), [&](const Place& q) noexcept { return dot(p, q) >= least; });
+  };
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (is_nearest(points[i])) return points[i];
+    for (std::size_t j = 0; j < i; ++j) {
+      const Place side = along(points[j], -1.0, points[i]);
+      const double length = dot(side, side);
+      const double t = length > 0.0 ? -dot(points[i], side) / length : 0.0;
+      if (!(t > 0.0 && t < 1.0)) continue;
+      const Place between = along(points[i], t, side);
+      if (is_nearest(between)) return between;
+    }
+  }
+  return {0.0, 0.0};
+}
+
+/// The way on which the sum of two roofs rises fastest; zero at the top.
+Place steepest(const Ridge& a, const Ridge& b) noexcept {
+  constexpr Place level{0.0, 0.0};
+  std::array<Place, Ridge::most * Ridge::most> sums;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < std::max<std::size_t>(a.count, 1); ++i) {
+    for (std::size_t j = 0; j < std::max<std::size_t>(b.count, 1); ++j) {
+      sums[count++] = along(i < a.count ? a.slopes[i] : level, 1.0, j < b.count ? b.slopes[j] : level);
+    }
+  }
+  return nearest_to_origin({sums.data(), count});
+}
+
+/// How far along a way another of a roof's planes becomes the lowest.
+double way_to_next(const Roof& roof, const Ridge& ridge, const Place& place, const Place& way) noexcept {
+  const double rate = ridge.rate(way);
+  double least = std::numeric_limits<double>::infinity();
+  for (const Roof::Plane& plane : roof) {
+    const double above = plane.at(place) - ridge.height;
+    const double closing = rate - dot(plane.slope, way);
+    if (closing > 1e-12 * (1.0 + std::abs(rate))) least = std::min(least, std::max(above, 0.0) / closing);
+  }
+  return least;
+}
+
+}  // namespace
+
+void Roof::add(const Plane& plane) noexcept {
+  const auto is_same = [&](const Plane& known) noexcept { return known.triangle == plane.triangle; };
+  if (count_ < most && std::none_of(begin(), end(), is_same)) planes_[count_++] = plane;
+}
+
+void Roof::leave_out_below(const Place& place, double height, double rounding) noexcept {
+  const auto kept = std::remove_if(planes_.begin(), planes_.begin() + static_cast<std::ptrdiff_t>(count_),
+                                   [&](const Plane& plane) noexcept { return plane.at(place) < height - rounding; });
+  count_ = static_cast<std::size_t>(kept - planes_.begin());
+}
+
+double Roof::at(const Place& place) const noexcept {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Plane& plane : *this) least = std::min(least, plane.at(place));
+  return least;
+}
+
+double Roof::steepness(const Place& place) const noexcept {
+  double least = std::numeric_limits<double>::infinity();
+  double squared = 0.0;
+  for (const Plane& plane : *this) {
+    const double height = plane.at(place);
+    if (!(height < least)) continue;
+    least = height;
+    squared = dot(plane.slope, plane.slope);
+  }
+  return squared;
+}
+
+Place Summit::place_of(const Vec3& point) const noexcept {
+  const Vec3 away = point - centre_;
+  return {frame_.u.dot(away), frame_.v.dot(away)};
+}
+
+void Summit::add(const Witness& measured) noexcept {
+  const auto add_plane = [this](const Vec3& normal, const Vec3& point, double sign, bool solid, std::uint32_t triangle,
+                                Roof& roof) noexcept {
+    const double facing = normal.dot(frame_.normal);
+    // A wall bounds nothing above it, nor does the other side of a solid.
+    if (!((solid ? sign * facing : std::abs(facing)) > tolerances::steep * normal.norm())) return;
+    const Place slope{-sign * normal.dot(frame_.u) / facing, -sign * normal.dot(frame_.v) / facing};
+    roof.add({sign * height_of(point) - dot(slope, place_of(point)), slope, triangle});
+  };
+  add_plane(normal_in_a(input_, measured.triangle_a), measured.on_a, -1.0, input_.solid_a, measured.triangle_a, of_a_);
+  add_plane(normal_in_b(input_, measured.triangle_b), measured.on_b, 1.0, input_.solid_b, measured.triangle_b, of_b_);
+}
+
+Place Summit::highest(const Place& from, double radius) const noexcept {
+  constexpr int most_ridges = 12;
+  const double rounding = 1e-9 * radius;
+  Place place = from;
+  for (int i = 0; i < most_ridges; ++i) {
+    const Ridge a(of_a_, place, rounding);
+    const Ridge b(of_b_, place, rounding);
+    const Place way = steepest(a, b);
+    const double fastest = std::max(std::abs(way.u), std::abs(way.v));
+    if (!(fastest > 1e-9)) break;
+    const auto room = [&](double at, double start, double rate) noexcept {
+      return rate != 0.0 ? (std::copysign(radius, rate) - (at - start)) / rate
+                         : std::numeric_limits<double>::infinity();
+    };
+    const double limit = std::min(room(place.u, from.u, way.u), room(place.v, from.v, way.v));
+    const double next = std::min(way_to_next(of_a_, a, place, way), way_to_next(of_b_, b, place, way));
+    place = along(place, std::min(next, limit), way);
+    if (!(next < limit)) break;
+  }
+  return place;
+}
+
+bool Summit::measure(const Place& place, const Witness& best, bool may_lean, double reach, Watch& watch,
+                     Witness& found) noexcept {
+  const double top = of_b_.at(place);
+  const double bottom = -of_a_.at(place);
+  const bool known = std::isfinite(top) && std::isfinite(bottom);
+  const auto at = [&](double height) noexcept {
+    const Vec3 point = centre_ + place.u * frame_.u + place.v * frame_.v + height * frame_.normal;
+    if (!probe_overlap(input_, point, frame_.normal, reach, watch, found)) return false;
+    add(found);
+    return true;
+  };
+  if (at(known ? 0.5 * (top + bottom) : height_of(best.middle()))) return true;
+  if (!may_lean || !known) return false;
+  // A spike that leans may lie beside the middle: it is followed just inside of its own surface.
+  const Place from = place_of(best.middle());
+  const double inside = tolerances::inside_surface * std::hypot(place.u - from.u, place.v - from.v);
+  const bool is_of_b = of_b_.steepness(place) > of_a_.steepness(place);
+  return at(is_of_b ? top - inside : bottom + inside);
+}
+
+Witness Summit::climb(const Witness& start, const Witness& beside, double radius, double reach, Watch& watch) noexcept {
+  constexpr int most_steps = 10;
+  constexpr int most_in_vain = 2;
+  constexpr double shorter = 0.35;  // where a step led out of the overlap
+  const double rounding = 1e-9 * radius;
+  const bool may_lean = start.depth > tolerances::flat_overlap * 2.0 * radius;
+  Witness best = start;
+  double step = radius;
+  int in_vain = 0;  // steps out of the overlap, until there was one within it; -1: no longer counted
+  for (int i = 0; i < most_steps && !watch.late(); ++i) {
+    const Place from = place_of(best.middle());
+    // Of surfaces that are not convex what was measured elsewhere may deny what is here.
+    of_a_.leave_out_below(from, -height_of(best.on_a), rounding);
+    of_b_.leave_out_below(from, height_of(best.on_b), rounding);
+    Place next = highest(from, step);
+    const auto leads_on = [&]() noexcept {
+      return of_a_.at(next) + of_b_.at(next) > (1.0 + tolerances::level_overlap) * best.depth;
+    };
+    if (step < radius && !leads_on()) next = highest(from, step = radius);
+    if (!leads_on()) break;
+    Witness found;
+    if (measure(next, best, may_lean, reach, watch, found)) {
+      in_vain = -1;
+      if (found.depth > best.depth) best = found;
+      continue;
+    }
+    step = shorter * std::max(std::abs(next.u - from.u), std::abs(next.v - from.v));
+    // At the side of a spike uphill leads out of it whatever the step.
+    if (may_lean && beside.depth < start.depth && in_vain >= 0 && ++in_vain == most_in_vain) {
+      best = beside;
+      step = radius;
+      in_vain = -1;
+    }
+  }
+  return best.depth > start.depth ? best : start;
+}
+
+}  // namespace odds::query::patch
