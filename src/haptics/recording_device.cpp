@@ -7,16 +7,27 @@ RecordingDevice::RecordingDevice(std::unique_ptr<Device> inner, std::size_t capa
     : inner_(std::move(inner)), states_(capacity) {}
 
 bool RecordingDevice::read(std::int64_t now_ns, DeviceState& state) noexcept {
-  if (!inner_->read(now_ns, state)) return false;
-  const bool later = used_ == 0 || state.t_ns > states_[used_ - 1].t_ns;
+  const bool told = inner_->read(now_ns, state);
   DeviceState usable = state;  // what is recorded can be replayed
-  if (!state.fresh || !later || !make_usable(usable)) return true;
-  if (used_ < states_.size()) {
-    states_[used_++] = usable;
-  } else {
-    ++lost_;
+  if (told && make_usable(usable)) {
+    note(now_ns, usable, state.fresh);
+  } else if (written_ > 0) {
+    note(now_ns, states_[written_ - 1], false);
   }
-  return true;
+  return told;
+}
+
+void RecordingDevice::note(std::int64_t now_ns, const DeviceState& state, bool fresh) noexcept {
+  const bool again = written_ > 0 && now_ns <= states_[written_ - 1].t_ns;
+  if (again && now_ns < states_[written_ - 1].t_ns) return;
+  if (!again && written_ == states_.size()) {
+    lost_ += fresh ? 1 : 0;
+    return;
+  }
+  if (!again) ++written_;
+  states_[written_ - 1] = state;
+  states_[written_ - 1].t_ns = now_ns;
+  if (fresh) used_ = written_;
 }
 
 DeviceTrack RecordingDevice::track() const {

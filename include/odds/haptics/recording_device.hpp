@@ -9,8 +9,10 @@
 
 namespace odds::haptics {
 
-/// Passes every call on. Memory for the track is taken, and its pages touched, at construction; when it is full further
-/// states pass unrecorded and are counted.
+/// Passes every call on. What is recorded is what the loop knew at each of its times, whatever the device's own rate
+/// and stamps: where a read brings nothing new, or fails, the last state once more, so that a replay gives every tick
+/// what it had. Memory for the track is taken, and its pages touched, at construction; when it is full further states
+/// pass unrecorded and are counted.
 class RecordingDevice final : public Device {
  public:
   RecordingDevice(std::unique_ptr<Device> inner, std::size_t capacity);
@@ -23,14 +25,18 @@ class RecordingDevice final : public Device {
   bool enable_forces(bool on) noexcept override { return inner_->enable_forces(on); }
   [[nodiscard]] std::string_view last_error() const noexcept override { return inner_->last_error(); }
 
-  /// What was read so far: the fresh states that can be used, one per time of the loop. Not while the loop runs.
+  /// What was read so far, one state that can be used per time of the loop, the last one of that time; up to the last
+  /// that was fresh, for a track's end is silent when it is replayed. Not while the loop runs.
   [[nodiscard]] DeviceTrack track() const;
   [[nodiscard]] std::size_t lost() const noexcept { return lost_; }
 
  private:
+  void note(std::int64_t now_ns, const DeviceState& state, bool fresh) noexcept;
+
   std::unique_ptr<Device> inner_;
   std::vector<DeviceState> states_;
-  std::size_t used_ = 0;
+  std::size_t used_ = 0;     // up to the last that was fresh
+  std::size_t written_ = 0;  // with those after it, which count once something new follows
   std::size_t lost_ = 0;
 };
 
