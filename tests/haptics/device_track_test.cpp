@@ -87,6 +87,25 @@ TEST(DeviceTrack, InterpolatesBetweenRowsAndHoldsAfterTheLast) {
   EXPECT_TRUE(state.fresh);
 }
 
+// Of a camera, say: the last row lies between two ticks, so that it is the next tick that brings it.
+TEST(DeviceTrack, AnEndBetweenTwoTicksIsRecordedToo) {
+  const auto track = parse_track("t_ms,px_mm,py_m,pz_m,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n2.5,10,0,0,1,0,0,0\n", "a.csv");
+  ASSERT_TRUE(track.ok()) << track.error().message();
+  RecordingDevice recording(std::make_unique<ReplayDevice>(track.value()), 10);
+  std::vector<DeviceState> seen(6);
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    ASSERT_TRUE(recording.read(static_cast<std::int64_t>(i) * 1'000'000, seen[i]));
+  }
+  EXPECT_EQ(seen[3].position_m.x(), 0.01);
+  EXPECT_EQ(recording.track().states.size(), 4U);
+  ReplayDevice again(recording.track());
+  for (const DeviceState& expected : seen) {
+    DeviceState state;
+    ASSERT_TRUE(again.read(expected.t_ns, state));
+    EXPECT_TRUE(same_bits(state, expected)) << expected.t_ns;
+  }
+}
+
 // As people write them: few rows, far apart in time.
 TEST(DeviceTrack, WithoutVelocitiesAHandThatRestsHasNoneAndOneThatMovesThoseOfItsWay) {
   const auto track = parse_track(

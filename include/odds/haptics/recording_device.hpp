@@ -26,7 +26,7 @@ class RecordingDevice final : public Device {
   [[nodiscard]] std::string_view last_error() const noexcept override { return inner_->last_error(); }
 
   /// What was read so far, one state that can be used per time of the loop, the last one of that time; up to the last
-  /// that was fresh, for a track's end is silent when it is replayed. Not while the loop runs.
+  /// that was fresh or elsewhere, for a track's end is silent when it is replayed. Not while the loop runs.
   [[nodiscard]] DeviceTrack track() const;
   [[nodiscard]] std::size_t lost() const noexcept { return lost_; }
 
@@ -35,7 +35,7 @@ class RecordingDevice final : public Device {
 
   std::unique_ptr<Device> inner_;
   std::vector<DeviceState> states_;
-  std::size_t used_ = 0;     // up to the last that was fresh
+  std::size_t used_ = 0;     // up to the last that was fresh, or elsewhere
   std::size_t written_ = 0;  // with those after it, which count once something new follows
   std::size_t lost_ = 0;
 };
