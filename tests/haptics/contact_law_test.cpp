@@ -214,6 +214,36 @@ TEST_P(ContactLaw, WhatBeginsDeepLeavesNoFasterThanItMayBeCorrected) {
   EXPECT_GT(simulation->world().state({1}).pose.translation.z(), 0.0195) << "it is out";
 }
 
+// The correcting velocity bounds the force, and a soft row without a damper has little force for a velocity.
+TEST_P(ContactLaw, ASoftBodyIsCarriedByItsSpringHoweverSoft) {
+  constexpr double softness = 1.0 / 2000;
+  for (const int rate_hz : {500, 1000, 4000}) {
+    const auto simulation =
+        simulate(on_floor(moving("cube", "cube", 0, 0.0195, 0.5) + law() +
+                              "[effects.compliance]\nbody = \"cube\"\nstiffness_n_per_m = 2000\n[effects.damping]\n"
+                              "linear_per_s = 20\nangular_per_s = 20\n" +
+                              gravity,
+                          2.0, rate_hz));
+    run_ticks(*simulation, 2 * rate_hz);
+    const double sunk = 0.02 - simulation->world().state({1}).pose.translation.z();
+    const double springs = softness + (yields() ? 1.0 / 20000 : 0.0);
+    EXPECT_NEAR(sunk, 0.5 * g * springs, 0.1 * 0.5 * g * springs) << rate_hz;
+  }
+}
+
+TEST_P(ContactLaw, ASoftBodyThatBeginsDeepLeavesNoFasterThanItMayBeCorrected) {
+  const auto simulation =
+      simulate(on_floor(moving("ball", "ball", 0, 0.005) + law("max_correcting_velocity_m_per_s = 0.2\n") +
+                        "[effects.compliance]\nbody = \"ball\"\nstiffness_n_per_m = 500\n"));
+  double fastest = 0.0;
+  run_ticks(*simulation, 500, [&](int, const haptics::TickRecord&) {
+    fastest = std::max(fastest, simulation->world().state({1}).velocity_m_per_s.norm());
+  });
+  constexpr double push_of_a_tick_m_per_s = 0.001 * 500 * 0.015 / 0.1;  // of the spring, from below the bound
+  EXPECT_LT(fastest, 0.2 + push_of_a_tick_m_per_s);
+  EXPECT_GT(simulation->world().state({1}).pose.translation.z(), 0.0195) << "it is out";
+}
+
 TEST_P(ContactLaw, TheImpulseOfContactsCarriesTheWeight) {
   Result<Scene> parsed =
       parse_scene(trimmed(on_floor(moving("cube", "cube", 0, 0.0199, 0.5) + law() + gravity, 2.0)), "test.toml", ".");

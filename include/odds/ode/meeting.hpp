@@ -27,7 +27,10 @@ struct Surface {
   double restitution = 0.0;
   double restitution_from_m_per_s = 0.0;  ///< slower impacts do not bounce
   bool pushes = true;                     ///< false: depth makes no force, only approach is stopped
-  Vec3 surface_velocity = Vec3::Zero();   ///< m/s, world: how a's surface is carried along over b's
+  /// Step * stiffness + damping of this point before an effect has made it softer, N s/m; 0: none has. By this the
+  /// greatest correcting velocity bounds its force, so that a soft point carries as much as a hard one, only deeper.
+  double weight_of_law_ns_per_m = 0.0;
+  Vec3 surface_velocity = Vec3::Zero();  ///< m/s, world: how a's surface is carried along over b's
 };
 
 /// One point of contact, world frame.

@@ -9,19 +9,23 @@ namespace {
 class Compliance final : public Effect {
  public:
   Compliance(ode::BodyId body, double stiffness, double damping) : body_(body), k_(stiffness), b_(damping) {}
-  [[nodiscard]] std::uint32_t needs() const noexcept override { return need_patch; }
+  [[nodiscard]] std::uint32_t needs() const noexcept override { return need_patch | need_velocity; }
   [[nodiscard]] std::uint32_t stages() const noexcept override { return stage_meeting; }
   [[nodiscard]] std::string_view evaluates() const noexcept override { return "contacts"; }
   [[nodiscard]] std::string_view rests_on() const noexcept override { return "contact"; }
   [[nodiscard]] bool repeatable() const noexcept override { return true; }
-  std::uint32_t meet(const TickView&, ode::Meeting& meeting) noexcept override {
+  std::uint32_t meet(const TickView& tick, ode::Meeting& meeting) noexcept override {
     if (!involves(meeting, body_)) return 0;
     const double all = stiffness_of_all(meeting);
     for (ode::ContactPoint& point : meeting.contacts) {
-      double& k = point.surface.stiffness_n_per_m;
+      ode::Surface& surface = point.surface;
+      double& k = surface.stiffness_n_per_m;
       const double share = k / all;
+      if (!(surface.weight_of_law_ns_per_m > 0.0)) {
+        surface.weight_of_law_ns_per_m = tick.step_s * k + surface.damping_ns_per_m;
+      }
       k = in_series(k, k_ * share);
-      point.surface.damping_ns_per_m = b_ * share;
+      surface.damping_ns_per_m = b_ * share;
     }
     return static_cast<std::uint32_t>(meeting.contacts.size());
   }

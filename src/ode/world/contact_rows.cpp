@@ -82,14 +82,25 @@ bool can_be_solved(const ContactPoint& p) noexcept {
          s.surface_velocity.allFinite() && s.stiffness_n_per_m + s.damping_ns_per_m > 0.0;
 }
 
-dContact contact_rows(const ContactPoint& point, const dContactGeom& found, double step_s) noexcept {
+double greatest_correction(const ContactPoint& point, double step_s, double most_m_per_s) noexcept {
+  const Surface& surface = point.surface;
+  const double weight = step_s * surface.stiffness_n_per_m + surface.damping_ns_per_m;
+  const double apart = point.velocity_m_per_s.dot(point.normal);
+  if (!(surface.weight_of_law_ns_per_m > weight) || !(apart < most_m_per_s)) return most_m_per_s;
+  return apart + surface.weight_of_law_ns_per_m / weight * (most_m_per_s - apart);
+}
+
+dContact contact_rows(const ContactPoint& point, const dContactGeom& found, double step_s,
+                      double max_correcting_velocity_m_per_s) noexcept {
   const Surface& surface = point.surface;
   const double weight = step_s * surface.stiffness_n_per_m + surface.damping_ns_per_m;
   dContact contact{};
   contact.geom = found;
   Eigen::Map<Vec3>(contact.geom.pos) = point.position_m;
   Eigen::Map<Vec3>(contact.geom.normal) = point.normal;
-  contact.geom.depth = std::max(0.0, point.depth_m);
+  // Not by ODE's own bound, which knows one for all points: the spring is stretched no farther.
+  const double stretched = greatest_correction(point, step_s, max_correcting_velocity_m_per_s) * weight;
+  contact.geom.depth = std::clamp(point.depth_m, 0.0, stretched / surface.stiffness_n_per_m);
   contact.surface.mode = dContactSoftERP | dContactSoftCFM;
   contact.surface.soft_erp = surface.pushes ? step_s * surface.stiffness_n_per_m / weight : 0.0;
   contact.surface.soft_cfm = 1.0 / weight;

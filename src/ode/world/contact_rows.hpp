@@ -21,8 +21,14 @@ namespace odds::ode {
 /// False if a number is not finite or nothing would push: such a point must not reach the solver.
 [[nodiscard]] bool can_be_solved(const ContactPoint& point) noexcept;
 
+/// How fast the point's overlap may be pushed apart where the law's own contacts may be by `most_m_per_s`, m/s. More
+/// for a point that an effect has made softer: at the velocity of now both push alike, so that neither leaves faster.
+[[nodiscard]] double greatest_correction(const ContactPoint& point, double step_s, double most_m_per_s) noexcept;
+
 /// What ODE is told. With step h the row of the normal is v + lambda / (h k + b) = h k / (h k + b) depth / h: the
-/// backward Euler step of a spring and damper, stable for every stiffness and damping.
-[[nodiscard]] dContact contact_rows(const ContactPoint& point, const dContactGeom& found, double step_s) noexcept;
+/// backward Euler step of a spring and damper, stable for every stiffness and damping. The right side is held to the
+/// greatest correction; the world's own greatest correcting velocity must be infinite.
+[[nodiscard]] dContact contact_rows(const ContactPoint& point, const dContactGeom& found, double step_s,
+                                    double max_correcting_velocity_m_per_s) noexcept;
 
 }  // namespace odds::ode

@@ -33,15 +33,16 @@ dContact penalty_rows(const ContactPoint& point, const dContactGeom& found, dBod
   const double spring_n = surface.stiffness_n_per_m * std::max(0.0, point.depth_m);
   const double lag = step_s * surface.stiffness_n_per_m;  // by so much a compliant row is damped more
   const double apart = point.velocity_m_per_s.dot(point.normal);
-  const bool deep = spring_n > (lag + surface.damping_ns_per_m) * max_correcting_velocity_m_per_s - lag * apart;
+  const double correction = greatest_correction(point, step_s, max_correcting_velocity_m_per_s);
+  const bool deep = spring_n > (lag + surface.damping_ns_per_m) * correction - lag * apart;
   // Where it is too deep, or the spring is silent, the row is that of a compliant contact.
   double weight = lag + surface.damping_ns_per_m;
-  double at_rest = surface.pushes ? max_correcting_velocity_m_per_s : 0.0;  // m/s
+  double at_rest = surface.pushes ? correction : 0.0;  // m/s
   if (surface.pushes && !deep) {
     weight = std::max(surface.damping_ns_per_m, 1.0 / (softness * speed_per_force));
     at_rest = spring_n / weight;
   }
-  dContact contact = contact_rows(point, found, step_s);
+  dContact contact = contact_rows(point, found, step_s, max_correcting_velocity_m_per_s);
   contact.surface.mode |= dContactMotionN;
   if (surface.pushes) contact.surface.mode &= ~dContactBounce;  // it would take the spring's speed for an approach
   contact.surface.soft_erp = 0.0;

@@ -217,10 +217,10 @@ void World::Implementation::add_contact(const ContactPoint& point, const dContac
     return;
   }
   const Surface& surface = point.surface;
-  const dContact contact =
-      options.contact.law == ContactLaw::penalty
-          ? penalty_rows(point, found, a, b, options.step_s, options.contact.max_correcting_velocity_m_per_s)
-          : contact_rows(point, found, options.step_s);
+  const double most = options.contact.max_correcting_velocity_m_per_s;
+  const dContact contact = options.contact.law == ContactLaw::penalty
+                               ? penalty_rows(point, found, a, b, options.step_s, most)
+                               : contact_rows(point, found, options.step_s, most);
   dJointAttach(dJointCreateContact(world, contacts, &contact), a, b);
   ++summary.contacts;
   ++contacts_made;
@@ -287,6 +287,7 @@ Result<World> World::make(const WorldOptions& options) {
   made->space = dSimpleSpaceCreate(nullptr);  // the hash space and sweep-and-prune allocate where boxes overlap
   dSpaceSetCleanup(made->space, 0);
   made->contacts = dJointGroupCreate(0);
+  dWorldSetContactMaxCorrectingVel(made->world, dInfinity);  // each contact is bounded where its rows are made
   World world(std::move(made));
   world.set_contact(options.contact);
   world.set_gravity(options.gravity_m_per_s2);
@@ -461,13 +462,7 @@ std::uint32_t World::body_count() const noexcept { return static_cast<std::uint3
 
 void World::set_meeting_hook(const MeetingHook& hook) noexcept { implementation_->hook = hook; }
 
-void World::set_contact(const ContactModel& contact) noexcept {
-  implementation_->options.contact = contact;
-  // A penalty force is bounded where it is computed; here it is told as a speed.
-  dWorldSetContactMaxCorrectingVel(implementation_->world, contact.law == ContactLaw::penalty
-                                                               ? dReal{dInfinity}
-                                                               : contact.max_correcting_velocity_m_per_s);
-}
+void World::set_contact(const ContactModel& contact) noexcept { implementation_->options.contact = contact; }
 
 void World::set_gravity(const Vec3& g) noexcept {
   implementation_->options.gravity_m_per_s2 = g;
