@@ -32,6 +32,12 @@ void copy(const ode::StepSummary& step, TickRecord& record) {
   record.contact_work_j = step.contact_work_j;
 }
 
+/// How far a body's mesh reaches from a point of its frame: by its bounding box, which is no nearer.
+double reach_m(const ode::World& world, ode::BodyId body, const Vec3& from_m) noexcept {
+  const mesh::TriangleMesh& mesh = world.shape(body)->mesh();
+  return (mesh.lower() - from_m).cwiseAbs().cwiseMax((mesh.upper() - from_m).cwiseAbs()).norm();
+}
+
 }  // namespace
 
 Renderer::Renderer(ode::World& world, const std::optional<Hand>& hand, EffectSet& effects, AllocationCount allocations)
@@ -177,9 +183,18 @@ TickView Renderer::view(std::int64_t now_ns) noexcept {
 
 std::uint32_t Renderer::steps_needed() const noexcept {
   if (substeps_.most <= 1) return 1;
-  double fastest = hand_ ? (state_.position_m - before_.position_m).norm() / period_s_ : 0.0;
+  double fastest = 0.0;  // of all points of all bodies
+  if (hand_) {
+    const double turned =
+        state_.orientation.angularDistance(before_.orientation) * reach_m(*world_, hand_->tool, Vec3::Zero());
+    fastest = ((state_.position_m - before_.position_m).norm() + turned) / period_s_;
+  }
   for (std::uint32_t i = 0; i < world_->body_count(); ++i) {
-    if (world_->is_dynamic({i})) fastest = std::max(fastest, world_->state({i}).velocity_m_per_s.norm());
+    if (!world_->is_dynamic({i})) continue;
+    const ode::BodyState body = world_->state({i});
+    const double spin = body.angular_velocity_rad_per_s.norm();
+    fastest =
+        std::max(fastest, body.velocity_m_per_s.norm() + spin * reach_m(*world_, {i}, world_->mass({i}).center_m));
   }
   const double wanted = std::ceil(fastest * period_s_ / substeps_.way_m);
   return static_cast<std::uint32_t>(std::clamp(wanted, 1.0, static_cast<double>(substeps_.most)));

@@ -241,6 +241,48 @@ TEST(Simulation, SubStepsStopATooFastToolAtAThinPlate) {
   EXPECT_EQ(steps, 16U);
 }
 
+TEST(Simulation, SubStepsStopATooFastTipAtAThinPlate) {
+  // A bar of 0.4 m spins about its middle: its tip makes 8 mm in a tick, and meets a plate of 1 mm on its way.
+  const auto way_reached = [](const std::string& physics) {
+    const auto simulation = simulated(physics +
+                                      "[[mesh]]\nname = \"plate\"\nfile = \"made:box:x=0.05,y=0.001,z=0.05\"\n"
+                                      "[[mesh]]\nname = \"bar\"\nfile = \"made:box:x=0.4,y=0.004,z=0.004\"\n"
+                                      "[[body]]\nname = \"plate\"\nmesh = \"plate\"\nposition_m = [0.19, 0.028, 0]\n"
+                                      "[[body]]\nname = \"bar\"\nmesh = \"bar\"\nmotion = \"dynamic\"\nmass_kg = 0.01\n"
+                                      "[effects.contact]\nstiffness_n_per_m = 1e6\ndamping_ns_per_m = 10\n");
+    simulation->world().set_state({1}, {math::Pose{}, Vec3::Zero(), Vec3(0, 0, 40.0)});
+    double farthest_m = 0.0;  // of the bar's middle line, where the plate is
+    for (std::int64_t i = 0; i < 20; ++i) {
+      haptics::TickRecord record;
+      simulation->renderer().tick(i * 1'000'000, record);
+      const math::Pose bar = simulation->world().state({1}).pose;
+      const Vec3 along = bar.rotation.col(0);
+      const double beside_m = 0.19 - bar.translation.x();
+      farthest_m = std::max(farthest_m, bar.translation.y() + beside_m / along.x() * along.y());
+    }
+    return farthest_m;
+  };
+  EXPECT_GT(way_reached(""), 0.05);
+  EXPECT_LT(way_reached("[physics]\nsubstep_way_m = 0.0005\nmost_substeps = 32\n"), 0.0275);
+}
+
+TEST(Simulation, SubStepsCountHowTheHandTurns) {
+  const std::string turning =
+      "[device.hand]\ntype = \"scripted\"\nposition_m = [0, 0, 0.1]\n[[device.hand.motion]]\nkind = \"hold\"\n"
+      "duration_s = 0.02\nturn_rad = 0.5\nturn_axis = [1, 0, 0]\n";
+  const auto simulation =
+      simulated("[physics]\nsubstep_way_m = 1e-4\nmost_substeps = 64\n" + world + turning + effects);
+  std::uint32_t most_steps = 0;
+  for (std::int64_t i = 0; i < 20; ++i) {
+    haptics::TickRecord record;
+    simulation->renderer().tick(i * 1'000'000, record);
+    most_steps = std::max(most_steps, simulation->renderer().last_step().solver_calls);
+  }
+  // At 47 rad/s a corner of the box about the ball, of 1 cm, makes 0.8 mm in a tick.
+  EXPECT_GE(most_steps, 8U);
+  EXPECT_LE(most_steps, 12U);
+}
+
 TEST(Simulation, ASlowToolTakesOneStepATick) {
   const auto simulation =
       simulated("[physics]\nsubstep_way_m = 0.001\nmost_substeps = 8\n" + world + scripted + effects);

@@ -22,8 +22,8 @@ struct Hand {
   DeviceScale scale;  ///< how the device stands to the scene
 };
 
-/// Steps of the world within one tick. A tick takes as many as the fastest body needs to move no farther than `way_m`
-/// in each, at most `most`; a body that creeps costs one.
+/// Steps of the world within one tick. A tick takes as many as the fastest body needs so that no point of it moves
+/// farther than `way_m` in each, at most `most`; a body that creeps costs one.
 struct SubSteps {
   double way_m = std::numeric_limits<double>::infinity();  ///< > 0; infinity: always one step
   std::uint32_t most = 1;                                  ///< >= 1
