@@ -35,5 +35,41 @@ TEST(Snap, ASlenderBarSwingsAndGainsNothing) {
   EXPECT_LT(farthest_m, 0.001);
 }
 
+// A lid of 0.1 kg with fasteners at its corners, or all of them in one place. Put a millimetre too high, it comes down
+// by that, and by no more than the springs yield.
+TEST(Snap, SeveralOnABodyHoldItStillHoweverStiff) {
+  struct Case {
+    int count;
+    double apart_m;
+    double stiffness_n_per_m;
+    double damping_ns_per_m;
+  };
+  for (const Case& c : {Case{4, 0.0, 1e3, 1000.0}, Case{8, 0.018, 1e4, 1000.0}, Case{2, 0.0, 1e6, 10.0},
+                        Case{4, 0.018, 1e6, 0.0}, Case{8, 0.018, 1e5, 10.0}}) {
+    std::string text =
+        "format = \"odds.scene/1\"\n[loop]\nseconds = 1\n"
+        "[[mesh]]\nname = \"cube\"\nfile = \"made:box:x=0.04,y=0.04,z=0.04\"\n"
+        "[[body]]\nname = \"box\"\nmesh = \"cube\"\n"
+        "[[body]]\nname = \"lid\"\nmesh = \"cube\"\nmotion = \"dynamic\"\nmass_kg = 0.1\n"
+        "position_m = [0, 0, 0.001]\n" +
+        gravity;
+    for (int i = 0; i < c.count; ++i) {
+      const auto side = [&](int bit) { return std::to_string((i >> bit & 1) != 0 ? c.apart_m : -c.apart_m); };
+      const std::string at = "[" + side(0) + ", " + side(1) + ", " + side(2) + "]\n";
+      text += "[[effects.snap]]\nbody = \"lid\"\nanchor = \"box\"\npoint_m = " + at + "socket_m = " + at +
+              "capture_m = 0.005\nbreak_force_n = 1e9\nstiffness_n_per_m = " + std::to_string(c.stiffness_n_per_m) +
+              "\ndamping_ns_per_m = " + std::to_string(c.damping_ns_per_m) + "\n";
+    }
+    const auto simulation = simulate(text);
+    run_ticks(*simulation, 900);
+    double fastest_m_per_s = 0.0;
+    run_ticks(*simulation, 100, [&](int, const haptics::TickRecord&) {
+      fastest_m_per_s = std::max(fastest_m_per_s, simulation->world().state({1}).velocity_m_per_s.norm());
+    });
+    EXPECT_LT(fastest_m_per_s, 0.002) << c.count << " of " << c.stiffness_n_per_m;
+    EXPECT_NEAR(simulation->world().state({1}).pose.translation.z(), 0.0, 0.001) << c.count;
+  }
+}
+
 }  // namespace
 }  // namespace odds::scene

@@ -216,6 +216,8 @@ class World {
   [[nodiscard]] Vec3 contact_impulse(BodyId body) const noexcept;
   /// Adds a force at the centre of mass and a torque for the next step. World frame. What is not finite is ignored.
   void apply(BodyId body, const Wrench& wrench) noexcept;
+  /// What has been added for the next step so far, drags of fluids included; zero for a fixed body.
+  [[nodiscard]] Wrench applied(BodyId body) const noexcept;
   /// Adds the drag of a fluid for the next step. All fluids about a body act as one: its speeds decay towards their
   /// flow as they would within the step, and turn round at no strength. What is not finite is ignored.
   void add_drag(BodyId body, const Drag& drag) noexcept;

@@ -38,7 +38,8 @@ class Snap final : public Effect {
     if (distance > fastener_.capture_m) now_.armed = true;
     if (!now_.held && now_.armed && distance <= fastener_.capture_m) now_ = {true, false};
     if (!now_.held) return 1;
-    // Linearly implicit, so that no stiffness and no damping is too much for the step.
+    // Linearly implicit, so that no stiffness and no damping is too much for the step; each of several on a body begins
+    // from what those before it leave, or together they would be.
     const double h = tick.step_s;
     const double yields = h * (fastener_.damping_ns_per_m + h * fastener_.stiffness_n_per_m);
     const Mat3 soft = Mat3::Identity() + yields * (point.compliance + socket.compliance);
@@ -61,7 +62,7 @@ class Snap final : public Effect {
   };
   struct Spot {
     Vec3 position;
-    Vec3 velocity;  // after the step, as far as weight changes it
+    Vec3 velocity;  // after the step, as far as weight and what pulls already, other fasteners too, change it
     Vec3 arm;
     Mat3 compliance;  // 1 / kg: how fast an impulse moves the point
   };
@@ -75,9 +76,11 @@ class Snap final : public Effect {
     lever << 0.0, -arm.z(), arm.y(), arm.z(), 0.0, -arm.x(), -arm.y(), arm.x(), 0.0;
     const Mat3& r = state.pose.rotation;
     const Mat3 turns = r * mass.inertia_kg_m2.inverse() * r.transpose();
-    const Vec3 fall = world.options().step_s * world.options().gravity_m_per_s2;
-    return {position, state.velocity_m_per_s + fall + state.angular_velocity_rad_per_s.cross(arm), arm,
-            Mat3::Identity() / mass.mass_kg - lever * turns * lever};
+    const double h = world.options().step_s;
+    const ode::Wrench pull = world.applied(body);
+    const Vec3 velocity = state.velocity_m_per_s + h * (world.options().gravity_m_per_s2 + pull.force_n / mass.mass_kg);
+    const Vec3 spin = state.angular_velocity_rad_per_s + h * (turns * pull.torque_nm);
+    return {position, velocity + spin.cross(arm), arm, Mat3::Identity() / mass.mass_kg - lever * turns * lever};
   }
 
   Fastener fastener_;

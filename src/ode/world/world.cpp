@@ -429,6 +429,11 @@ void World::apply(BodyId id, const Wrench& wrench) noexcept {
   dBodyAddTorque(body.body, wrench.torque_nm.x(), wrench.torque_nm.y(), wrench.torque_nm.z());
 }
 
+Wrench World::applied(BodyId id) const noexcept {
+  const dBodyID body = implementation_->bodies[id.index]->body;
+  return body == nullptr ? Wrench{} : Wrench{vector_of(dBodyGetForce(body)), vector_of(dBodyGetTorque(body))};
+}
+
 void World::add_drag(BodyId id, const Drag& drag) noexcept {
   Body& body = *implementation_->bodies[id.index];
   const double sum = drag.force_ns_per_m + drag.torque_nms_per_rad + drag.flow_m_per_s.sum();
