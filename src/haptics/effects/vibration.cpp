@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "haptics/effects/body_key.hpp"
 #include "haptics/effects/list.hpp"
@@ -25,43 +26,60 @@ class Vibration final : public Effect {
   }
   [[nodiscard]] std::uint32_t stages() const noexcept override { return stage_meeting | stage_after_step | stage_hand; }
   [[nodiscard]] std::string_view evaluates() const noexcept override { return "ringing ticks"; }
-  void reset() noexcept override { now_ = {}; }
+  [[nodiscard]] std::optional<Error> bind(const ode::World& world) override {
+    now_.touched.resize(world.body_count());
+    now_.touches.resize(world.body_count());
+    kept_ = now_;
+    return std::nullopt;
+  }
+  void reset() noexcept override {
+    now_.ring = {};
+    std::fill(now_.touched.begin(), now_.touched.end(), false);
+    std::fill(now_.touches.begin(), now_.touches.end(), false);
+  }
   void keep() noexcept override { kept_ = now_; }
   void put_back() noexcept override { now_ = kept_; }
   std::uint32_t meet(const TickView& tick, ode::Meeting& meeting) noexcept override {
     if (tick.device == nullptr || !involves(meeting, tick.tool) || meeting.contacts.empty()) return 0;
-    now_.touches = true;
-    if (now_.touched) return 0;
+    // A tool that slides along a floor strikes the wall at its end.
+    const std::uint32_t other = meeting.a == tick.tool ? meeting.b.index : meeting.a.index;
+    now_.touches[other] = true;
+    if (now_.touched[other]) return 0;
+    Ringing& ring = now_.ring;
     const ode::ContactPoint& point = meeting.contacts.front();
     const double approach = std::max(0.0, -point.velocity_m_per_s.dot(point.normal));
     const double force = std::min(ring_.max_force_n, ring_.force_ns_per_m * approach);
-    if (force < now_.amplitude_n * std::exp(-now_.since_s / ring_.decay_s))
+    if (force < ring.amplitude_n * std::exp(-ring.since_s / ring_.decay_s))
       return 0;  // the last one still rings louder
-    now_.amplitude_n = force;
-    now_.since_s = 0.0;
-    now_.direction = meeting.a == tick.tool ? point.normal : Vec3(-point.normal);
+    ring.amplitude_n = force;
+    ring.since_s = 0.0;
+    ring.direction = meeting.a == tick.tool ? point.normal : Vec3(-point.normal);
     return 0;
   }
   std::uint32_t after_step(const TickView& tick) noexcept override {
-    now_.touched = now_.touches;
-    now_.touches = false;
-    now_.since_s += tick.step_s;
+    now_.touched.swap(now_.touches);
+    std::fill(now_.touches.begin(), now_.touches.end(), false);
+    now_.ring.since_s += tick.step_s;
     return 0;
   }
   std::uint32_t on_hand(const TickView&, ode::Wrench& on_hand) noexcept override {
-    const double left = now_.amplitude_n * std::exp(-now_.since_s / ring_.decay_s);
+    const Ringing& ring = now_.ring;
+    const double left = ring.amplitude_n * std::exp(-ring.since_s / ring_.decay_s);
     if (!(left > 1e-4 * ring_.max_force_n)) return 0;
-    on_hand.force_n += left * std::sin(2.0 * std::numbers::pi * ring_.frequency_hz * now_.since_s) * now_.direction;
+    on_hand.force_n += left * std::sin(2.0 * std::numbers::pi * ring_.frequency_hz * ring.since_s) * ring.direction;
     return 1;
   }
 
  private:
-  struct State {
-    bool touched = false;  // in the last tick
-    bool touches = false;
+  struct Ringing {
     double amplitude_n = 0.0;
     double since_s = 0.0;
     Vec3 direction = Vec3::Zero();  // unit, world: away from what was struck
+  };
+  struct State {
+    Ringing ring;
+    std::vector<bool> touched;  // by body: in the last step
+    std::vector<bool> touches;
   };
   Ring ring_;
   State now_;
