@@ -24,8 +24,8 @@ struct HumanArm {
 
 /// A hand on a device. Between two reads the last force is held and the equation of motion is integrated in steps of at
 /// most 20 microseconds, by the implicit midpoint rule, which adds no energy of its own. A function of the loop's times
-/// and the forces alone: the same run gives the same path. When time goes back it begins anew, at rest at the script's
-/// start.
+/// and the forces alone: the same run gives the same path. When time goes back it begins anew, at rest where its
+/// script then is.
 class HumanArmDevice final : public Device {
  public:
   HumanArmDevice(std::unique_ptr<ScriptedDevice> script, const HumanArm& arm);

@@ -37,7 +37,8 @@ using AllocationCount = std::uint64_t (*)() noexcept;
 /// and a step may come in parts, one in each tick (WorldOptions::parts).
 class Renderer {
  public:
-  /// World and effects outlive the renderer. The effects are connected with the world by begin().
+  /// World and effects outlive the renderer. It gives the tool its coupling, for which World::prepare() takes memory:
+  /// make it before that. EffectSet::bind() comes after, for begin() does not connect the effects with the world.
   Renderer(ode::World& world, const std::optional<Hand>& hand, EffectSet& effects,
            AllocationCount allocations = nullptr);
 
