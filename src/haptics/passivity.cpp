@@ -14,8 +14,8 @@ void PassivityObserver::reset(const DeviceState& state) noexcept {
 void PassivityObserver::moved(const DeviceState& state) noexcept {
   step_m_ = state.position_m - position_m_;
   const Eigen::AngleAxisd turn(state.orientation * orientation_.conjugate());
-  const Vec3 turned = turn.angle() * turn.axis();
-  energy_j_ -= force_n_.dot(step_m_) + torque_nm_.dot(turned);
+  turn_rad_ = turn.angle() * turn.axis();
+  energy_j_ -= force_n_.dot(step_m_) + torque_nm_.dot(turn_rad_);
   least_j_ = std::min(least_j_, energy_j_);
   position_m_ = state.position_m;
   orientation_ = state.orientation;

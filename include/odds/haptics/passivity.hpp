@@ -19,8 +19,9 @@ class PassivityObserver {
   void sent(const Vec3& force_n, const Vec3& torque_nm) noexcept;
 
   [[nodiscard]] double energy_j() const noexcept { return energy_j_; }
-  [[nodiscard]] double least_j() const noexcept { return least_j_; }     ///< lowest so far, <= 0
-  [[nodiscard]] const Vec3& step_m() const noexcept { return step_m_; }  ///< the hand's way in the last period
+  [[nodiscard]] double least_j() const noexcept { return least_j_; }         ///< lowest so far, <= 0
+  [[nodiscard]] const Vec3& step_m() const noexcept { return step_m_; }      ///< the hand's way in the last period ...
+  [[nodiscard]] const Vec3& turn_rad() const noexcept { return turn_rad_; }  ///< ... and its turn, axis times angle
 
  private:
   double energy_j_ = 0.0;
@@ -28,6 +29,7 @@ class PassivityObserver {
   Vec3 position_m_ = Vec3::Zero();
   Quat orientation_ = Quat::Identity();
   Vec3 step_m_ = Vec3::Zero();
+  Vec3 turn_rad_ = Vec3::Zero();
   Vec3 force_n_ = Vec3::Zero();
   Vec3 torque_nm_ = Vec3::Zero();
 };
