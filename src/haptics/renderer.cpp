@@ -145,6 +145,7 @@ void Renderer::read_device(std::int64_t now_ns) noexcept {
   DeviceState state;
   if (!ask_device(now_ns, said, state)) {
     ++failed_reads_;  // the last good state stays, and grows stale
+    energy_.moved(own_);
     return;
   }
   own_ = said;
