@@ -71,6 +71,12 @@ TEST_F(MeshData, OpenMeshIsNotClosed) {
   EXPECT_EQ(oddsMeshDataIsClosed(data.id), 0);
 }
 
+TEST_F(MeshData, ASheetWithBothItsSidesEnclosesNothing) {
+  const dTriIndex both_sides[] = {0, 1, 2, 0, 2, 1};
+  ASSERT_EQ(oddsMeshDataBuildDouble(data.id, tetrahedron_vertices, 24, 4, both_sides, 6, 3 * index_size, nullptr), 1);
+  EXPECT_EQ(oddsMeshDataIsClosed(data.id), 0);
+}
+
 TEST_F(MeshData, ClosedThoughVerticesAreRepeatedAsInStl) {
   double corners[36];
   dTriIndex indices[12];

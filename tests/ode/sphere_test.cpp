@@ -203,6 +203,45 @@ TEST_F(SphereTest, ASheetPushesToTheSideWhereTheCentreIs) {
   }
 }
 
+// Whichever of the two triangles at one place was found first decided: half of all spheres were taken for inside, and
+// pushed through the sheet.
+TEST_F(SphereTest, ASheetWithBothItsSidesPushesToTheSideWhereTheCentreIs) {
+  constexpr std::uint32_t cells = 8;
+  const auto height = [](double x, double y) { return 0.2 * (x * x + y * y); };
+  std::vector<Vec3> corners;
+  std::vector<mesh::Triangle> triangles;
+  for (std::uint32_t i = 0; i <= cells; ++i) {
+    for (std::uint32_t k = 0; k <= cells; ++k) {
+      const double x = 2.0 * i / cells - 1.0;
+      const double y = 2.0 * k / cells - 1.0;
+      corners.emplace_back(x, y, height(x, y));
+      if (i == cells || k == cells) continue;
+      const std::uint32_t a = i * (cells + 1) + k;
+      const std::uint32_t b = a + cells + 1;
+      for (const mesh::Triangle& front : {mesh::Triangle{a, b, b + 1}, mesh::Triangle{a, b + 1, a + 1}}) {
+        triangles.push_back(front);
+        triangles.push_back({front[0], front[2], front[1]});
+      }
+    }
+  }
+  const auto sheet = shape_from(corners, triangles);
+  ASSERT_FALSE(sheet->is_solid());
+  const dGeomID mesh = mesh_geom(sheet, space);
+  const dGeomID sphere = dCreateSphere(space, 0.1);
+  for (const double side : {1.0, -1.0}) {
+    for (const double x : {-0.72, -0.31, 0.03, 0.44}) {
+      const double y = 0.5 * x + 0.2;
+      dGeomSetPosition(sphere, x, y, height(x, y) + 0.07 * side);
+      const auto contacts = collide(sphere, mesh);
+      ASSERT_FALSE(contacts.empty());
+      for (const dContactGeom& contact : contacts) {
+        EXPECT_GT(side * contact.normal[2], 0.5) << "at x = " << x;
+        EXPECT_LT(contact.depth, 0.06) << "at x = " << x;
+      }
+    }
+  }
+}
+
 TEST_F(SphereTest, ACentreExactlyOnTheSurfaceIsPushedOutward) {
   const dGeomID mesh = mesh_geom(box_shape(1, 1, 1, 4), space);
   const dGeomID sphere = dCreateSphere(space, 0.1);

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "odds/mesh/enclosed_volume.hpp"
 #include "ode/mesh/triangle_corners.hpp"
 
 namespace odds::ode {
@@ -117,7 +118,8 @@ std::shared_ptr<const PreparedMesh> PreparedMesh::make(std::shared_ptr<const que
   }
   prepared->triangle_tree = BoxTree(boxes);
   const std::vector<std::uint32_t> representative = weld_equal_positions(mesh);
-  prepared->closed = closes(mesh, representative);
+  // A sheet whose triangles are there twice, once for each side, closes, too, but has no inside to be pushed out of.
+  prepared->closed = closes(mesh, representative) && mesh::enclosed_volume(mesh) != 0.0;
   prepared->fans = find_fans(*prepared, representative);
   return prepared;
 }

@@ -29,7 +29,7 @@ struct PreparedMesh {
   std::vector<Vertex> vertices;               ///< those that triangles use
   BoxTree vertex_tree;                        ///< over `vertices`
   BoxTree triangle_tree;                      ///< over the mesh's triangles
-  bool closed = false;                        ///< every edge has its opposite: inside and outside are defined
+  bool closed = false;    ///< every edge has its opposite, and something is enclosed: inside and outside are defined
   std::vector<Fan> fans;  ///< by the x of their tips
 
   /// Precondition: `shape` is not null. May throw std::bad_alloc.
