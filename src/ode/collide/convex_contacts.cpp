@@ -16,7 +16,7 @@
 namespace odds::ode {
 namespace {
 
-constexpr std::size_t most_pieces = Pieces::most;
+constexpr std::size_t most_pieces = Pieces::most + Pieces::most_added;
 constexpr std::size_t most_patches = 6;
 constexpr std::size_t most_points = 256;
 constexpr double same_patch = 0.85;   // cosine of the largest angle to a patch's first normal, 32 degrees
@@ -291,13 +291,13 @@ void leave_plates_one_way(std::span<Patch> patches, const ConvexBody& body, doub
 void find_exits(std::span<Patch> patches, const Pieces& pieces, const ConvexBody& body, const Limit& limit) noexcept {
   double longest = 0.0;
   for (Patch& patch : patches) {
-    patch.exit = shortest_exit(patch.span(), body, limit);
+    patch.exit = shortest_exit(patch.span(), body, !pieces.complete, limit);
     longest = std::max(longest, patch.exit.depth);
   }
   if (patches.size() == 1) return;
   std::array<const Piece*, most_pieces> everything;
   for (std::size_t i = 0; i < pieces.count; ++i) everything[i] = &pieces.all[i];
-  const Exit common = shortest_exit({everything.data(), pieces.count}, body, limit);
+  const Exit common = shortest_exit({everything.data(), pieces.count}, body, false, limit);
   const double tolerance = same_place * body.box_half_extents().norm();
   const bool is_common = common.depth <= longest * (1.0 + 1e-6) || are_convex(patches, tolerance);
   if (!is_common || !(common.depth < dInfinity)) return leave_plates_one_way(patches, body, tolerance);
@@ -408,6 +408,21 @@ void keep_resting(const math::Pose& mesh_in_world, const math::Pose& body_in_mes
   resting.keep(question, std::span(made).first(count), body_in_mesh);
 }
 
+// Of pieces that were left out, the deepest are asked for: those over the lowest points of the body.
+void add_deepest(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const ConvexBody& body, Limit& limit,
+                 Pieces& pieces, std::span<Patch> patches) noexcept {
+  constexpr double deeper = 2.0;  // than the pieces that are known; farther up is another surface
+  for (Patch& patch : patches) {
+    const auto goes_the_same_way = [&](const Patch& p) { return p.exit.direction == patch.exit.direction; };
+    const bool is_first = &*std::find_if(patches.begin(), patches.end(), goes_the_same_way) == &patch;
+    if (!is_first || !(patch.exit.depth < dInfinity) || limit.time_is_up(time_for_exits)) continue;
+    const double most = deeper * patch.exit.depth;
+    if (!add_piece_above(mesh, body_in_mesh, body, patch.exit.direction, most, limit, pieces)) continue;
+    patch.pieces[patch.count++] = &pieces.all[pieces.count - 1];
+    std::swap(patch.pieces[0], patch.pieces[patch.count - 1]);  // there may not be room, or time, for the points of all
+  }
+}
+
 }  // namespace
 
 Seen write_convex_contacts(const PreparedMesh& mesh, const math::Pose& mesh_in_world, const math::Pose& body_in_world,
@@ -422,7 +437,10 @@ Seen write_convex_contacts(const PreparedMesh& mesh, const math::Pose& mesh_in_w
     const std::size_t count = group(pieces, patches);
     find_exits(std::span(patches).first(count), pieces, body, limit);
     leave_sideways(mesh, body_in_mesh, pieces, body, limit, std::span(patches).first(count));
-    if (!pieces.complete) leave_by_the_near_side(mesh, body_in_mesh, body, limit, std::span(patches).first(count));
+    if (!pieces.complete) {
+      leave_by_the_near_side(mesh, body_in_mesh, body, limit, std::span(patches).first(count));
+      add_deepest(mesh, body_in_mesh, body, limit, pieces, std::span(patches).first(count));
+    }
     write_manifolds(std::span(patches).first(count), body, body_in_world, limit, writer, room);
   }
   if (pieces.cut_off || limit.units == 0) return Seen::cut_off;

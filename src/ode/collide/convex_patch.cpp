@@ -87,6 +87,19 @@ Vec3 mean_normal(std::span<const Piece* const> patch) noexcept {
   return length > cancelled * area ? Vec3(sum / length) : Vec3(Vec3::Zero());
 }
 
+// How far the body's lowest point is below the plane in the middle of the patch.
+double depth_below_middle(const Vec3& mean, std::span<const Piece* const> patch, const ConvexBody& body) noexcept {
+  double height = 0.0;
+  double area = 0.0;
+  for (const Piece* piece : patch) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < piece->count; ++i) sum += mean.dot(piece->corners[i]);
+    height += piece->area * sum / static_cast<double>(piece->count);
+    area += piece->area;
+  }
+  return height / area + body.reach(-mean);
+}
+
 }  // namespace
 
 bool cut_by_sides(const std::array<Vec3, 3>& triangle, const ConvexBody& body, Piece& piece) noexcept {
@@ -109,14 +122,19 @@ bool cut_by_sides(const std::array<Vec3, 3>& triangle, const ConvexBody& body, P
   return true;
 }
 
-Exit shortest_exit(std::span<const Piece* const> patch, const ConvexBody& body, const Limit& limit) noexcept {
+Exit shortest_exit(std::span<const Piece* const> patch, const ConvexBody& body, bool goes_on,
+                   const Limit& limit) noexcept {
   const Vec3 mean = mean_normal(patch);
   const bool faces_all_ways = mean.isZero(0.0);
   Exit best = {faces_all_ways ? patch.front()->normal : mean, std::numeric_limits<double>::infinity()};
+  const double beyond = goes_on && !faces_all_ways ? depth_below_middle(mean, patch, body) : 0.0;
   const auto consider = [&](const Vec3& direction) {
-    if (!faces_all_ways && direction.dot(mean) < least_facing) return;
-    const double depth = depth_along(direction, patch, body, best.depth * clearly_shorter);
-    if (depth < best.depth * clearly_shorter) best = {direction, depth};
+    const double facing = direction.dot(mean);
+    if (!faces_all_ways && facing < least_facing) return;
+    const double enough = best.depth * clearly_shorter;
+    double depth = depth_along(direction, patch, body, enough);
+    if (beyond > 0.0) depth = std::max(depth, beyond / facing);
+    if (depth < enough) best = {direction, depth};
   };
   // The surface's own normals first: they win every tie.
   std::array<Vec3, most_remembered> tried;

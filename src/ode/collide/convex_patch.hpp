@@ -27,9 +27,10 @@ struct Exit {
 
 /// The shortest way out of `patch` (pieces with similar normals, not empty) among the patch's normals and the body's
 /// own exits. Where the surface goes on beyond the body on the side that the body moves to, the whole plane of the
-/// piece must be cleared, not only the piece: otherwise a body would slip sideways out of a tessellated floor. When the
-/// time is up, the best so far; at least the mean normal was tried.
-[[nodiscard]] Exit shortest_exit(std::span<const Piece* const> patch, const ConvexBody& body,
+/// piece must be cleared, not only the piece: otherwise a body would slip sideways out of a tessellated floor.
+/// `goes_on`: pieces of the patch were left out, and the surface may go on wherever it is seen to end; then the plane
+/// in its middle must be cleared. When the time is up, the best so far; at least the mean normal was tried.
+[[nodiscard]] Exit shortest_exit(std::span<const Piece* const> patch, const ConvexBody& body, bool goes_on,
                                  const Limit& limit) noexcept;
 
 }  // namespace odds::ode

@@ -13,7 +13,8 @@ namespace odds::ode {
 
 struct Pieces {
   static constexpr std::size_t most = 128;
-  std::array<Piece, most> all;
+  static constexpr std::size_t most_added = 8;  ///< by add_piece_above
+  std::array<Piece, most + most_added> all;
   std::size_t count = 0;
   bool complete = true;
   bool cut_off = false;  ///< by the limit; else only the room for pieces was too small
@@ -23,5 +24,11 @@ struct Pieces {
 /// kept are spread evenly, also where the time ends. noexcept, no allocation.
 void gather_pieces(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const ConvexBody& body, Limit& limit,
                    Pieces& pieces) noexcept;
+
+/// Where pieces were left out, the deepest may be among them. Adds the one that lies over the body's lowest point, seen
+/// along `up` (body frame, unit), by no more than `most` (metres). False if there is none, or not within the time, or
+/// it is there. noexcept, no allocation.
+bool add_piece_above(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const ConvexBody& body, const Vec3& up,
+                     double most, Limit& limit, Pieces& pieces) noexcept;
 
 }  // namespace odds::ode

@@ -1,0 +1,144 @@
+// Bodies on surfaces of triangles much smaller than they are: of the many in the body's box few are in the body.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "ode/ode_fixture.hpp"
+
+namespace odds::test {
+namespace {
+
+constexpr double radius = 0.3;
+
+// A ball of planar faces, as the arrays of dCreateConvex.
+struct Ball {
+  static constexpr unsigned around = 16;
+  static constexpr unsigned down = 8;
+
+  Ball() {
+    add(Vec3(0, 0, radius));
+    add(Vec3(0, 0, -radius));
+    for (unsigned i = 1; i < down; ++i) {
+      for (unsigned k = 0; k < around; ++k) {
+        const double a = std::numbers::pi * i / down;
+        const double b = 2.0 * std::numbers::pi * k / around;
+        add(radius * Vec3(std::sin(a) * std::cos(b), std::sin(a) * std::sin(b), std::cos(a)));
+      }
+    }
+    for (unsigned k = 0; k < around; ++k) {
+      face({0, at(1, k), at(1, k + 1)});
+      for (unsigned i = 1; i + 1 < down; ++i) face({at(i, k), at(i + 1, k), at(i + 1, k + 1), at(i, k + 1)});
+      face({1, at(down - 1, k + 1), at(down - 1, k)});
+    }
+  }
+  [[nodiscard]] double lowest(const Quat& turn) const {
+    double z = 0.0;
+    for (const Vec3& corner : corners) z = std::min(z, (turn * corner).z());
+    return z;
+  }
+
+  std::vector<Vec3> corners;
+  std::vector<dReal> points;
+  std::vector<dReal> planes;
+  std::vector<unsigned> polygons;
+  unsigned faces = 0;
+
+ private:
+  static unsigned at(unsigned i, unsigned k) { return 2 + (i - 1) * around + k % around; }
+  void add(const Vec3& corner) {
+    corners.push_back(corner);
+    points.insert(points.end(), corner.data(), corner.data() + 3);
+  }
+  void face(const std::vector<unsigned>& of) {
+    const Vec3 normal = (corners[of[1]] - corners[of[0]]).cross(corners[of[2]] - corners[of[0]]).normalized();
+    planes.insert(planes.end(), {normal.x(), normal.y(), normal.z(), normal.dot(corners[of[0]])});
+    polygons.push_back(static_cast<unsigned>(of.size()));
+    polygons.insert(polygons.end(), of.begin(), of.end());
+    ++faces;
+  }
+};
+
+class FineMeshTest : public OdeTest {
+ protected:
+  void SetUp() override {
+    OdeTest::SetUp();
+    floor = mesh_geom(box_shape(2, 2, 1, 100), space);  // its top is at z = 0, of triangles of 2 cm
+    dGeomSetPosition(floor, 0, 0, -0.5);
+    dGeomOddsMeshSetCarryMotion(floor, 0);
+  }
+  // `lowest`: of the body so turned, as far below its centre.
+  std::vector<dContactGeom> put(dGeomID body, const Quat& turn, double lowest, double depth) {
+    const dQuaternion q = {turn.w(), turn.x(), turn.y(), turn.z()};
+    dGeomSetQuaternion(body, q);
+    dGeomSetPosition(body, 0.3 * uniform(random), 0.3 * uniform(random), -lowest - depth);
+    return collide(body, floor, 8);
+  }
+  static void expect_floor(const std::vector<dContactGeom>& contacts, double depth) {
+    ASSERT_FALSE(contacts.empty());
+    double deepest = 0.0;
+    for (const dContactGeom& contact : contacts) {
+      EXPECT_NEAR(contact.normal[2], 1.0, 1e-9) << "nothing else pushes on a floor";
+      EXPECT_NEAR(contact.pos[2], 0.0, 1e-9);
+      deepest = std::max(deepest, contact.depth);
+    }
+    EXPECT_NEAR(deepest, depth, 1e-3 * depth);
+  }
+  Quat any_turn() { return Quat(normal(random), normal(random), normal(random), normal(random)).normalized(); }
+
+  dGeomID floor = nullptr;
+  std::mt19937 random{41};
+  std::uniform_real_distribution<double> uniform{-1.0, 1.0};
+  std::normal_distribution<double> normal;
+};
+
+// Triangles beside the cylinder took the places of those in it: a fifth of those that lay had no contact at all.
+TEST_F(FineMeshTest, ACylinderLiesAndStandsOnItsRim) {
+  const dGeomID cylinder = dCreateCylinder(space, radius, 0.6);
+  for (const double depth : {0.001, 0.01, 0.05}) {
+    for (int round = 0; round < 20; ++round) {
+      const Quat about(Eigen::AngleAxisd(3.0 * uniform(random), Vec3::UnitZ()));
+      const Quat lies(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vec3::UnitX()));
+      expect_floor(put(cylinder, about * lies, -radius, depth), depth);
+      const Quat leans(Eigen::AngleAxisd(0.6, Vec3::UnitX()));
+      expect_floor(put(cylinder, about * leans, -radius * std::sin(0.6) - 0.3 * std::cos(0.6), depth), depth);
+    }
+  }
+}
+
+TEST_F(FineMeshTest, AConvexBallRests) {
+  const Ball ball;
+  const dGeomID convex = dCreateConvex(space, ball.planes.data(), ball.faces, ball.points.data(),
+                                       static_cast<unsigned>(ball.corners.size()), ball.polygons.data());
+  ASSERT_EQ(oddsRegisterConvex(convex, ball.points.data(), static_cast<unsigned>(ball.corners.size()),
+                               ball.polygons.data(), ball.faces),
+            1)
+      << oddsGetLastError();
+  for (const double depth : {0.001, 0.01, 0.05}) {
+    for (int round = 0; round < 20; ++round) {
+      const Quat turn = any_turn();
+      expect_floor(put(convex, turn, ball.lowest(turn), depth), depth);
+    }
+  }
+  oddsForgetGeom(convex);
+}
+
+// Where some of the surface was left out, the ways through it seemed the shortest, and a corner went sideways.
+TEST_F(FineMeshTest, ACornerOfABoxIsPushedUp) {
+  const dGeomID box = dCreateBox(space, 2 * radius, 2 * radius, 2 * radius);
+  for (const double depth : {0.001, 0.01, 0.05, 0.1}) {
+    for (int round = 0; round < 20; ++round) {
+      const Quat turn = any_turn();
+      const double lowest = -radius * turn.toRotationMatrix().row(2).cwiseAbs().sum();
+      const auto contacts = put(box, turn, lowest, depth);
+      ASSERT_FALSE(contacts.empty());
+      if (turn.toRotationMatrix().row(2).cwiseAbs().minCoeff() < 0.3) continue;  // a flat one has as short a way out
+      expect_floor(contacts, depth);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace odds::test
