@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "ode/budget_clock.hpp"
 #include "ode/ode_fixture.hpp"
 
 namespace odds::test {
@@ -138,6 +139,61 @@ TEST_F(FineMeshTest, ACornerOfABoxIsPushedUp) {
       expect_floor(contacts, depth);
     }
   }
+}
+
+// Between two walls of 45 degrees, x = z and x = -z, of triangles of 3 to 5 cm.
+std::shared_ptr<const query::Shape> groove() {
+  constexpr std::uint32_t cells = 60;
+  std::vector<Vec3> corners;
+  std::vector<mesh::Triangle> triangles;
+  for (std::uint32_t i = 0; i <= cells; ++i) {
+    for (std::uint32_t k = 0; k <= cells; ++k) {
+      const double x = 2.0 * i / cells - 1.0;
+      corners.emplace_back(x, 2.0 * k / cells - 1.0, std::abs(x));
+      if (i == cells || k == cells) continue;
+      const std::uint32_t a = i * (cells + 1) + k;
+      const std::uint32_t b = a + cells + 1;
+      triangles.push_back({a, b, b + 1});
+      triangles.push_back({a, b + 1, a + 1});
+    }
+  }
+  return query::Shape::build(std::make_shared<const mesh::TriangleMesh>(
+                                 mesh::TriangleMesh::make(std::move(corners), std::move(triangles)).value()))
+      .value();
+}
+
+// Their boxes have more triangles than there is room for; one wall alone held them.
+TEST_F(FineMeshTest, BallsAndCapsulesTouchBothWallsOfAGroove) {
+  const dGeomID walls = mesh_geom(groove(), space);
+  const dGeomID ball = dCreateSphere(space, radius);
+  const dGeomID capsule = dCreateCapsule(space, radius, 0.4);
+  rotate(capsule, Vec3::UnitX(), 0.5 * std::numbers::pi);
+  for (const dGeomID body : {ball, capsule}) {
+    dGeomSetPosition(body, 0, 0.003, radius * std::sqrt(2.0) - 0.001);
+    bool left = false;
+    bool right = false;
+    for (const dContactGeom& contact : collide(body, walls)) {
+      EXPECT_NEAR(contact.depth, 0.001 * std::sqrt(0.5), 1e-9);
+      left = left || contact.normal[0] > 0.7;
+      right = right || contact.normal[0] < -0.7;
+    }
+    EXPECT_TRUE(left && right) << "class " << dGeomGetClass(body);
+  }
+  EXPECT_EQ(stats().primitive_cut_off, 0u);
+}
+
+// The nearest triangle was asked for after hundreds of others, when the time was up.
+TEST_F(FineMeshTest, InShortTimeACapsuleThatLiesIsHeld) {
+  const dGeomID capsule = dCreateCapsule(space, radius, 0.6);
+  realtime::ManualClock clock(200);  // nanoseconds a look
+  ode::use_budget_clock(clock.clock());
+  ASSERT_EQ(dGeomOddsMeshSetBudget(floor, 60.0), 1);
+  for (int round = 0; round < 50; ++round) {
+    const Quat about(Eigen::AngleAxisd(3.0 * uniform(random), Vec3::UnitZ()));
+    const Quat lies(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vec3::UnitX()));
+    expect_floor(put(capsule, about * lies, -radius, 0.01), 0.01);
+  }
+  ode::use_budget_clock({});
 }
 
 }  // namespace

@@ -12,6 +12,9 @@ namespace odds::ode {
 
 /// In the mesh's frame, metres: all points at most `radius` from the segment between the two ends.
 struct Capsule {
+  /// Of the radius: nearer places are one place, and an axis this near to the surface is on it.
+  static constexpr double same_place = 1e-6;
+
   std::array<Vec3, 2> ends;
   double radius;
   Mat3 axes;  ///< columns; the third leads from the first end to the second
@@ -24,6 +27,7 @@ struct CapsulePlace {
   Vec3 on_axis;
   Vec3 on_surface;
   double distance;  ///< 0: the axis meets the triangle there
+  double extent;    ///< no point of the triangle is farther from `on_surface`
   std::uint32_t triangle;
 };
 

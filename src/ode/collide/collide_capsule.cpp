@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 
 #include "ode/collide/capsule_places.hpp"
 #include "ode/collide/contact_writer.hpp"
@@ -17,10 +18,11 @@
 namespace odds::ode {
 namespace {
 
-// Relative to the radius: nearer places are one place, and an axis this near to the surface is on it.
-constexpr double same_place = 1e-6;
+constexpr double same_place = Capsule::same_place;
 // An end adds a contact only if it is this part of the radius away from those that are there.
 constexpr double separate_end = 1e-2;
+// Cosine from which on two contacts lead the same way.
+constexpr double same_direction = 0.999;
 // Cosine from which on a place beside an axis that goes through the surface belongs to the same patch.
 constexpr double same_patch = 0.85;
 
@@ -43,6 +45,32 @@ struct CapsuleContacts {
                        [&](const CapsuleContact& c) { return (c.position - position).norm() <= distance; });
   }
 };
+
+// Of those that lead the same way, in a line along the axis, the deepest and the outermost on each side of it are
+// enough: more would take the places of those that push elsewhere.
+struct Line {
+  CapsuleContact* beside = nullptr;  // on the same side of the deepest, nearer to it
+  bool needs = true;                 // the new one
+};
+
+Line line_of(const Capsule& capsule, const CapsuleContact& added, CapsuleContacts& contacts) noexcept {
+  const std::span<CapsuleContact> all = std::span(contacts.all).first(contacts.count);
+  const auto leads_the_same_way = [&](const CapsuleContact& c) { return c.out.dot(added.out) > same_direction; };
+  const CapsuleContact* deepest = nullptr;
+  for (const CapsuleContact& contact : all) {
+    if (leads_the_same_way(contact) && (deepest == nullptr || contact.depth > deepest->depth)) deepest = &contact;
+  }
+  Line line;
+  if (deepest == nullptr || added.depth > deepest->depth + same_place * capsule.radius) return line;
+  const auto beyond = [&](const CapsuleContact& c) { return capsule.axes.col(2).dot(c.position - deepest->position); };
+  const double along = beyond(added);
+  for (CapsuleContact& contact : all) {
+    if (!leads_the_same_way(contact) || &contact == deepest || (beyond(contact) < 0.0) != (along < 0.0)) continue;
+    line.beside = &contact;
+    line.needs = line.needs && std::abs(along) > std::abs(beyond(contact));
+  }
+  return line;
+}
 
 // Both ends against one plane through `on_surface`: the capsule lies across it, or is altogether behind it.
 void add_ends_behind(const Capsule& capsule, const Vec3& on_surface, const Vec3& out, std::uint32_t triangle,
@@ -117,22 +145,32 @@ std::optional<Vec3> add_crossing(const PreparedMesh& mesh, const Capsule& capsul
   return best_out;
 }
 
-// The axis is outside: where its distance has a local minimum. `apart_from`: only what is not of that patch.
-void add_minima(const PreparedMesh& mesh, const Capsule& capsule, const CapsulePlaces& places,
-                const std::optional<Vec3>& apart_from, const Limit& limit, CapsuleContacts& contacts) noexcept {
-  for (std::size_t i = 0; i < places.count && contacts.count < most_contacts; ++i) {
+// The axis is outside: where its distance has a local minimum, of those places. `apart_from`: only what is not of that
+// patch.
+void add_minima(const PreparedMesh& mesh, const Capsule& capsule, const CapsulePlaces& places, std::size_t begin,
+                std::size_t end, const std::optional<Vec3>& apart_from, const Limit& limit,
+                CapsuleContacts& contacts) noexcept {
+  for (std::size_t i = begin; i < end && contacts.count < contacts.all.size(); ++i) {
     const CapsulePlace& place = places.all[i];
     if (place.distance <= same_place * capsule.radius) continue;
     const Vec3 out = (place.on_axis - place.on_surface) / place.distance;
     if (apart_from && out.dot(*apart_from) > same_patch) continue;
     // Where triangles were left out, a rim of one of them would pass for a minimum.
     if (contacts.count > 0 && (!places.complete || limit.time_is_up())) return;
+    if (contacts.near(place.on_surface, separate_end * capsule.radius)) continue;
+    const CapsuleContact contact = {place.on_surface, out, capsule.radius - place.distance, place.triangle};
+    const Line line = line_of(capsule, contact, contacts);
+    if (!line.needs) continue;
     if (contacts.count > 0 && !is_local_minimum(mesh, places, i, same_place * capsule.radius)) continue;
     // On an edge or at a corner several triangles are as near: none of them alone says on which side the axis is.
     if (apart_from && mesh.closed && out.dot(outward_at(mesh, place.on_surface, place.triangle, place.on_axis)) < 0.0) {
       continue;
     }
-    contacts.add({place.on_surface, out, capsule.radius - place.distance, place.triangle});
+    if (line.beside != nullptr) {
+      *line.beside = contact;
+    } else {
+      contacts.add(contact);
+    }
   }
 }
 
@@ -160,8 +198,10 @@ void add_beside(const PreparedMesh& mesh, const Capsule& capsule, const CapsuleP
       return;
     }
   }
-  add_minima(mesh, capsule, places, std::nullopt, limit, contacts);
+  // The nearest place and both ends hold it, if there is no time for more.
+  add_minima(mesh, capsule, places, 0, std::min<std::size_t>(places.count, 1), std::nullopt, limit, contacts);
   add_end_balls(mesh, capsule, limit, contacts);
+  add_minima(mesh, capsule, places, 1, places.count, std::nullopt, limit, contacts);
 }
 
 // The deepest first, then always the one farthest from those before it.
@@ -216,7 +256,7 @@ int collide_capsule(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, i
   CapsuleContacts found;
   if (places.count > 0 && places.all[0].distance <= same_place * capsule.radius) {
     const std::optional<Vec3> out = add_crossing(mesh, capsule, places, limit, found);
-    add_minima(mesh, capsule, places, out, limit, found);
+    add_minima(mesh, capsule, places, 0, places.count, out, limit, found);
   } else {
     add_beside(mesh, capsule, places, limit, found);
   }

@@ -29,6 +29,18 @@ struct Places {
   bool complete = true;
 };
 
+// Adds the nearest point of the triangle if it is no farther than the radius. False if there is no room or time for it.
+bool add_place(const PreparedMesh& mesh, const Vec3& center, double radius, std::uint32_t triangle, const Limit& limit,
+               Places& places) noexcept {
+  if (limit.time_is_up()) return false;
+  const Vec3 point = closest_point(mesh.corners(triangle), center);
+  const double distance = (point - center).norm();
+  if (distance > radius) return true;
+  if (places.count == places.all.size()) return false;
+  places.all[places.count++] = {point, distance, triangle};
+  return true;
+}
+
 // The nearest point of every triangle that is no farther than the radius, nearest first.
 void find_places(const PreparedMesh& mesh, const Vec3& center, double radius, Limit& limit, Places& places) noexcept {
   std::array<std::uint32_t, most_near_triangles> near;
@@ -36,14 +48,15 @@ void find_places(const PreparedMesh& mesh, const Vec3& center, double radius, Li
   const std::size_t count = query::triangles_in_box(*mesh.shape, center, Mat3::Identity(), Vec3::Constant(radius), near,
                                                     limit.units, &places.complete, &visited);
   limit.spend(visited);
-  for (std::size_t i = 0; i < count; ++i) {
-    if (limit.time_is_up()) {
-      places.complete = false;
-      break;
-    }
-    const Vec3 point = closest_point(mesh.corners(near[i]), center);
-    const double distance = (point - center).norm();
-    if (distance <= radius) places.all[places.count++] = {point, distance, near[i]};
+  const auto add = [&](std::uint32_t triangle) { return add_place(mesh, center, radius, triangle, limit, places); };
+  if (places.complete || limit.units == 0) {
+    places.complete = std::all_of(near.begin(), near.begin() + count, add) && places.complete;
+  } else {  // of a fine mesh, the box around a ball has many more than the ball touches
+    places.complete = mesh.triangle_tree.all_near(
+        [&](const Vec3& middle, const Vec3& half) {
+          return ((center - middle).cwiseAbs() - half).cwiseMax(0.0).norm() <= radius;
+        },
+        add, limit.units);
   }
   std::sort(places.all.begin(), places.all.begin() + places.count, [](const Place& a, const Place& b) {
     return a.distance != b.distance ? a.distance < b.distance : a.triangle < b.triangle;
