@@ -25,7 +25,7 @@ constexpr std::array<std::size_t, octants> in_order = {0, 3, 5, 6, 7, 4, 2, 1};
 struct Near {
   std::array<std::uint32_t, Pieces::most> triangles;
   std::size_t count = 0;
-  std::array<std::span<const std::uint32_t>, 2 * octants> groups;
+  std::array<std::span<const std::uint32_t>, 2 * octants + 1> groups;
   std::size_t group_count = 0;
 
   [[nodiscard]] std::span<std::uint32_t> room(std::size_t most) noexcept {
@@ -118,6 +118,19 @@ bool sift(const PreparedMesh& mesh, const Sieve& sieve, const ConvexBody& body, 
   return all;
 }
 
+/// What is in the octant's box, and perhaps in the body; found sooner.
+std::size_t find_in_box(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const ConvexBody& body,
+                        std::size_t octant, Limit& limit, std::span<std::uint32_t> found) noexcept {
+  const Vec3& half = body.box_half_extents();
+  const Vec3 signs(octant & 1U ? 0.5 : -0.5, octant & 2U ? 0.5 : -0.5, octant & 4U ? 0.5 : -0.5);
+  const Vec3 center = body_in_mesh * Vec3(body.box_center() + half.cwiseProduct(signs));
+  std::uint64_t visited = 0;
+  const std::size_t count = query::triangles_in_box(*mesh.shape, center, body_in_mesh.rotation, 0.5 * half, found,
+                                                    limit.nodes_in_time(time_for_pieces), nullptr, &visited);
+  limit.spend(visited);
+  return count;
+}
+
 /// Octant by octant, each its share of the room; then what is left of it goes to those that need more. What lies beside
 /// the body in its box takes no place of what is in the body.
 void find_by_octants(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const ConvexBody& body, Limit& limit,
@@ -135,8 +148,9 @@ void find_by_octants(const PreparedMesh& mesh, const math::Pose& body_in_mesh, c
     std::size_t found = 0;
     const bool all =
         sift(mesh, sieve, body, mesh_in_body, octant, skipped, std::min(limit.units, nodes), limit, room, found);
-    near.add_group(found);
     pieces.cut_off = pieces.cut_off || (!all && found < room.size());
+    if (!all && found == 0 && skipped == 0) found = find_in_box(mesh, body_in_mesh, body, octant, limit, room);
+    near.add_group(found);
     return all;
   };
   for (const std::size_t octant : in_order) {
@@ -169,7 +183,7 @@ void find_near(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const C
     return near.add_group(found);
   }
   find_by_octants(mesh, body_in_mesh, body, limit, pieces, near);
-  if (near.count == 0 && pieces.cut_off) near.add_group(found);
+  if (pieces.cut_off && near.count == 0) near.add_group(found);
 }
 
 /// How far it is along a line to where it comes out of the triangle; negative if it does not.
