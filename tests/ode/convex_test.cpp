@@ -69,6 +69,37 @@ class ConvexTest : public OdeTest {
   std::uniform_real_distribution<double> uniform{-1.0, 1.0};
 };
 
+// Under a tip that leans, the section that the floor makes has no depth: the tip is below the floor beside it.
+TEST_F(ConvexTest, ATipIsAsDeepAsItGoesBelowTheFloor) {
+  Arrays spike;
+  for (const Vec3& corner :
+       {Vec3(-0.3, -0.3, -0.3), Vec3(0.9, -0.3, -0.3), Vec3(-0.3, 0.9, -0.3), Vec3(-0.3, -0.3, 0.9)})
+    spike.points.insert(spike.points.end(), corner.data(), corner.data() + 3);
+  for (const auto& face : std::vector<std::vector<unsigned>>{{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}})
+    spike.add(face);
+  const dGeomID convex = convex_of(spike);
+  for (const std::uint32_t cells : {1u, 16u}) {
+    const dGeomID floor = mesh_geom(box_shape(4, 4, 1, cells), space);
+    dGeomOddsMeshSetCarryMotion(floor, 0);
+    for (int round = 0; round < 300; ++round) {
+      rotate(convex, Vec3(uniform(random), uniform(random), uniform(random)), 3.0 * uniform(random));
+      dGeomSetPosition(convex, 0.5 * uniform(random), 0.5 * uniform(random), 0.0);
+      dReal aabb[6];
+      dGeomGetAABB(convex, aabb);
+      const double depth = 0.01 + 0.005 * uniform(random);
+      const dReal* const p = dGeomGetPosition(convex);
+      dGeomSetPosition(convex, p[0], p[1], 0.5 - aabb[4] - depth);
+      const auto contacts = collide(convex, floor);
+      ASSERT_FALSE(contacts.empty()) << cells << " cells, round " << round;
+      EXPECT_NEAR(contacts[0].depth, depth, 1e-6) << cells << " cells, round " << round;
+      for (const dContactGeom& contact : contacts) {
+        EXPECT_NEAR(contact.normal[2], 1.0, 1e-9) << cells << " cells, round " << round;
+        EXPECT_NEAR(contact.pos[2], 0.5, 1e-9);
+      }
+    }
+  }
+}
+
 TEST_F(ConvexTest, AConvexBoxAnswersLikeABox) {
   const Arrays arrays = cuboid(Vec3(0.25, 0.3, 0.35));
   const dGeomID convex = convex_of(arrays);

@@ -8,6 +8,7 @@
 #include "ode/collide/convex_patch.hpp"
 #include "ode/collide/gather_pieces.hpp"
 #include "ode/collide/manifold.hpp"
+#include "ode/collide/manifold_points.hpp"
 #include "ode/geom/geom_data.hpp"
 #include "ode/mesh/nearest_surface.hpp"
 #include "ode/mesh/triangle_corners.hpp"
@@ -18,11 +19,7 @@ namespace {
 
 constexpr std::size_t most_pieces = Pieces::most + Pieces::most_added;
 constexpr std::size_t most_patches = 6;
-constexpr std::size_t most_points = 256;
-constexpr double same_patch = 0.85;   // cosine of the largest angle to a patch's first normal, 32 degrees
-constexpr double least_depth = 1e-3;  // of the deepest point of a manifold
-constexpr double equally_deep = 1.0 - 1e-6;
-constexpr double clearly_shallower = 0.99;
+constexpr double same_patch = 0.85;       // cosine of the largest angle to a patch's first normal, 32 degrees
 constexpr double same_direction = 0.999;  // patches that leave the same way are one manifold
 constexpr double same_place = 1e-6;       // of the body's size
 
@@ -31,80 +28,6 @@ struct Patch {
   std::size_t count = 0;
   Exit exit;
   [[nodiscard]] std::span<const Piece* const> span() const noexcept { return {pieces.data(), count}; }
-};
-
-struct Point {
-  Vec3 position;  // on the surface, body frame
-  double depth;   // metres inside the body, against the direction
-  std::uint32_t triangle;
-};
-
-// The points of one manifold as a source for select_manifold; only those with a depth worth having.
-struct Points {
-  std::array<Point, most_points> all;
-  std::size_t count = 0;
-  Vec3 normal = Vec3::Zero();
-
-  void add(const Vec3& position, double depth, std::uint32_t triangle) noexcept {
-    if (count < most_points) all[count++] = {position, depth, triangle};
-  }
-  // Drops points that touch only: they would push where nothing overlaps, and hide deeper ones at the same place.
-  void keep_deep() noexcept {
-    double deepest = 0.0;
-    for (std::size_t i = 0; i < count; ++i) deepest = std::max(deepest, all[i].depth);
-    const auto shallow = [deepest](const Point& p) { return p.depth < least_depth * deepest; };
-    count = static_cast<std::size_t>(std::remove_if(all.begin(), all.begin() + count, shallow) - all.begin());
-  }
-  // Drops points that are nearer than `distance` to one that is clearly deeper.
-  void keep_apart(double distance) noexcept {
-    if (!(distance > 0.0)) return;
-    std::sort(all.begin(), all.begin() + count, [](const Point& a, const Point& b) { return a.depth > b.depth; });
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      bool hidden = false;
-      for (std::size_t k = 0; k < kept && !hidden; ++k) {
-        if (!(all[k].depth * clearly_shallower > all[i].depth)) break;  // nor is any after it
-        hidden = (all[k].position - all[i].position).norm() < distance;
-      }
-      if (!hidden) all[kept++] = all[i];
-    }
-    count = kept;
-  }
-  [[nodiscard]] const Vec3& position(std::uint32_t i) const noexcept { return all[i].position; }
-  template <class Value>
-  [[nodiscard]] std::uint32_t greatest(const Value& value) const noexcept {
-    std::uint32_t best = no_item;
-    double best_value = -std::numeric_limits<double>::infinity();
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const double v = value(all[i]);
-      if (v > best_value) {
-        best_value = v;
-        best = i;
-      }
-    }
-    return best;
-  }
-  // Of the deepest the outermost: stable where a whole face lies on the surface.
-  [[nodiscard]] std::uint32_t first() const noexcept {
-    double deepest = 0.0;
-    Vec3 middle = Vec3::Zero();
-    for (std::size_t i = 0; i < count; ++i) {
-      deepest = std::max(deepest, all[i].depth);
-      middle += all[i].position / static_cast<double>(count);
-    }
-    return greatest(
-        [&](const Point& p) { return p.depth < equally_deep * deepest ? -1.0 : (p.position - middle).squaredNorm(); });
-  }
-  [[nodiscard]] std::uint32_t farthest(const Vec3& from) const noexcept {
-    return greatest([&](const Point& p) {
-      const Vec3 d = p.position - from;
-      return (d - d.dot(normal) * normal).squaredNorm() + deeper_at_one_place * p.depth * p.depth;
-    });
-  }
-  [[nodiscard]] std::uint32_t extreme(const Vec3& direction) const noexcept {
-    const double for_depth = deeper_at_one_place * direction.norm();
-    return greatest([&](const Point& p) { return direction.dot(p.position) + for_depth * p.depth; });
-  }
 };
 
 // Greedy, largest piece first: a piece joins the first patch whose leader's normal is close, or leads a new one.
@@ -139,7 +62,8 @@ bool contains(const Piece& piece, const Vec3& point) noexcept {
 }
 
 // Corners of the body under the piece: where one dips through a face, no corner of the piece itself is deep.
-void add_corners_below(const Piece& piece, const Vec3& direction, const Features& features, Points& points) noexcept {
+void add_corners_below(const Piece& piece, const Vec3& direction, const Features& features,
+                       ManifoldPoints& points) noexcept {
   const double facing = piece.normal.dot(direction);
   if (!(facing > 1e-6)) return;
   for (std::size_t c = 0; c < features.corner_count; ++c) {
@@ -151,7 +75,8 @@ void add_corners_below(const Piece& piece, const Vec3& direction, const Features
 }
 
 // Edges of the surface over edges of the body: the deepest place where a ridge lies across an edge.
-void add_edge_crossings(const Piece& piece, const Vec3& direction, const Features& features, Points& points) noexcept {
+void add_edge_crossings(const Piece& piece, const Vec3& direction, const Features& features,
+                        ManifoldPoints& points) noexcept {
   for (std::size_t i = 0; i < piece.count; ++i) {
     if (piece.side[i] != Piece::own_edge) continue;
     const Vec3& begin = piece.corners[i];
@@ -175,7 +100,7 @@ bool is_flat(const Patch& patch) noexcept {
                      [&](const Piece* piece) { return piece->normal.dot(patch.pieces[0]->normal) > 1.0 - 1e-9; });
 }
 
-void add_corners(const Piece& piece, const Vec3& direction, const ConvexBody& body, Points& points) noexcept {
+void add_corners(const Piece& piece, const Vec3& direction, const ConvexBody& body, ManifoldPoints& points) noexcept {
   for (std::size_t i = 0; i < piece.count; ++i) {
     const Vec3 corner = body.pull_in(piece.corners[i]);
     points.add(corner, body.way_through(corner, -direction), piece.triangle);
@@ -183,7 +108,7 @@ void add_corners(const Piece& piece, const Vec3& direction, const ConvexBody& bo
 }
 
 void add_points(const Patch& patch, const Vec3& direction, const ConvexBody& body, bool ridges, const Limit& limit,
-                Points& points) noexcept {
+                ManifoldPoints& points) noexcept {
   Features features;
   body.add_features(direction, patch.exit.depth, features);
   const std::span<const Piece* const> pieces = patch.span();
@@ -203,9 +128,31 @@ void add_points(const Patch& patch, const Vec3& direction, const ConvexBody& bod
   for (std::size_t i = 0; i < few; ++i) add_corners(*pieces[i * pieces.size() / few], direction, body, points);
 }
 
+// Tips that lean are under the surface beside the section that it makes through the body, at whose corners the body is
+// shallow, or has no depth at all.
+void add_leaning_tips(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const ConvexBody& body,
+                      const Exit& exit, Limit& limit, ManifoldPoints& points) noexcept {
+  if (!body.may_lean() || !(exit.depth < dInfinity)) return;
+  Features features;
+  body.add_features(exit.direction, 0.5 * exit.depth, features);  // the lower half of what is below the surface
+  const double same = same_place * body.box_half_extents().norm();
+  std::size_t asked = 0;
+  for (const Vec3& corner : std::span(features.corners).first(features.corner_count)) {
+    const auto is_over = [&](const ManifoldPoint& p) {
+      return (p.position - corner).cross(exit.direction).norm() <= same;
+    };
+    if (std::any_of(points.all.begin(), points.all.begin() + points.count, is_over)) continue;
+    if (asked++ == ManifoldPoints::most_tips || limit.time_is_up(time_for_exits)) return;
+    const double most = exit.depth * (1.0 + 1e-6);
+    const auto above = surface_above(mesh, body_in_mesh, body, corner, exit.direction, most, limit);
+    if (above) points.add(corner + above->way * exit.direction, above->way, above->triangle, points.all.size());
+  }
+}
+
 // Patches whose exits lead the same way are one manifold; the room left is shared among the manifolds still to come.
-void write_manifolds(std::span<Patch> patches, const ConvexBody& body, const math::Pose& body_in_world,
-                     const Limit& limit, ContactWriter& writer, int room) noexcept {
+void write_manifolds(const PreparedMesh& mesh, const math::Pose& body_in_mesh, std::span<Patch> patches,
+                     const ConvexBody& body, const math::Pose& body_in_world, Limit& limit, ContactWriter& writer,
+                     int room) noexcept {
   std::sort(patches.begin(), patches.end(), [](const Patch& a, const Patch& b) { return a.exit.depth > b.exit.depth; });
   const auto same = [](const Patch& a, const Patch& b) {
     return a.exit.direction.dot(b.exit.direction) > same_direction;
@@ -219,11 +166,12 @@ void write_manifolds(std::span<Patch> patches, const ConvexBody& body, const mat
   const bool ridges = patches.size() > 1 || !is_flat(patches[0]) || body.crowding() > 0.0;
   for (std::size_t i = 0; i < patches.size() && !writer.full(); ++i) {
     if (leader[i] != i) continue;
-    Points points;
+    ManifoldPoints points;
     points.normal = patches[i].exit.direction;
     for (std::size_t k = i; k < patches.size(); ++k) {
       if (leader[k] == i) add_points(patches[k], points.normal, body, ridges, limit, points);
     }
+    add_leaning_tips(mesh, body_in_mesh, body, patches[i].exit, limit, points);
     points.keep_deep();
     points.keep_apart(body.crowding());
     const std::size_t share = (static_cast<std::size_t>(room - writer.count()) + manifolds - 1) / manifolds;
@@ -233,7 +181,7 @@ void write_manifolds(std::span<Patch> patches, const ConvexBody& body, const mat
                                               std::span(chosen).first(std::min(share, most_contacts)));
     const Vec3 into_mesh = -(body_in_world.rotation * points.normal);
     for (std::size_t c = 0; c < count; ++c) {
-      const Point& point = points.all[chosen[c]];
+      const ManifoldPoint& point = points.all[chosen[c]];
       writer.add(body_in_world * point.position, into_mesh, std::min(point.depth, patches[i].exit.depth),
                  point.triangle, query::no_feature);
     }
@@ -441,7 +389,7 @@ Seen write_convex_contacts(const PreparedMesh& mesh, const math::Pose& mesh_in_w
       leave_by_the_near_side(mesh, body_in_mesh, body, limit, std::span(patches).first(count));
       add_deepest(mesh, body_in_mesh, body, limit, pieces, std::span(patches).first(count));
     }
-    write_manifolds(std::span(patches).first(count), body, body_in_world, limit, writer, room);
+    write_manifolds(mesh, body_in_mesh, std::span(patches).first(count), body, body_in_world, limit, writer, room);
   }
   if (pieces.cut_off || limit.units == 0) return Seen::cut_off;
   return pieces.complete ? Seen::all : Seen::what_has_room;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 
 #include "ode/collide/convex_patch.hpp"
@@ -219,16 +220,15 @@ double entry(const Vec3& center, const Vec3& half, const Vec3& from, const Vec3&
 
 }  // namespace
 
-bool add_piece_above(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const ConvexBody& body, const Vec3& up,
-                     double most, Limit& limit, Pieces& pieces) noexcept {
+std::optional<Above> surface_above(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const ConvexBody& body,
+                                   const Vec3& point, const Vec3& up, double most, Limit& limit) noexcept {
   constexpr std::uint64_t most_units = 256;  // some ten microseconds: the search does not look at the clock
-  const Vec3 low = body.farthest(-up);
-  const Vec3 from = body_in_mesh * low;
+  constexpr double nothing = -std::numeric_limits<double>::infinity();
+  const Vec3 from = body_in_mesh * point;
   const Vec3 along = body_in_mesh.rotation * up;
   const double tolerance = 1e-9 * body.box_half_extents().norm();
   const std::uint64_t given = std::min(limit.nodes_in_time(time_for_exits), most_units);
   std::uint64_t left = given;
-  constexpr double nothing = -std::numeric_limits<double>::infinity();
   const std::uint32_t triangle = mesh.triangle_tree.greatest(
       [&](std::uint32_t t) {
         const double way = way_out(mesh.corners(t), from, along, tolerance);
@@ -236,16 +236,22 @@ bool add_piece_above(const PreparedMesh& mesh, const math::Pose& body_in_mesh, c
       },
       [&](const Vec3& center, const Vec3& half) { return -entry(center, half, from, along, tolerance); }, left);
   limit.units -= std::min(limit.units, given - left);
+  if (triangle == no_item) return std::nullopt;
+  return Above{triangle, way_out(mesh.corners(triangle), from, along, tolerance)};
+}
+
+bool add_piece_above(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const ConvexBody& body, const Vec3& up,
+                     double most, Limit& limit, Pieces& pieces) noexcept {
+  const auto above = surface_above(mesh, body_in_mesh, body, body.farthest(-up), up, most, limit);
+  if (!above || pieces.count == pieces.all.size()) return false;
   const auto end = pieces.all.begin() + static_cast<std::ptrdiff_t>(pieces.count);
-  const auto is_it = [triangle](const Piece& piece) { return piece.triangle == triangle; };
-  if (triangle == no_item || pieces.count == pieces.all.size() || std::any_of(pieces.all.begin(), end, is_it)) {
-    return false;
-  }
-  Corners corners = mesh.corners(triangle);
+  const auto is_it = [&](const Piece& piece) { return piece.triangle == above->triangle; };
+  if (std::any_of(pieces.all.begin(), end, is_it)) return false;
+  Corners corners = mesh.corners(above->triangle);
   const math::Pose mesh_in_body = body_in_mesh.inverse();
   for (Vec3& corner : corners) corner = mesh_in_body * corner;
   Piece& piece = pieces.all[pieces.count];
-  piece.triangle = triangle;
+  piece.triangle = above->triangle;
   if (!cut_by_sides(corners, body, piece)) return false;
   ++pieces.count;
   return true;

@@ -99,6 +99,9 @@ class ConvexBody {
   /// Points of a manifold nearer than this to a deeper one add nothing: a curved body is shallow beside its line of
   /// contact. 0: any may add.
   [[nodiscard]] virtual double crowding() const noexcept { return 0.0; }
+  /// Whether a tip may lean so far that a surface above it has it beside the section that the surface makes through the
+  /// body; none does whose faces meet at right angles.
+  [[nodiscard]] virtual bool may_lean() const noexcept { return false; }
   /// Whether a piece that the sides left over really meets the body.
   [[nodiscard]] virtual bool meets(const Piece&) const noexcept { return true; }
   /// Directions other than the surface's normals in which the body may leave a patch soonest.

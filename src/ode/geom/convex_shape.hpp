@@ -31,6 +31,7 @@ class ConvexShape final : public ConvexBody {
 
   [[nodiscard]] std::uint64_t number() const noexcept override { return number_; }
   [[nodiscard]] Vec3 farthest(const Vec3& direction) const noexcept override;
+  [[nodiscard]] bool may_lean() const noexcept override { return true; }
   void add_exits(std::span<const Piece* const> patch, ExitList& exits) const noexcept override;
   void add_features(const Vec3& up, double depth, Features& features) const noexcept override;
 
