@@ -250,6 +250,28 @@ TEST_F(BoxTest, ThroughAPlateItIsPushedOneWay) {
   }
 }
 
+// Of an open mesh the front: ground holds what lies deep in it. Of one with both its sides the nearer.
+TEST_F(BoxTest, ASheetOfOneLayerIsLeftAtItsFront) {
+  for (const bool both_sides : {false, true}) {
+    std::vector<mesh::Triangle> triangles = {{0, 1, 2}, {0, 2, 3}};
+    if (both_sides) triangles.insert(triangles.end(), {{0, 2, 1}, {0, 3, 2}});
+    auto sheet = mesh::TriangleMesh::make({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, std::move(triangles));
+    const dGeomID mesh = mesh_geom(
+        query::Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(sheet).value())).value(), space);
+    for (const dGeomID body : {dCreateBox(space, 0.2, 0.2, 0.2), dCreateCylinder(space, 0.1, 0.2)}) {
+      for (const double side : {1.0, -1.0}) {
+        dGeomSetPosition(body, 0.2, 0.3, 0.08 * side);
+        const auto contacts = collide(body, mesh);
+        ASSERT_GE(contacts.size(), 3u);
+        for (const dContactGeom& contact : contacts) {
+          EXPECT_NEAR(contact.normal[2], both_sides ? side : 1.0, 1e-9);
+          EXPECT_NEAR(contact.depth, both_sides || side > 0.0 ? 0.02 : 0.18, 1e-9);
+        }
+      }
+    }
+  }
+}
+
 // What the time leaves of many pieces of surface is from opposite sides: on those of one a body would tip over.
 TEST_F(BoxTest, InShortTimeItIsHeldOnOppositeSides) {
   const dGeomID floor = mesh_geom(box_shape(1.0, 1.0, 0.1, 40), space);

@@ -104,7 +104,7 @@ int oddsMeshDataBuildHeightfield(oddsMeshDataID data, const oddsHeightfield* fie
                                  const oddsBuildParams* params) ODDS_NOTHROW;
 
 int oddsMeshDataGetTriangleCount(oddsMeshDataID data) ODDS_NOTHROW; /* 0 if not built */
-/* 1 if every edge is matched by its opposite (a solid: partners fully inside are pushed out), else 0. */
+/* 1 if every edge is matched by its opposite and something is enclosed (a solid: what is inside is pushed out), or 0. */
 int oddsMeshDataIsClosed(oddsMeshDataID data) ODDS_NOTHROW;
 
 /* ---- Geoms ----------------------------------------------------------------------------------------------------- */
