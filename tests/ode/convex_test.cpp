@@ -69,6 +69,37 @@ class ConvexTest : public OdeTest {
   std::uniform_real_distribution<double> uniform{-1.0, 1.0};
 };
 
+// An edge of it across an edge of the surface, and the face that lies below the surface and that nothing cuts.
+TEST_F(ConvexTest, ItsWayOutIsAsShortAsABoxs) {
+  const Arrays arrays = cuboid(Vec3(0.3, 0.25, 0.2));
+  const dGeomID convex = convex_of(arrays);
+  const dGeomID box = dCreateBox(space, 0.6, 0.5, 0.4);
+  const dGeomID mesh = mesh_geom(box_shape(1.0, 0.8, 0.6, 3), space);
+  dGeomOddsMeshSetCarryMotion(mesh, 0);
+  const auto deepest = [](const std::vector<dContactGeom>& contacts) {
+    double depth = 0.0;
+    for (const dContactGeom& contact : contacts) depth = std::max(depth, static_cast<double>(contact.depth));
+    return depth;
+  };
+  int hits = 0;
+  int longer = 0;
+  for (int round = 0; round < 3000; ++round) {
+    const Vec3 axis(uniform(random), uniform(random), uniform(random));
+    const double angle = 3.0 * uniform(random);
+    const Vec3 place(0.9 * uniform(random), 0.9 * uniform(random), 0.9 * uniform(random));
+    for (const dGeomID geom : {convex, box}) {
+      rotate(geom, axis, angle);
+      dGeomSetPosition(geom, place.x(), place.y(), place.z());
+    }
+    const double ours = deepest(collide(convex, mesh));
+    if (!(ours > 0.0)) continue;
+    ++hits;
+    longer += ours > 1.01 * deepest(collide(box, mesh)) ? 1 : 0;
+  }
+  EXPECT_GT(hits, 1000);
+  EXPECT_LT(longer, hits / 30) << longer << " of " << hits;
+}
+
 // Under a tip that leans, the section that the floor makes has no depth: the tip is below the floor beside it.
 TEST_F(ConvexTest, ATipIsAsDeepAsItGoesBelowTheFloor) {
   Arrays spike;

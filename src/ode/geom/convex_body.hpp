@@ -32,7 +32,7 @@ struct Piece {
 /// Directions in which a body may leave a patch of surface.
 class ExitList {
  public:
-  static constexpr std::size_t most = 64;
+  static constexpr std::size_t most = 96;
 
   /// `facing`: where the surface faces; zero: all ways.
   explicit ExitList(const Vec3& facing) noexcept : facing_(facing) {}
@@ -100,7 +100,7 @@ class ConvexBody {
   /// contact. 0: any may add.
   [[nodiscard]] virtual double crowding() const noexcept { return 0.0; }
   /// Whether a tip may lean so far that a surface above it has it beside the section that the surface makes through the
-  /// body; none does whose faces meet at right angles.
+  /// body. None does of whose faces at a corner no two face away from each other.
   [[nodiscard]] virtual bool may_lean() const noexcept { return false; }
   /// Whether a piece that the sides left over really meets the body.
   [[nodiscard]] virtual bool meets(const Piece&) const noexcept { return true; }

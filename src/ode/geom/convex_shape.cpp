@@ -14,6 +14,8 @@ namespace {
 
 constexpr double same_plane = 1e-6;  // of the size: rounding of the client's arrays
 constexpr std::size_t most_face_exits = 32;
+constexpr std::size_t most_uncut_exits = 12;
+constexpr std::size_t few_directions = 6;  // of edges: a tetrahedron's
 
 Error refusal(const std::string& what, const std::string& remedy) { return {"convex", "", what, remedy}; }
 
@@ -97,10 +99,27 @@ Result<std::shared_ptr<const ConvexShape>> ConvexShape::make(std::span<const Vec
                    "give all faces");
   }
   shape->edges_.erase(std::unique(shape->edges_.begin(), shape->edges_.end()), shape->edges_.end());
+  for (const auto& [from, to] : shape->edges_) {
+    const Vec3 direction = (points[to] - points[from]).normalized();
+    const auto parallel = [&](const Vec3& other) { return std::abs(direction.dot(other)) > 1.0 - 1e-12; };
+    auto& known = shape->edge_directions_;
+    if (known.size() <= few_directions && std::none_of(known.begin(), known.end(), parallel))
+      known.push_back(direction);
+  }
   const auto beside_center = [&](const HalfSpace& face) { return face.offset - face.normal.dot(shape->center_); };
   const auto has_volume = [&](const HalfSpace& face) { return beside_center(face) > same_plane * size; };
   if (!std::all_of(shape->faces_.begin(), shape->faces_.end(), has_volume)) {
     return refusal("it has no volume", "give a solid");
+  }
+  for (const Vec3& point : points) {
+    std::vector<Vec3> normals;
+    for (const HalfSpace& face : shape->faces_) {
+      if (std::abs(face.normal.dot(point) - face.offset) <= same_plane * size) normals.push_back(face.normal);
+    }
+    for (const Vec3& a : normals) {
+      const auto faces_away = [&a](const Vec3& b) { return a.dot(b) < -same_plane; };
+      shape->leans_ = shape->leans_ || std::any_of(normals.begin(), normals.end(), faces_away);
+    }
   }
   shape->sides_ = shape->faces_;
   shape->box_center_ = 0.5 * (lower + upper);
@@ -137,6 +156,35 @@ Vec3 ConvexShape::farthest(const Vec3& direction) const noexcept {
   return *best;
 }
 
+// Across an edge of the surface and one of the body: of a body that has few directions of edges, any of them, as of a
+// box; else the edge of two faces that both cut a piece. (What the refinement finds alone is often a longer way.)
+void ConvexShape::add_crossings(std::span<const Piece* const> patch, ExitList& exits) const noexcept {
+  constexpr std::size_t most_edges = 8;  // of the surface; more add nothing but time
+  std::size_t edges = 0;
+  for (const Piece* piece : patch) {
+    for (std::size_t i = 0; i < piece->count; ++i) {
+      if (piece->side[i] != Piece::own_edge) continue;
+      if (edges++ == most_edges) return;
+      const Vec3 edge = piece->corners[(i + 1) % piece->count] - piece->corners[i];
+      const auto add = [&](const Vec3& along) {
+        const Vec3 across = edge.cross(along);
+        if (across.norm() > 1e-6 * edge.norm()) exits.add_facing(across);
+      };
+      if (edge_directions_.size() <= few_directions) {
+        std::for_each(edge_directions_.begin(), edge_directions_.end(), add);
+        continue;
+      }
+      for (std::size_t a = 0; a < piece->count; ++a) {
+        for (std::size_t b = 0; b < a; ++b) {
+          if (piece->side[a] == Piece::own_edge || piece->side[b] == Piece::own_edge) continue;
+          add(faces_[static_cast<std::size_t>(piece->side[a])].normal.cross(
+              faces_[static_cast<std::size_t>(piece->side[b])].normal));
+        }
+      }
+    }
+  }
+}
+
 // Through the faces that the surface enters by, and the way that the refinement finds. One that lies wholly within has
 // entered by none: the nearest ones are tried.
 void ConvexShape::add_exits(std::span<const Piece* const> patch, ExitList& exits) const noexcept {
@@ -153,16 +201,22 @@ void ConvexShape::add_exits(std::span<const Piece* const> patch, ExitList& exits
       exits.add(-faces_[static_cast<std::size_t>(side)].normal);
     }
   }
-  if (count > 0 || patch.empty()) return;
+  if (patch.empty()) return;
+  // One that lies below the surface altogether, as the face on which the body rests, is cut by none.
   const Vec3& within = patch.front()->corners[0];
   const auto way = [&](std::uint16_t face) { return faces_[face].offset - faces_[face].normal.dot(within); };
   std::array<std::uint16_t, most_faces> nearest;
   const auto end = nearest.begin() + static_cast<std::ptrdiff_t>(faces_.size());
   std::iota(nearest.begin(), end, std::uint16_t{0});
-  const auto last = nearest.begin() + static_cast<std::ptrdiff_t>(std::min(most_face_exits, faces_.size()));
+  const std::size_t most = count > 0 ? most_uncut_exits : most_face_exits;
+  const auto last = nearest.begin() + static_cast<std::ptrdiff_t>(std::min(most, faces_.size()));
   std::partial_sort(nearest.begin(), last, end,
                     [&](std::uint16_t a, std::uint16_t b) { return way(a) != way(b) ? way(a) < way(b) : a < b; });
-  std::for_each(nearest.begin(), last, [&](std::uint16_t face) { exits.add(-faces_[face].normal); });
+  std::for_each(nearest.begin(), last, [&](std::uint16_t face) {
+    const auto side = static_cast<std::int16_t>(face);
+    if (std::find(used.begin(), used.begin() + count, side) == used.begin() + count) exits.add(-faces_[face].normal);
+  });
+  add_crossings(patch, exits);
 }
 
 // Of too many corners the lowest are kept.

@@ -31,7 +31,7 @@ class ConvexShape final : public ConvexBody {
 
   [[nodiscard]] std::uint64_t number() const noexcept override { return number_; }
   [[nodiscard]] Vec3 farthest(const Vec3& direction) const noexcept override;
-  [[nodiscard]] bool may_lean() const noexcept override { return true; }
+  [[nodiscard]] bool may_lean() const noexcept override { return leans_; }
   void add_exits(std::span<const Piece* const> patch, ExitList& exits) const noexcept override;
   void add_features(const Vec3& up, double depth, Features& features) const noexcept override;
 
@@ -42,10 +42,14 @@ class ConvexShape final : public ConvexBody {
   /// One that a single face has, of `edges_` in order, each as often as polygons have it.
   [[nodiscard]] std::optional<std::array<unsigned, 2>> open_edge(double tolerance) const noexcept;
 
+  void add_crossings(std::span<const Piece* const> patch, ExitList& exits) const noexcept;
+
   std::vector<Vec3> points_;
   std::vector<HalfSpace> faces_;
   std::vector<std::array<unsigned, 2>> edges_;
-  std::uint64_t number_;  ///< unique for the process, never 0
+  std::vector<Vec3> edge_directions_;  ///< unit, of `edges_`, no two parallel; of many only the first
+  bool leans_ = false;                 ///< two faces at one corner face away from each other
+  std::uint64_t number_;               ///< unique for the process, never 0
 };
 
 }  // namespace odds::ode
