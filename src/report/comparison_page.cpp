@@ -87,7 +87,7 @@ std::string row(const ComparedRun& run, bool is_exact) {
   const ForceDifference& d = run.difference;
   return fmt::format(
       "<tr><th>{}</th><td>{}</td><td>{:.0f}</td>{}<td>{:.3f} %</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
-      html_escaped(run.name), percent(run.proved_share), run.units_per_query,
+      html_escaped(run.name), run.proved_share ? percent(*run.proved_share) : "–", run.units_per_query,
       is_exact ? "<td>–</td><td>–</td>" : cells(d), 100.0 * d.noise_share,
       is_exact || d.ticks == 0 ? "–" : fmt::format("{:.3f} %", 100.0 * d.added_noise_share), is_exact ? "–" : onset(d),
       is_exact ? "–" : fmt::format("{:.3g} N", d.largest_false_n));
@@ -163,7 +163,8 @@ std::string csv(const Comparison& comparison) {
       "angle_p50_deg,angle_p95_deg,noise_share,added_noise_share,onsets,onsets_missed,onset_p99_ticks,missed_in_row,"
       "largest_false_n\n";
   for (const ComparedRun& run : comparison.runs) {
-    const std::string query = fmt::format("{},{}", run.proved_share, run.units_per_query);
+    const std::string query =
+        fmt::format("{},{}", run.proved_share ? fmt::format("{}", *run.proved_share) : "", run.units_per_query);
     text += fmt::format("{},own,{},{}\n", run.name, query, columns(run.difference));
     if (run.at_same_poses) text += fmt::format("{},exact,,,{}\n", run.name, columns(*run.at_same_poses));
   }

@@ -64,7 +64,7 @@ Result<report::ComparedRun> run_with(std::string name, scene::Scene scene, const
     queries += tick.queries;
     units += static_cast<double>(tick.node_pairs + tick.triangle_pairs);
   }
-  run.proved_share = asked > 0 ? static_cast<double>(proved) / static_cast<double>(asked) : 1.0;
+  if (asked > 0) run.proved_share = static_cast<double>(proved) / static_cast<double>(asked);
   run.units_per_query = queries > 0.0 ? units / queries : 0.0;
   run.samples = report::force_samples(outcome.ticks, made.value()->scene().loop.period_ns);
   return run;
@@ -128,8 +128,10 @@ void print(const report::Comparison& comparison) {
       report::noise_band(comparison.rate_hz));
   for (const report::ComparedRun& run : comparison.runs) {
     const report::ForceDifference& d = run.difference;
-    fmt::print("  {:>20}: {:5.1f} % of ticks proved, {}, {:.3f} % added noise, {}\n", run.name,
-               100.0 * run.proved_share, errors(d), 100.0 * d.added_noise_share, onset(d));
+    const std::string proved =
+        run.proved_share ? fmt::format("{:5.1f} % of ticks proved", 100.0 * *run.proved_share) : "no query in any tick";
+    fmt::print("  {:>20}: {}, {}, {:.3f} % added noise, {}\n", run.name, proved, errors(d), 100.0 * d.added_noise_share,
+               onset(d));
   }
 }
 

@@ -112,6 +112,34 @@ TEST_F(Import, MeshesAreScaledAndFoundInPackages) {
   EXPECT_EQ(good("r.urdf", text("file://pack/meshes/block.stl", "")).bodies, 1U) << "wherever import is called";
 }
 
+TEST_F(Import, MeshesAreFoundInRos2sPackages) {
+  std::filesystem::create_directories(folder_.path() / "install/share/arm/meshes");
+  ASSERT_FALSE(
+      mesh::write(mesh::made::make_shape("made:box").value(), folder_.path() / "install/share/arm/meshes/a.stl"));
+  const std::string text =
+      urdf(link("a", "<collision><geometry><mesh filename=\"package://arm/meshes/a.stl\"/></geometry></collision>"));
+  const char* const before = std::getenv("AMENT_PREFIX_PATH");
+  const std::string kept = before == nullptr ? "" : before;
+  ::setenv("AMENT_PREFIX_PATH", ("/nowhere:" + folder_ / "install").c_str(), 1);
+  EXPECT_EQ(good("r.urdf", text).bodies, 1U);
+  before == nullptr ? ::unsetenv("AMENT_PREFIX_PATH") : ::setenv("AMENT_PREFIX_PATH", kept.c_str(), 1);
+}
+
+TEST_F(Import, AddressesHaveBlanksAsTheyAreOrAsProgramsWriteThem) {
+  std::filesystem::create_directories(folder_.path() / "my parts");
+  const mesh::TriangleMesh box = mesh::made::make_shape("made:box").value();
+  ASSERT_FALSE(mesh::write(box, folder_.path() / "my parts/a b.stl"));
+  ASSERT_FALSE(mesh::write(box, folder_.path() / "my parts/50%20.stl"));
+  const auto text = [](const std::string& uri) {
+    return urdf(link("a", "<collision><geometry><mesh filename=\"" + uri + "\"/></geometry></collision>"));
+  };
+  for (const char* const uri :
+       {"file://my%20parts/a%20b.stl", "file://my parts/a b.stl", "my parts/a b.stl", "package://my%20parts/a%20b.stl",
+        "file://my%20parts/50%2520.stl", "my parts/50%20.stl", "file://my parts/50%20.stl"}) {
+    EXPECT_EQ(good("r.urdf", text(uri)).bodies, 1U) << uri;
+  }
+}
+
 TEST_F(Import, RoundShapesAreClosedAndOfTheirSize) {
   const auto shape = [](const std::string& element) {
     return urdf(link("a", "<collision><geometry>" + element + "</geometry></collision>"));

@@ -116,6 +116,7 @@ TEST(ForceComparison, ThePageShowsEveryRunAndEscapesNames) {
     run.samples = swing(nothing);
     run.difference = compare_forces(run.samples, run.samples, 0.05, rate_hz);
     if (!comparison.runs.empty()) run.at_same_poses = run.difference;
+    if (run.name != "20 us") run.proved_share = 0.25;  // in that there was no query
     comparison.runs.push_back(std::move(run));
   }
   ASSERT_FALSE(write_comparison(folder.path(), comparison));
@@ -129,6 +130,8 @@ TEST(ForceComparison, ThePageShowsEveryRunAndEscapesNames) {
   EXPECT_NE(page.find("4,000 ticks with a force of at least 0.05 N"), std::string::npos);
   const std::string csv = testing::contents_of(folder / "comparison.csv");
   EXPECT_EQ(csv.find("run,poses,proved_share"), 0U);
+  EXPECT_NE(csv.find("\nno limit,own,0.25,"), std::string::npos);
+  EXPECT_NE(csv.find("\n20 us,own,,"), std::string::npos) << "nothing was proved where nothing was asked";
   const auto columns = [](const std::string& line) { return std::count(line.begin(), line.end(), ','); };
   std::istringstream lines(csv);
   std::string line;

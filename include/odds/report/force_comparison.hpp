@@ -50,9 +50,9 @@ struct ForceDifference {
 
 /// One run of the scene.
 struct ComparedRun {
-  std::string name;              ///< "no limit", "20 us"
-  double proved_share = 0.0;     ///< of the queries' ticks, [0, 1]
-  double units_per_query = 0.0;  ///< mean work
+  std::string name;                    ///< "no limit", "20 us"
+  std::optional<double> proved_share;  ///< of the queries' ticks, [0, 1]; none if there was no query
+  double units_per_query = 0.0;        ///< mean work
   std::vector<ForceSample> samples;
   ForceDifference difference;
   /// Of the force of contacts on the tool, in each tick at the pose of the exact run. None for runs without a limit.

@@ -16,21 +16,50 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<const char*, 4> path_variables = {"ROS_PACKAGE_PATH", "GZ_SIM_RESOURCE_PATH",
-                                                       "IGN_GAZEBO_RESOURCE_PATH", "GAZEBO_MODEL_PATH"};
+/// An environment variable that lists folders, and where in each of them packages are.
+struct PathVariable {
+  const char* name;
+  const char* inside;
+};
+constexpr std::array<PathVariable, 5> path_variables = {{{"ROS_PACKAGE_PATH", ""},
+                                                         {"AMENT_PREFIX_PATH", "share"},
+                                                         {"GZ_SIM_RESOURCE_PATH", ""},
+                                                         {"IGN_GAZEBO_RESOURCE_PATH", ""},
+                                                         {"GAZEBO_MODEL_PATH", ""}}};
 
 std::vector<fs::path> folders_of_environment() {
   std::vector<fs::path> folders;
-  for (const char* variable : path_variables) {
-    const char* value = std::getenv(variable);
+  for (const PathVariable& variable : path_variables) {
+    const char* value = std::getenv(variable.name);
     std::string_view rest = value == nullptr ? "" : value;
     while (!rest.empty()) {
       const std::size_t end = std::min(rest.find(':'), rest.size());
       if (end > 0) folders.emplace_back(rest.substr(0, end));
+      if (end > 0 && *variable.inside != '\0') folders.back() /= variable.inside;
       rest.remove_prefix(std::min(end + 1, rest.size()));
     }
   }
   return folders;
+}
+
+int hex_digit(char c) noexcept {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+/// "%20" and the like as the bytes that they stand for; what is no two digits stays, and so does a byte 0.
+std::string decoded(std::string_view address) {
+  std::string text;
+  for (std::size_t i = 0; i < address.size(); ++i) {
+    const int high = i + 2 < address.size() && address[i] == '%' ? hex_digit(address[i + 1]) : -1;
+    const int low = high >= 0 ? hex_digit(address[i + 2]) : -1;
+    const int byte = low >= 0 ? 16 * high + low : 0;
+    text += byte > 0 ? static_cast<char>(byte) : address[i];
+    if (byte > 0) i += 2;
+  }
+  return text;
 }
 
 }  // namespace
@@ -76,7 +105,12 @@ fs::path Resources::locate(const std::string& uri, haptics::Place place) const {
     fail(place, fmt::format("'{}': addresses of this kind are not followed", uri),
          "give a path, package://, model:// or file://");
   }
-  const std::vector<fs::path> tried = candidates(uri);
+  std::vector<fs::path> tried = candidates(uri);
+  // Programs write addresses with blanks as "%20", people as they are.
+  if (const std::string plain = decoded(uri); plain != uri && uri.find("://") != std::string::npos) {
+    const std::vector<fs::path> more = candidates(plain);
+    tried.insert(tried.end(), more.begin(), more.end());
+  }
   for (const fs::path& path : tried) {
     std::error_code code;
     if (fs::is_regular_file(path, code)) return path.lexically_normal();
