@@ -76,6 +76,7 @@ TEST_P(BoltInItsNut, ExactRunsForgetThePoseBefore) {
     static_cast<void>(pair.run({Mat3::Identity(), far}, {.max_contacts = 8}));
     const double found = deepest(pair.run(deep, {.max_contacts = 8}));
     EXPECT_GE(found, 0.95 * once) << "a normal that was known breaks ties";
+    EXPECT_LE(found, 1.3 * once);
     // Threads that are in each other have many summits: what is known now may lead to a higher one, and stays.
     const double settled = deepest(pair.run(deep, {.max_contacts = 8}));
     EXPECT_GE(settled, (1.0 - 1e-12) * found);

@@ -105,6 +105,32 @@ TEST(OnePair, IsWhatTheMachineryForManyMakesOfIt) {
   EXPECT_LT(flat, taken - 1000U);
 }
 
+TEST(OnePair, IsTheSameWhenTheBodiesAreExchanged) {
+  std::size_t taken = 0;
+  std::size_t others = 0;
+  for (std::uint64_t stream = 0; stream < 3000; ++stream) {
+    Meeting meeting(stream);
+    if (!meeting.input.solid_a || !meeting.input.solid_b) continue;
+    meeting.input.previous_normal = meeting.input.came = nullptr;
+    PatchInput exchanged = meeting.input;
+    const math::Pose& pose = meeting.input.pose_b_in_a;
+    exchanged.pose_b_in_a = pose.inverse();
+    std::swap(exchanged.vertices_a, exchanged.vertices_b);
+    const auto contact = contact_of_one_pair(meeting.input, best_kernels());
+    const auto other = contact_of_one_pair(exchanged, best_kernels());
+    if (!contact || !other) continue;
+    ++taken;
+    if (contact->normal.dot(pose.rotation * other->normal) > -1.0 + 1e-9) {
+      ++others;
+      continue;
+    }
+    EXPECT_NEAR(contact->depth, other->depth, 1e-9) << stream;
+    EXPECT_LE((contact->position - pose * other->position).norm(), 1e-9) << stream;
+  }
+  EXPECT_GT(taken, 1000U);
+  EXPECT_LE(others, taken / 200);  // two directions as good; one in ten when B's face came before A's
+}
+
 TEST(OnePair, HasTheSameBitsOnAllInstructionSets) {
   for (std::uint64_t stream = 0; stream < 500; ++stream) {
     const Meeting meeting(stream);

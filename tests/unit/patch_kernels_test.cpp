@@ -99,7 +99,9 @@ TEST(PatchKernels, AreThoseThatTheBuilderIsGivenThisTime) {
   input.kernels = nullptr;  // the best
   calls = {};
   const auto best = scene.builder->build(input);
-  EXPECT_EQ(calls.place + calls.cut + calls.corners + calls.same_faces + calls.flat_faces + calls.farthest, 0);
+  EXPECT_EQ(calls.place + calls.cut + calls.corners + calls.corners_along + calls.same_faces + calls.flat_faces +
+                calls.farthest,
+            0);
   ASSERT_EQ(made.size(), best.size());
   for (std::size_t i = 0; i < made.size(); ++i) EXPECT_EQ(made[i].position, best[i].position);
 }
@@ -120,6 +122,10 @@ TEST(PatchKernels, OfAPairAreThoseOfItsInstructionSet) {
     EXPECT_GT(calls.cut, 0);
     EXPECT_GT(calls.corners, 0);
     EXPECT_GT(calls.farthest, 0);
+    run_pair(pair, {Eigen::AngleAxisd(0.3, Vec3(1, 2, 3).normalized()).toRotationMatrix(), pose.translation},
+             {.max_contacts = 1});
+    EXPECT_FALSE(pair.answer.contacts.empty());
+    EXPECT_GT(calls.corners_along, 0);
   }
 }
 

@@ -12,6 +12,7 @@
 #include "odds/math/random.hpp"
 #include "odds/mesh/made/by_name.hpp"
 #include "odds/query/pair.hpp"
+#include "support/contact_scene.hpp"
 
 namespace odds::query {
 namespace {
@@ -90,14 +91,101 @@ double deepest_along(const Convex& a, const Convex& b, const Vec3& normal, const
   return most;
 }
 
+/// How far B is from A along a way where it leaves it.
+double parting(Pair& pair, const Mat3& rotation, const Vec3& way) {
+  double low = 0.0;
+  double high = 10.0;
+  for (int k = 0; k < 30; ++k) {
+    const double middle = 0.5 * (low + high);
+    pair.reset();
+    (pair.run({rotation, middle * way}, {.max_contacts = 0}).verdict == Verdict::hit ? low : high) = middle;
+  }
+  return low;
+}
+
+std::shared_ptr<const Shape> shape_of(mesh::TriangleMesh mesh) {
+  return Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(mesh))).value();
+}
+
+double deepest_of(const Answer& answer) {
+  double depth = 0.0;
+  for (const Contact& contact : answer.contacts) depth = std::max(depth, contact.depth);
+  return depth;
+}
+
+TEST(Summits, OfBodiesFarFromTheirOriginsAreFound) {
+  const mesh::TriangleMesh peg = mesh::made::make_shape("peg").value();
+  const auto box = shape_of(mesh::made::make_shape("box").value());
+  Pair near = Pair::make(shape_of(peg), box).value();
+  for (const double far : {1e3, 1e6, 3e6}) {
+    std::vector<Vec3> moved(peg.vertices().begin(), peg.vertices().end());
+    for (Vec3& v : moved) v.x() += far;
+    Pair away =
+        Pair::make(shape_of(mesh::TriangleMesh::make(moved, {peg.triangles().begin(), peg.triangles().end()}).value()),
+                   box)
+            .value();
+    math::Random random(7);
+    for (int i = 0; i < 40; ++i) {
+      const Mat3 rotation = random.rotation().toRotationMatrix();
+      const Vec3 way = random.direction();
+      const Vec3 place = (parting(near, rotation, way) - random.uniform(0.005, 0.05)) * way;
+      near.reset();
+      const double expected = deepest_of(near.run({rotation, place}, {.max_contacts = 4}));
+      away.reset();
+      const double depth = deepest_of(away.run({rotation, place + Vec3(far, 0.0, 0.0)}, {.max_contacts = 4}));
+      EXPECT_NEAR(depth, expected, 0.01 * expected) << far << ", " << i;
+    }
+  }
+}
+
+/// Contacts of two boxes or of a box and a ball, and how many rays they took.
+struct Counted {
+  static inline int rays = 0;
+  std::vector<Contact> contacts;
+
+  Counted(const test::Body& a, const test::Body& b, const math::Pose& b_in_a) {
+    test::ContactScene scene{a, b, b_in_a};
+    scene.find_hits();
+    PatchInput input = scene.input();
+    input.probe_both = [](const DepthProbe& first, ProbeRay& ray_a, const DepthProbe& second,
+                          ProbeRay& ray_b) noexcept {
+      rays += 2;
+      for (auto [probe, ray] : {std::pair(&first, &ray_a), std::pair(&second, &ray_b)}) {
+        ray->found =
+            probe->ray(probe->self, ray->origin, ray->direction, ray->max_distance, &ray->distance, &ray->triangle);
+      }
+    };
+    rays = 0;
+    const auto built = scene.builder->build(input);
+    contacts.assign(built.begin(), built.end());
+  }
+};
+
+TEST(Tips, OfCornersTakeNoRaysButThatAtTheirCentre) {
+  const test::Body brick = test::Body::box(1.0, 1.0, 1.0, 1);
+  const math::Pose on_its_corner = test::turn(Vec3(1.0, -1.0, 0.1), 0.9, Vec3::Zero());
+  double lowest = 0.0;
+  for (const Vec3& v : brick.vertices) lowest = std::min(lowest, (on_its_corner * v).z());
+  math::Pose corner = on_its_corner;
+  corner.translation = Vec3(0.21, 0.13, 0.5 - lowest - 0.01);
+  const Counted at_a_corner(brick, brick, corner);
+  EXPECT_EQ(Counted::rays, 2);
+  ASSERT_FALSE(at_a_corner.contacts.empty());
+  EXPECT_NEAR(at_a_corner.contacts[0].depth, 0.01, 1e-12);
+  EXPECT_LT(at_a_corner.contacts[0].normal.z(), -1.0 + 1e-12);
+
+  const test::Body ball = test::Body::made("icosphere:radius=0.5,frequency=16");
+  const Counted of_a_ball(brick, ball, {Mat3::Identity(), {0.21, 0.13, 0.5 + 0.5 - 0.03}});
+  EXPECT_GT(Counted::rays, 10) << "its triangles at the rim do not know how deep it is";
+  ASSERT_FALSE(of_a_ball.contacts.empty());
+  EXPECT_NEAR(of_a_ball.contacts[0].depth, 0.03, 1e-3);
+}
+
 class SummitsOfConvex : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(SummitsOfConvex, BodiesAreFound) {
   const mesh::TriangleMesh body = mesh::made::make_shape(GetParam()).value();
   const mesh::TriangleMesh box = mesh::made::make_shape("box").value();
-  const auto shape_of = [](const mesh::TriangleMesh& mesh) {
-    return Shape::build(std::make_shared<const mesh::TriangleMesh>(mesh)).value();
-  };
   Pair pair = Pair::make(shape_of(body), shape_of(box)).value();
   std::vector<double> ratios;
   math::Random random(45);
@@ -105,20 +193,11 @@ TEST_P(SummitsOfConvex, BodiesAreFound) {
     math::Pose pose;
     pose.rotation = random.rotation().toRotationMatrix();
     const Vec3 way = random.direction();
-    double low = 0.0;
-    double high = 10.0;
-    for (int k = 0; k < 30; ++k) {
-      const double middle = 0.5 * (low + high);
-      pose.translation = middle * way;
-      pair.reset();
-      (pair.run(pose, {.max_contacts = 0}).verdict == Verdict::hit ? low : high) = middle;
-    }
-    pose.translation = (low - random.uniform(1e-4, 0.05)) * way;
+    pose.translation = (parting(pair, pose.rotation, way) - random.uniform(1e-4, 0.05)) * way;
     pair.reset();
     const Answer& answer = pair.run(pose, {.max_contacts = 4});
     if (answer.contacts.empty()) continue;
-    double depth = 0.0;
-    for (const Contact& contact : answer.contacts) depth = std::max(depth, contact.depth);
+    const double depth = deepest_of(answer);
     const Contact& first = answer.contacts.front();
     const double most = deepest_along(Convex(body, {}), Convex(box, pose), first.normal, first.position);
     EXPECT_LE(depth, most * (1.0 + 1e-6)) << i;

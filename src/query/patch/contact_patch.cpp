@@ -11,6 +11,7 @@
 #include "query/patch/eight.hpp"
 #include "query/patch/scratch.hpp"
 #include "query/patch/summit.hpp"
+#include "query/patch/tip.hpp"
 #include "query/spread_step.hpp"
 
 namespace odds::query {
@@ -281,13 +282,19 @@ Patch PatchBuilder::Scratch::patch_along(const Vec3& normal, const PatchInput& i
   made.chosen = patch::choose(extremes.all(), frame, most_contacts, patch::spacing(made.depth, lever));
   Measured measured;
   std::size_t count = made.chosen.count;
-  if (input.probe_a && input.probe_b && sums.length > 0.0 && !watch.late()) {
-    const double reach = 2.0 * (sums.diagonal() + made.depth);
+  const bool can_measure = input.probe_a && input.probe_b && sums.length > 0.0 && !watch.late();
+  const double reach = 2.0 * (sums.diagonal() + made.depth);
+  if (can_measure && !patch::is_a_tip(input, rim, sums, indices, deepest)) {
     count = probe(input, sums, centre, reach, frame, made.chosen, measured, watch);
     if (watch.late()) return made;
     for (std::size_t i = 0; i < count; ++i) made.depth = std::max(made.depth, measured[i].depth);
   } else {
     for (std::size_t i = 0; i < count; ++i) measured[i] = patch::pulled_in(made.chosen.witnesses[i], deepest);
+    // Where there is more than a tip its centre bears, too: no force may jump where it becomes one.
+    if (can_measure && patch::probe_overlap(input, centre, made.normal, reach, watch, measured[count])) {
+      measured[count] = patch::pulled_in(measured[count], deepest);
+      ++count;
+    }
   }
   made.chosen = patch::choose({measured.data(), count}, frame, most_contacts, patch::spacing(made.depth, lever));
   made.low = std::numeric_limits<double>::infinity();

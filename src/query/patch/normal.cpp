@@ -29,7 +29,7 @@ class FlatFaces {
   FlatFaces(const PatchView& view, const Vec3& normal) noexcept
       : view_(view), facing_{normal, view.input.solid_a, view.input.solid_b} {}
 
-  /// The mean of those on which most of the rim is; zero if there are none.
+  /// The mean of those on which most of the rim is; zero if there are none, or two as good.
   [[nodiscard]] Vec3 heaviest(Watch& watch) noexcept {
     for_eights(watch, [this](const EightPieces& eight) noexcept { add(eight); });
     if (faces_.count == 0) return Vec3::Zero();
@@ -38,6 +38,15 @@ class FlatFaces {
     const auto heaviest =
         std::max_element(faces_.ones.begin(), faces_.ones.begin() + static_cast<std::ptrdiff_t>(faces_.count),
                          [](const auto& i, const auto& j) { return i.weight < j.weight; });
+    // Two faces that cross in a line both carry all of it: nothing but the order of the bodies would say which.
+    constexpr double all = 1.0 - 1e-9;
+    const auto carries_as_much = [&](const Directions::One& one) noexcept {
+      return &one != heaviest && one.weight >= all * heaviest->weight;
+    };
+    if (std::any_of(faces_.ones.begin(), faces_.ones.begin() + static_cast<std::ptrdiff_t>(faces_.count),
+                    carries_as_much)) {
+      return Vec3::Zero();
+    }
     return unit_or_zero(heaviest->sum);
   }
   /// How much of the rim is on a flat face, metres, and the sum of the normals there, times length.

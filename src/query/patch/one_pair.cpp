@@ -11,31 +11,6 @@
 namespace odds::query::patch {
 namespace {
 
-bool place_one(const PatchInput& input, PlacedPair& placed) noexcept {
-  placed.index = input.hits[0];
-  if (placed.index.a >= input.triangles_a.size() || placed.index.b >= input.triangles_b.size()) return false;
-  const mesh::Triangle& of_a = input.triangles_a[placed.index.a];
-  const mesh::Triangle& of_b = input.triangles_b[placed.index.b];
-  bool finite = true;
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (of_a[k] >= input.vertices_a.size() || of_b[k] >= input.vertices_b.size()) return false;
-    placed.a[k] = input.vertices_a[of_a[k]];
-    placed.b[k] = input.pose_b_in_a * input.vertices_b[of_b[k]];
-    finite = finite && placed.a[k].allFinite() && placed.b[k].allFinite();
-  }
-  return finite;
-}
-
-/// Unit, or zero if the triangle has no area.
-Vec3 normal_of(const std::array<Vec3, 3>& t) noexcept {
-  const Vec3 u = t[1] - t[0];
-  const Vec3 v = t[2] - t[0];
-  const Vec3 normal = u.cross(v);
-  const double longest = std::max({u.squaredNorm(), v.squaredNorm(), (t[2] - t[1]).squaredNorm()});
-  const double twice_area = normal.norm();
-  return twice_area > tolerances::degenerate_triangle * longest ? Vec3(normal / twice_area) : Vec3::Zero();
-}
-
 /// The pair's piece of rim, unless there are more or its ends are one point.
 bool cut_one(const PatchInput& input, const PlacedPair& placed, RimPiece& piece) noexcept {
   std::array<RimPiece, most_pieces_of_a_pair> pieces;
@@ -88,7 +63,8 @@ class Least {
   bool found_ = false;
 };
 
-/// The direction, or the flat face that it is about, as snap_to_face has it.
+/// The direction, or the flat face that it is about, as snap_to_face has it. Between two that carry all of the rim it
+/// stays what it was found to be.
 Vec3 snapped(const PatchInput& input, const PlacedPair& placed, const Vec3& direction) noexcept {
   const Facing facing{direction, input.solid_a, input.solid_b};
   const Vec3 face_b = facing.of_b(placed);
@@ -96,7 +72,7 @@ Vec3 snapped(const PatchInput& input, const PlacedPair& placed, const Vec3& dire
   Directions faces;
   faces.add(face_b, 1.0);
   faces.add(face_a, 1.0);
-  if (faces.count == 0) return direction;
+  if (faces.count != 1) return direction;
   const Vec3 flat = unit_or_zero(faces.ones[0].sum);
   const double by_b = flatness(face_b, flat);
   const double by_a = flatness(face_a, flat);
@@ -122,9 +98,7 @@ Contact contact_along(const PlacedPair& placed, const RimPiece& piece, const Vec
 
 std::optional<Contact> contact_of_one_pair(const PatchInput& input, const Kernels& kernels) noexcept {
   PlacedPair placed;
-  if (!place_one(input, placed)) return std::nullopt;
-  placed.normal_a = normal_of(placed.a);
-  placed.normal_b = normal_of(placed.b);
+  if (kernels.place(input, input.hits.first(1), &placed) != 1) return std::nullopt;
   RimPiece piece;
   if (!cut_one(input, placed, piece)) return std::nullopt;
   const bool solid = input.solid_a && input.solid_b;

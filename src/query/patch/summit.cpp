@@ -136,9 +136,14 @@ void Summit::add(const Witness& measured) noexcept {
   add_plane(normal_in_b(input_, measured.triangle_b), measured.on_b, 1.0, input_.solid_b, measured.triangle_b, of_b_);
 }
 
+/// Of heights: of what is large, and of what is far from A's origin.
+double Summit::rounding_of(double radius) const noexcept {
+  return std::max(1e-9 * radius, 4.0 * tolerances::on_plane * centre_.cwiseAbs().maxCoeff());
+}
+
 Place Summit::highest(const Place& from, double radius) const noexcept {
   constexpr int most_ridges = 12;
-  const double rounding = 1e-9 * radius;
+  const double rounding = rounding_of(radius);
   Place place = from;
   for (int i = 0; i < most_ridges; ++i) {
     const Ridge a(of_a_, place, rounding);
@@ -182,7 +187,7 @@ Witness Summit::climb(const Witness& start, const Witness& beside, double radius
   constexpr int most_steps = 10;
   constexpr int most_in_vain = 2;
   constexpr double shorter = 0.35;  // where a step led out of the overlap
-  const double rounding = 1e-9 * radius;
+  const double rounding = rounding_of(radius);
   const bool may_lean = start.depth > tolerances::flat_overlap * 2.0 * radius;
   Witness best = start;
   double step = radius;

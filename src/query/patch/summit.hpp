@@ -67,6 +67,7 @@ class Summit {
   /// Casts the rays that should meet both surfaces there.
   bool measure(const Roof::Place& place, const Witness& best, bool may_lean, double reach, Watch& watch,
                Witness& found) noexcept;
+  [[nodiscard]] double rounding_of(double radius) const noexcept;
   /// Where what is known allows the greatest depth, up to `radius` away along each axis.
   [[nodiscard]] Roof::Place highest(const Roof::Place& from, double radius) const noexcept;
 
