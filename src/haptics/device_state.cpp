@@ -16,4 +16,17 @@ bool make_usable(DeviceState& state) noexcept {
   return true;
 }
 
+DeviceState sensed(const DeviceSpec& spec, const DeviceState& said, const DeviceState& last) noexcept {
+  DeviceState state = said;
+  if (!spec.senses_position) {
+    state.position_m = last.position_m;
+    state.velocity_m_per_s.setZero();
+  }
+  if (!spec.senses_orientation) {
+    state.orientation = last.orientation;
+    state.angular_velocity_rad_per_s.setZero();
+  }
+  return state;
+}
+
 }  // namespace odds::haptics

@@ -15,8 +15,10 @@ RecordingDevice::RecordingDevice(std::unique_ptr<Device> inner, std::size_t capa
 
 bool RecordingDevice::read(std::int64_t now_ns, DeviceState& state) noexcept {
   const bool told = inner_->read(now_ns, state);
+  if (told) state = sensed(inner_->spec(), state, start_ ? *start_ : state);
   DeviceState usable = state;  // what is recorded can be replayed
   if (told && make_usable(usable)) {
+    if (!start_) start_ = usable;
     note(now_ns, usable, state.fresh);
   } else if (written_ > 0) {
     note(now_ns, states_[written_ - 1], false);

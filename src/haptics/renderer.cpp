@@ -52,8 +52,6 @@ Renderer::Renderer(ode::World& world, const std::optional<Hand>& hand, EffectSet
   world.add_coupling(hand_->tool);
   safety_.emplace(hand_->limits, hand_->scale.force);
   const DeviceSpec& spec = hand_->device->spec();
-  senses_position_ = spec.senses_position;
-  senses_orientation_ = spec.senses_orientation;
   actuates_force_ = spec.actuates_force;
   actuates_torque_ = spec.actuates_torque;
 }
@@ -118,23 +116,10 @@ void Renderer::count_time(std::int64_t now_ns) noexcept {
   served_ = true;
 }
 
-DeviceState Renderer::sensed(const DeviceState& said) const noexcept {
-  DeviceState state = said;
-  if (!senses_position_) {
-    state.position_m = own_.position_m;
-    state.velocity_m_per_s.setZero();
-  }
-  if (!senses_orientation_) {
-    state.orientation = own_.orientation;
-    state.angular_velocity_rad_per_s.setZero();
-  }
-  return state;
-}
-
 bool Renderer::ask_device(std::int64_t now_ns, DeviceState& said, DeviceState& state) noexcept {
   said = own_;
   const bool told = hand_->device->read(now_ns, said);
-  said = sensed(said);
+  said = sensed(hand_->device->spec(), said, own_);
   if (!told || !make_usable(said)) return false;
   state = hand_->scale.in_scene(said);
   return make_usable(state);  // no scale has carried it out of all numbers

@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstring>
+#include <functional>
 
 #include "odds/scene/simulation.hpp"
 #include "support/ball_on_terrain.hpp"
@@ -63,16 +66,42 @@ class Hardware final : public haptics::Device {
   std::int64_t last_ns_ = 0;
 };
 
-RunOutcome run(const std::string& device, const std::filesystem::path& base, std::int64_t sample_period_ns = 0) {
+/// Senses only how it is turned; of its place it says something at the start, and then something else in each read.
+class Compass final : public haptics::Device {
+ public:
+  Compass(std::unique_ptr<haptics::Device> hand, double drift_m)
+      : hand_(std::move(hand)), spec_(hand_->spec()), drift_m_(drift_m) {
+    spec_.senses_position = false;
+  }
+  [[nodiscard]] std::optional<Error> open() override { return hand_->open(); }
+  void close() noexcept override { hand_->close(); }
+  [[nodiscard]] const haptics::DeviceSpec& spec() const noexcept override { return spec_; }
+  [[nodiscard]] bool read(std::int64_t now_ns, haptics::DeviceState& state) noexcept override {
+    if (!hand_->read(now_ns, state)) return false;
+    if (reads_++ == 0) return true;
+    state.position_m = Vec3::Constant(drift_m_ * reads_);
+    state.velocity_m_per_s = state.position_m;
+    return true;
+  }
+  bool write(const haptics::DeviceCommand&) noexcept override { return true; }
+  bool enable_forces(bool) noexcept override { return true; }
+  [[nodiscard]] std::string_view last_error() const noexcept override { return {}; }
+
+ private:
+  std::unique_ptr<haptics::Device> hand_;
+  haptics::DeviceSpec spec_;
+  double drift_m_;
+  int reads_ = 0;
+};
+
+using UseDevice = std::function<std::unique_ptr<haptics::Device>(std::unique_ptr<haptics::Device>)>;
+
+RunOutcome run(const std::string& device, const std::filesystem::path& base, const UseDevice& use_device = {}) {
   Result<Scene> parsed = parse_scene(world + device + effects, "test.toml", base);
   EXPECT_TRUE(parsed.ok()) << parsed.error().message();
   SimulationOptions options;
   options.simulated_time = true;
-  if (sample_period_ns > 0) {
-    options.use_device = [=](std::unique_ptr<haptics::Device> hand) {
-      return std::make_unique<Hardware>(std::move(hand), sample_period_ns);
-    };
-  }
+  options.use_device = use_device;
   auto made = Simulation::make(std::move(parsed).value(), options);
   EXPECT_TRUE(made.ok()) << made.error().message();
   return made.value()->run();
@@ -84,12 +113,7 @@ bool same(const haptics::TickRecord& a, const haptics::TickRecord& b) {
          a.force_n == b.force_n && a.torque_nm == b.torque_nm;
 }
 
-class RecordedHardware : public ::testing::TestWithParam<std::int64_t> {};
-
-TEST_P(RecordedHardware, ReplaysToTheSameForcesBitForBit) {
-  const testing::TemporaryFolder folder;
-  const RunOutcome original = run(scripted, folder.path(), GetParam());
-  EXPECT_EQ(original.failed_reads, 3U);
+void expect_same_replay(const RunOutcome& original, const testing::TemporaryFolder& folder) {
   ASSERT_FALSE(haptics::write_track(folder / "device.csv", original.device_track).has_value());
   const RunOutcome again = run("[device.hand]\ntype = \"replay\"\nfile = \"device.csv\"\n", folder.path());
   ASSERT_EQ(original.ticks.size(), again.ticks.size());
@@ -97,8 +121,35 @@ TEST_P(RecordedHardware, ReplaysToTheSameForcesBitForBit) {
   EXPECT_EQ(different.first, original.ticks.end()) << "from tick " << different.first->tick << " on";
 }
 
+class RecordedHardware : public ::testing::TestWithParam<std::int64_t> {};
+
+TEST_P(RecordedHardware, ReplaysToTheSameForcesBitForBit) {
+  const testing::TemporaryFolder folder;
+  const RunOutcome original = run(scripted, folder.path(), [](std::unique_ptr<haptics::Device> hand) {
+    return std::make_unique<Hardware>(std::move(hand), GetParam());
+  });
+  EXPECT_EQ(original.failed_reads, 3U);
+  expect_same_replay(original, folder);
+}
+
 // Faster than the loop, slower, and by turns.
 INSTANTIATE_TEST_SUITE_P(Periods, RecordedHardware, ::testing::Values(400'000, 1'300'000, 2'000'000, 3'700'000));
+
+class RecordedCompass : public ::testing::TestWithParam<double> {};
+
+TEST_P(RecordedCompass, ReplaysToTheSameForcesBitForBit) {
+  const testing::TemporaryFolder folder;
+  const RunOutcome original = run(scripted, folder.path(), [](std::unique_ptr<haptics::Device> hand) {
+    return std::make_unique<Compass>(std::move(hand), GetParam());
+  });
+  EXPECT_EQ(original.failed_reads, 0U);
+  EXPECT_EQ(original.device_track.states.size(), original.ticks.size());
+  EXPECT_EQ(original.ticks.back().device_position_m, (std::array<double, 3>{-0.03, 0, 0.03}));
+  EXPECT_NE(original.ticks.back().device_orientation_wxyz, original.ticks.front().device_orientation_wxyz);
+  expect_same_replay(original, folder);
+}
+
+INSTANTIATE_TEST_SUITE_P(Drifts, RecordedCompass, ::testing::Values(1e-4, std::nan("")));
 
 }  // namespace
 }  // namespace odds::scene

@@ -45,6 +45,9 @@ struct DeviceState {
 /// a unit quaternion; one of length 1 to within 1e-12 keeps its bits. What cannot be used is left alone.
 [[nodiscard]] bool make_usable(DeviceState& state) noexcept;
 
+/// What a device senses of what it says; the rest stays as it is in `last`, at rest.
+[[nodiscard]] DeviceState sensed(const DeviceSpec& spec, const DeviceState& said, const DeviceState& last) noexcept;
+
 /// How a device stands to the scene, as in CHAI3D: a small device explores a large scene, or a strong one a weak scene.
 /// A stiffness k of the scene is k * force * workspace at the device (stiffness()), a damping likewise. Angles are not
 /// scaled, so an angular stiffness is multiplied by `force` alone.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "odds/haptics/device.hpp"
@@ -11,8 +12,9 @@ namespace odds::haptics {
 
 /// Passes every call on. What is recorded is what the loop knew at each of its times, whatever the device's own rate
 /// and stamps: where a read brings nothing new, or fails, the last state once more, so that a replay gives every tick
-/// what it had. Memory for the track is taken, and its pages touched, at construction; when it is full further states
-/// pass unrecorded and are counted.
+/// what it had. What the device does not sense (DeviceSpec) is as in the first state that could be used, for the loop
+/// too, whatever the device says later. Memory for the track is taken, and its pages touched, at construction; when it
+/// is full further states pass unrecorded and are counted.
 class RecordingDevice final : public Device {
  public:
   RecordingDevice(std::unique_ptr<Device> inner, std::size_t capacity);
@@ -35,6 +37,7 @@ class RecordingDevice final : public Device {
 
   std::unique_ptr<Device> inner_;
   std::vector<DeviceState> states_;
+  std::optional<DeviceState> start_;
   std::size_t used_ = 0;     // up to the last that was fresh, or elsewhere
   std::size_t written_ = 0;  // with those after it, which count once something new follows
   std::size_t lost_ = 0;

@@ -91,8 +91,6 @@ class Renderer {
   /// What the device says, as far as it senses anything, and the same in the scene. False: nothing that can be used.
   [[nodiscard]] bool ask_device(std::int64_t now_ns, DeviceState& said, DeviceState& state) noexcept;
   void read_device(std::int64_t now_ns) noexcept;
-  /// What the device senses of what it says; the rest stays as it was.
-  [[nodiscard]] DeviceState sensed(const DeviceState& said) const noexcept;
   void write_device(std::int64_t now_ns, const ode::Wrench& on_hand, TickRecord& record) noexcept;
   [[nodiscard]] TickView view(std::int64_t now_ns) noexcept;
   [[nodiscard]] std::uint32_t steps_needed() const noexcept;
@@ -113,8 +111,6 @@ class Renderer {
   double period_s_;
   DeviceState state_;
   DeviceState own_;  // the same in the device's own frame
-  bool senses_position_ = true;
-  bool senses_orientation_ = true;
   bool actuates_force_ = true;
   bool actuates_torque_ = true;
   double farthest_m_ = 0.0;
