@@ -50,6 +50,28 @@ TEST(WorldBorder, RefusesContactsThatAreNotFinite) {
   EXPECT_FALSE(World::make(options).ok());
 }
 
+TEST(WorldBorder, KeepsItsContactWhereAnotherIsOutOfRange) {
+  World world = make({});
+  const auto refused = [&](double ContactModel::*number, double value) {
+    ContactModel contact = world.options().contact;
+    contact.friction = 0.5;
+    contact.*number = value;
+    world.set_contact(contact);
+    return world.options().contact.friction == 0.0 || number == &ContactModel::friction;
+  };
+  for (const double value : {-1.0, 0.0, std::nan("")}) {
+    EXPECT_TRUE(refused(&ContactModel::max_correcting_velocity_m_per_s, value)) << value;
+    EXPECT_TRUE(refused(&ContactModel::stiffness_n_per_m, value)) << value;
+    EXPECT_TRUE(refused(&ContactModel::error_reduction, value)) << value;
+  }
+  EXPECT_TRUE(refused(&ContactModel::damping_ns_per_m, -1.0));
+  refused(&ContactModel::friction, -1.0);
+  EXPECT_EQ(world.options().contact.friction, 0.0);
+  EXPECT_EQ(world.options().contact.max_correcting_velocity_m_per_s, 1.0);
+  EXPECT_FALSE(refused(&ContactModel::max_correcting_velocity_m_per_s, 2.0));
+  EXPECT_EQ(world.options().contact.max_correcting_velocity_m_per_s, 2.0);
+}
+
 // ODE ended the program, in most runs of this.
 TEST(WorldBorder, StepsBesideAnotherOneInAnotherThread) {
   std::atomic<int> ready{0};

@@ -216,7 +216,8 @@ class World {
   [[nodiscard]] Vec3 contact_impulse(BodyId body) const noexcept;
   /// Adds a force at the centre of mass and a torque for the next step. World frame. What is not finite is ignored.
   void apply(BodyId body, const Wrench& wrench) noexcept;
-  /// What has been added for the next step so far, drags of fluids included; zero for a fixed body.
+  /// What has been added for the next step so far, drags of fluids included; zero for a fixed body. The force acts at
+  /// the centre of mass; world frame.
   [[nodiscard]] Wrench applied(BodyId body) const noexcept;
   /// Adds the drag of a fluid for the next step. All fluids about a body act as one: its speeds decay towards their
   /// flow as they would within the step, and turn round at no strength. What is not finite is ignored.
@@ -233,7 +234,7 @@ class World {
   /// Whom to call for each meeting of a step.
   void set_meeting_hook(const MeetingHook& hook) noexcept;
 
-  /// May be changed between steps.
+  /// May be changed between steps. Ignored where a number is out of the range that ContactModel states.
   void set_contact(const ContactModel& contact) noexcept;
   void set_gravity(const Vec3& gravity_m_per_s2) noexcept;
   void set_damping(const Damping& damping) noexcept;

@@ -467,7 +467,9 @@ std::uint32_t World::body_count() const noexcept { return static_cast<std::uint3
 
 void World::set_meeting_hook(const MeetingHook& hook) noexcept { implementation_->hook = hook; }
 
-void World::set_contact(const ContactModel& contact) noexcept { implementation_->options.contact = contact; }
+void World::set_contact(const ContactModel& contact) noexcept {
+  if (!fault_of(contact)) implementation_->options.contact = contact;
+}
 
 void World::set_gravity(const Vec3& g) noexcept {
   implementation_->options.gravity_m_per_s2 = g;

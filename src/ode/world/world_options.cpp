@@ -9,26 +9,31 @@
 
 namespace odds::ode {
 
+std::optional<Fault> fault_of(const ContactModel& c) noexcept {
+  if (!(c.stiffness_n_per_m > 0.0) || !(c.damping_ns_per_m >= 0.0) ||
+      !std::isfinite(c.stiffness_n_per_m + c.damping_ns_per_m)) {
+    return Fault{"the contact's stiffness or damping is out of range",
+                 "give a stiffness above zero, a damping of at least zero, both finite"};
+  }
+  if (!(c.error_reduction > 0.0 && c.error_reduction <= 1.0)) {
+    return Fault{"the share of an overlap that a step takes away is out of range", "give more than 0, at most 1"};
+  }
+  if (!(c.friction >= 0.0)) return Fault{"the friction coefficient is negative", "give at least zero"};
+  if (!std::isfinite(c.friction)) {
+    return Fault{"the friction coefficient is not finite", "give a finite one; 1000 lets nothing slide"};
+  }
+  if (!(c.max_correcting_velocity_m_per_s > 0.0)) {
+    return Fault{"the greatest correcting velocity is not positive", "give metres per second above zero"};
+  }
+  return std::nullopt;
+}
+
 std::optional<Error> check(const WorldOptions& o) {
   const auto bad = [](const char* what, const char* remedy) { return Error{"world", "", what, remedy}; };
   if (!(o.step_s > 0.0) || !std::isfinite(o.step_s))
     return bad("the step is not a positive time", "give seconds above zero");
   if (!o.gravity_m_per_s2.allFinite()) return bad("gravity is not finite", "give three finite numbers");
-  if (!(o.contact.stiffness_n_per_m > 0.0) || !(o.contact.damping_ns_per_m >= 0.0) ||
-      !std::isfinite(o.contact.stiffness_n_per_m + o.contact.damping_ns_per_m)) {
-    return bad("the contact's stiffness or damping is out of range",
-               "give a stiffness above zero, a damping of at least zero, both finite");
-  }
-  if (!(o.contact.error_reduction > 0.0 && o.contact.error_reduction <= 1.0)) {
-    return bad("the share of an overlap that a step takes away is out of range", "give more than 0, at most 1");
-  }
-  if (!(o.contact.friction >= 0.0)) return bad("the friction coefficient is negative", "give at least zero");
-  if (!std::isfinite(o.contact.friction)) {
-    return bad("the friction coefficient is not finite", "give a finite one; 1000 lets nothing slide");
-  }
-  if (!(o.contact.max_correcting_velocity_m_per_s > 0.0)) {
-    return bad("the greatest correcting velocity is not positive", "give metres per second above zero");
-  }
+  if (const auto fault = fault_of(o.contact)) return bad(fault->what, fault->remedy);
   if (o.query.max_contacts < 0 || o.query.max_contacts > most_contacts_per_pair) {
     return bad("the contacts of a pair are out of range", "give 0 to 8");
   }

@@ -12,6 +12,15 @@ namespace odds::ode {
 
 inline constexpr int most_contacts_per_pair = 8;  ///< the geom's own limit
 
+/// What is out of range, and what to give instead.
+struct Fault {
+  const char* what;
+  const char* remedy;
+};
+
+/// What is wrong with a model of contact; nothing if all is well.
+[[nodiscard]] std::optional<Fault> fault_of(const ContactModel& contact) noexcept;
+
 /// What is wrong with the options; nothing if all is well.
 [[nodiscard]] std::optional<Error> check(const WorldOptions& options);
 
