@@ -47,7 +47,8 @@ Renderer::Renderer(ode::World& world, const std::optional<Hand>& hand, EffectSet
       allocations_(allocations),
       period_s_(world.options().step_s),
       period_ns_(std::llround(1e9 * period_s_)),
-      passed_s_(period_s_) {
+      passed_s_(period_s_),
+      moved_s_(period_s_) {
   if (!hand_) return;
   world.add_coupling(hand_->tool);
   safety_.emplace(hand_->limits, hand_->scale.force);
@@ -73,6 +74,7 @@ bool Renderer::begin() noexcept {
   served_ns_ = 0;
   served_ = false;
   age_ns_ = 0;
+  silent_s_ = 0.0;
   farthest_m_ = 0.0;
   safety_.emplace(hand_->limits, hand_->scale.force);
   if (!begin_at_device()) return false;
@@ -128,10 +130,17 @@ bool Renderer::ask_device(std::int64_t now_ns, DeviceState& said, DeviceState& s
 void Renderer::read_device(std::int64_t now_ns) noexcept {
   DeviceState said;
   DeviceState state;
+  silent_s_ += passed_s_;
   if (!ask_device(now_ns, said, state)) {
     ++failed_reads_;  // the last good state stays, and grows stale
     energy_.moved(own_);
     return;
+  }
+  const bool is_elsewhere =
+      said.position_m != own_.position_m || said.orientation.coeffs() != own_.orientation.coeffs();
+  if (state.fresh || is_elsewhere) {
+    moved_s_ = silent_s_;
+    silent_s_ = 0.0;
   }
   own_ = said;
   state_ = state;
@@ -159,6 +168,7 @@ TickView Renderer::view(std::int64_t now_ns) noexcept {
   view.now_ns = now_ns;
   view.step_s = world_->options().step_s;
   view.passed_s = passed_s_;
+  view.moved_s = moved_s_;
   if (!hand_) return view;
   view.device = &state_;
   view.tool = hand_->tool;

@@ -2,6 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
 
 #include "haptics/on_floor.hpp"
 
@@ -19,9 +22,9 @@ Felt twist(const std::string& control) {
       "format = \"odds.scene/1\"\n[loop]\nseconds = 1.5\n"
       "[[mesh]]\nname = \"cube\"\nfile = \"made:box:x=0.04,y=0.04,z=0.04\"\n"
       "[[body]]\nname = \"cube\"\nmesh = \"cube\"\nmotion = \"dynamic\"\nmass_kg = 5\ndevice = \"hand\"\n"
-      "[device.hand]\ntype = \"human_arm\"\nmax_torque_nm = 1000\nturn_damping_nms_per_rad = 0\n"
-      "[[device.hand.motion]]\nkind = \"hold\"\nduration_s = 0.3\nturn_rad = 0.3\n"
-      "[effects.virtual_coupling]\nk_r_nm_per_rad = 8\nb_r_nms_per_rad = 0\n" +
+      "[device.hand]\ntype = \"human_arm\"\nmax_torque_nm = 1000\nturn_damping_nms_per_rad = 0\n" +
+          "[[device.hand.motion]]\nkind = \"hold\"\nduration_s = 0.3\nturn_rad = 0.3\n"
+          "[effects.virtual_coupling]\nk_r_nm_per_rad = 8\nb_r_nms_per_rad = 0\n" +
           control,
       "twist.toml", ".");
   EXPECT_TRUE(parsed.ok()) << parsed.error().message();
@@ -44,18 +47,21 @@ TEST(PassivityControl, QuietsAHandThatOnlyTurns) {
   EXPECT_GT(with.least_energy_j, 0.01 * without.least_energy_j);
 }
 
-// A hand that moves evenly, until nothing can be read of it.
+// A hand that moves evenly, and of which at times nothing can be read, or nothing new.
 class Mute final : public haptics::Device {
  public:
-  explicit Mute(haptics::DeviceSpec spec) : spec_(std::move(spec)) {}
+  enum class Word { told, repeated, none };
+  using Says = Word (*)(std::int64_t tick);
+  Mute(haptics::DeviceSpec spec, Says says) : spec_(std::move(spec)), says_(says) {}
   [[nodiscard]] std::optional<Error> open() override { return std::nullopt; }
   void close() noexcept override {}
   [[nodiscard]] const haptics::DeviceSpec& spec() const noexcept override { return spec_; }
   [[nodiscard]] bool read(std::int64_t now_ns, haptics::DeviceState& state) noexcept override {
-    if (now_ns >= 10'000'000) return false;
-    state = {};
-    state.position_m.x() = -1e-10 * static_cast<double>(now_ns);
-    state.fresh = true;
+    const Word word = says_(now_ns / 1'000'000);
+    if (word == Word::none) return false;
+    if (word == Word::told) last_.position_m.x() = -1e-10 * static_cast<double>(now_ns);
+    state = last_;
+    state.fresh = word == Word::told;
     return true;
   }
   bool write(const haptics::DeviceCommand&) noexcept override { return true; }
@@ -64,29 +70,52 @@ class Mute final : public haptics::Device {
 
  private:
   haptics::DeviceSpec spec_;
+  Says says_;
+  haptics::DeviceState last_;
 };
 
-TEST(PassivityControl, DampsNoMotionThatNobodyHasSeen) {
-  const auto forces = [](const std::string& control) {
-    Result<Scene> parsed = parse_scene(
-        "format = \"odds.scene/1\"\n[loop]\nseconds = 0.02\n"
-        "[[mesh]]\nname = \"cube\"\nfile = \"made:box:x=0.04,y=0.04,z=0.04\"\n"
-        "[[body]]\nname = \"cube\"\nmesh = \"cube\"\nmotion = \"dynamic\"\nmass_kg = 1\ndevice = \"hand\"\n"
-        "[device.hand]\ntype = \"null\"\nmax_force_n = 1000\nmax_torque_nm = 1000\n"
-        "[effects.gravity]\ng_m_per_s2 = [-50, 0, 0]\n[effects.virtual_coupling]\n" +
-            control,
-        "mute.toml", ".");
-    EXPECT_TRUE(parsed.ok()) << parsed.error().message();
-    SimulationOptions options;
-    options.simulated_time = true;
-    options.use_device = [](std::unique_ptr<haptics::Device> device) { return std::make_unique<Mute>(device->spec()); };
-    return std::move(Simulation::make(std::move(parsed).value(), options)).value()->run().ticks;
+// Its tool falls faster than the hand goes, and draws it along.
+std::vector<haptics::TickRecord> drawn(Mute::Says says, const std::string& control) {
+  Result<Scene> parsed = parse_scene(
+      "format = \"odds.scene/1\"\n[loop]\nseconds = 0.02\n"
+      "[[mesh]]\nname = \"cube\"\nfile = \"made:box:x=0.04,y=0.04,z=0.04\"\n"
+      "[[body]]\nname = \"cube\"\nmesh = \"cube\"\nmotion = \"dynamic\"\nmass_kg = 1\ndevice = \"hand\"\n"
+      "[device.hand]\ntype = \"null\"\nmax_force_n = 1000\nmax_torque_nm = 1000\n"
+      "[effects.gravity]\ng_m_per_s2 = [-50, 0, 0]\n[effects.virtual_coupling]\n" +
+          control,
+      "mute.toml", ".");
+  EXPECT_TRUE(parsed.ok()) << parsed.error().message();
+  SimulationOptions options;
+  options.simulated_time = true;
+  options.use_device = [=](std::unique_ptr<haptics::Device> device) {
+    return std::make_unique<Mute>(device->spec(), says);
   };
-  const auto damped = forces("[effects.passivity_control]\n");
-  const auto plain = forces("");
-  EXPECT_LT(damped[9].observed_energy_j, 0.0) << "the tool falls faster than the hand goes, and draws it along";
+  return std::move(Simulation::make(std::move(parsed).value(), options)).value()->run().ticks;
+}
+
+TEST(PassivityControl, DampsNoMotionThatNobodyHasSeen) {
+  const Mute::Says until_10 = [](std::int64_t tick) { return tick < 10 ? Mute::Word::told : Mute::Word::none; };
+  const auto damped = drawn(until_10, "[effects.passivity_control]\n");
+  const auto plain = drawn(until_10, "");
+  EXPECT_LT(damped[9].observed_energy_j, 0.0);
   EXPECT_GT(damped[9].force_n[0] - plain[9].force_n[0], 0.1);
   for (std::size_t i = 10; i < 20; ++i) EXPECT_EQ(damped[i].force_n[0], plain[i].force_n[0]) << i;
+}
+
+// All the way of a silence, in the first tick after it, is not the way of a period.
+TEST(PassivityControl, DampsByTheSpeedOfTheHandAlsoAfterASilence) {
+  const Mute::Says silent = [](std::int64_t tick) {
+    return tick < 10 || tick > 14 ? Mute::Word::told : Mute::Word::none;
+  };
+  const Mute::Says slow = [](std::int64_t tick) { return tick % 3 == 0 ? Mute::Word::told : Mute::Word::repeated; };
+  for (const Mute::Says says : {silent, slow}) {
+    const auto damped = drawn(says, "[effects.passivity_control]\nmax_damping_ns_per_m = 0.01\n");
+    const auto plain = drawn(says, "");
+    ASSERT_LT(plain[9].observed_energy_j, 0.0);
+    const auto damping = [&](std::size_t tick) { return damped[tick].force_n[0] - plain[tick].force_n[0]; };
+    EXPECT_NEAR(damping(9), 0.001, 1e-9) << "the most, at 0.1 m/s";
+    EXPECT_NEAR(damping(15), 0.001, 1e-9);
+  }
 }
 
 }  // namespace

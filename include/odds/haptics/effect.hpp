@@ -60,6 +60,7 @@ struct TickView {
   std::int64_t now_ns = 0;
   double step_s = 0.0;
   double passed_s = 0.0;  ///< since the last tick that was served: the period, or more where ticks were missed
+  double moved_s = 0.0;   ///< in which the hand went energy->step_m(): since a read last told anything new
   const DeviceState* device = nullptr;        ///< in the scene, its workspace scale applied; null without one
   double force_scale = 1.0;                   ///< the device's force is this multiple of the scene's
   ode::BodyId tool;                           ///< the body that follows the device; means nothing without one

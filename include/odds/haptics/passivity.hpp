@@ -19,9 +19,12 @@ class PassivityObserver {
   void sent(const Vec3& force_n, const Vec3& torque_nm) noexcept;
 
   [[nodiscard]] double energy_j() const noexcept { return energy_j_; }
-  [[nodiscard]] double least_j() const noexcept { return least_j_; }         ///< lowest so far, <= 0
-  [[nodiscard]] const Vec3& step_m() const noexcept { return step_m_; }      ///< the hand's way in the last period ...
-  [[nodiscard]] const Vec3& turn_rad() const noexcept { return turn_rad_; }  ///< ... and its turn, axis times angle
+  [[nodiscard]] double least_j() const noexcept { return least_j_; }  ///< lowest so far, <= 0
+  /// The hand's way between the last two states of moved() ...
+  [[nodiscard]] const Vec3& step_m() const noexcept { return step_m_; }
+  /// ... and its turn, axis times angle. Both in the frame of those states; in a Renderer the device's own, world axes,
+  /// unscaled. Zero after a tick whose read failed or told nothing new: the next that does has the whole way since.
+  [[nodiscard]] const Vec3& turn_rad() const noexcept { return turn_rad_; }
 
  private:
   double energy_j_ = 0.0;

@@ -118,6 +118,8 @@ class Renderer {
   std::int64_t served_ns_ = 0;  // when the last tick was
   bool served_ = false;         // a tick, since begin()
   double passed_s_;             // since the last tick that was served
+  double silent_s_ = 0.0;       // since the last read that told anything new
+  double moved_s_;              // from the last such read but one to the last
   std::int64_t age_ns_ = 0;     // of the state
   std::uint64_t failed_reads_ = 0;
   std::uint64_t rescued_steps_ = 0;

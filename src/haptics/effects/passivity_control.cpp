@@ -19,8 +19,8 @@ class PassivityControl final : public Effect {
     if (tick.energy == nullptr || !(tick.energy->energy_j() < 0.0)) return 0;
     double owed_j = -tick.energy->energy_j();
     // The device's own velocities, as its energy.
-    const Vec3 force = damping(tick.energy->step_m() / tick.passed_s, tick.step_s, most_ns_per_m_, owed_j);
-    const Vec3 torque = damping(tick.energy->turn_rad() / tick.passed_s, tick.step_s, most_nms_per_rad_, owed_j);
+    const Vec3 force = damping(tick.energy->step_m() / tick.moved_s, tick.step_s, most_ns_per_m_, owed_j);
+    const Vec3 torque = damping(tick.energy->turn_rad() / tick.moved_s, tick.step_s, most_nms_per_rad_, owed_j);
     on_hand.force_n += force / tick.force_scale;
     on_hand.torque_nm += torque / tick.force_scale;
     return force.isZero(0.0) && torque.isZero(0.0) ? 0 : 1;
