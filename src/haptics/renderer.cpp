@@ -174,6 +174,8 @@ TickView Renderer::view(std::int64_t now_ns) noexcept {
   view.tool = hand_->tool;
   view.energy = &energy_;
   view.force_scale = hand_->scale.force;
+  view.max_force_n = actuates_force_ ? hand_->limits.max_force_n : 0.0;
+  view.max_torque_nm = actuates_torque_ ? hand_->limits.max_torque_nm : 0.0;
   return view;
 }
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,18 +12,21 @@
 namespace odds::scene {
 namespace {
 
+using UseDevice = std::function<std::unique_ptr<haptics::Device>(std::unique_ptr<haptics::Device>)>;
+
 struct Felt {
   double unrest_nm;  // the largest torque, long after the hand has come to rest
   double least_energy_j;
 };
 
 // A hand turns a tool that is too heavy to follow: for the hand it is a wall, which is held too stiffly for its rate.
-Felt twist(const std::string& control) {
+Felt twist(const std::string& control, const std::string& limits = "", const UseDevice& use_device = {}) {
   Result<Scene> parsed = parse_scene(
       "format = \"odds.scene/1\"\n[loop]\nseconds = 1.5\n"
       "[[mesh]]\nname = \"cube\"\nfile = \"made:box:x=0.04,y=0.04,z=0.04\"\n"
       "[[body]]\nname = \"cube\"\nmesh = \"cube\"\nmotion = \"dynamic\"\nmass_kg = 5\ndevice = \"hand\"\n"
       "[device.hand]\ntype = \"human_arm\"\nmax_torque_nm = 1000\nturn_damping_nms_per_rad = 0\n" +
+          limits +
           "[[device.hand.motion]]\nkind = \"hold\"\nduration_s = 0.3\nturn_rad = 0.3\n"
           "[effects.virtual_coupling]\nk_r_nm_per_rad = 8\nb_r_nms_per_rad = 0\n" +
           control,
@@ -30,6 +34,7 @@ Felt twist(const std::string& control) {
   EXPECT_TRUE(parsed.ok()) << parsed.error().message();
   SimulationOptions options;
   options.simulated_time = true;
+  options.use_device = use_device;
   const RunOutcome outcome = std::move(Simulation::make(std::move(parsed).value(), options)).value()->run();
   double unrest_nm = 0.0;
   for (std::size_t i = 1300; i < 1500; ++i) {
@@ -45,6 +50,45 @@ TEST(PassivityControl, QuietsAHandThatOnlyTurns) {
   EXPECT_LT(without.least_energy_j, -1.0) << "it buzzes";
   EXPECT_LT(with.unrest_nm, 0.1 * without.unrest_nm);
   EXPECT_GT(with.least_energy_j, 0.01 * without.least_energy_j);
+}
+
+/// A hand that also walks, whatever pulls at it.
+class Walking final : public haptics::Device {
+ public:
+  Walking(std::unique_ptr<haptics::Device> hand, bool actuates_force) : hand_(std::move(hand)), spec_(hand_->spec()) {
+    spec_.actuates_force = actuates_force;
+  }
+  [[nodiscard]] std::optional<Error> open() override { return hand_->open(); }
+  void close() noexcept override { hand_->close(); }
+  [[nodiscard]] const haptics::DeviceSpec& spec() const noexcept override { return spec_; }
+  [[nodiscard]] bool read(std::int64_t now_ns, haptics::DeviceState& state) noexcept override {
+    if (!hand_->read(now_ns, state)) return false;
+    state.position_m = Vec3(1e-9 * static_cast<double>(now_ns), 0, 0);
+    return true;
+  }
+  bool write(const haptics::DeviceCommand& command) noexcept override { return hand_->write(command); }
+  bool enable_forces(bool on) noexcept override { return hand_->enable_forces(on); }
+  [[nodiscard]] std::string_view last_error() const noexcept override { return hand_->last_error(); }
+
+ private:
+  std::unique_ptr<haptics::Device> hand_;
+  haptics::DeviceSpec spec_;
+};
+
+TEST(PassivityControl, CountsOnNoForceThatTheHandIsNotGiven) {
+  const std::string control = "[effects.passivity_control]\n";
+  const Felt standing = twist(control);
+  struct Case {
+    const char* limits;
+    bool actuates_force;
+  };
+  for (const Case& c : {Case{"", false}, Case{"max_force_n = 0\n", true}, Case{"max_force_n = 1e-3\n", true}}) {
+    const Felt walking = twist(control, c.limits, [&](std::unique_ptr<haptics::Device> hand) {
+      return std::make_unique<Walking>(std::move(hand), c.actuates_force);
+    });
+    EXPECT_LT(walking.unrest_nm, 1.1 * standing.unrest_nm) << c.limits;
+    EXPECT_GT(walking.least_energy_j, 1.1 * standing.least_energy_j - 1e-3) << c.limits;
+  }
 }
 
 // A hand that moves evenly, and of which at times nothing can be read, or nothing new.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -61,8 +62,10 @@ struct TickView {
   double step_s = 0.0;
   double passed_s = 0.0;  ///< since the last tick that was served: the period, or more where ticks were missed
   double moved_s = 0.0;   ///< in which the hand went energy->step_m(): since a read last told anything new
-  const DeviceState* device = nullptr;        ///< in the scene, its workspace scale applied; null without one
-  double force_scale = 1.0;                   ///< the device's force is this multiple of the scene's
+  const DeviceState* device = nullptr;  ///< in the scene, its workspace scale applied; null without one
+  double force_scale = 1.0;             ///< the device's force is this multiple of the scene's
+  double max_force_n = std::numeric_limits<double>::infinity();  ///< more the device is not told; 0: it exerts none
+  double max_torque_nm = std::numeric_limits<double>::infinity();
   ode::BodyId tool;                           ///< the body that follows the device; means nothing without one
   const ode::StepSummary* step = nullptr;     ///< null before the step
   const PassivityObserver* energy = nullptr;  ///< at the device, up to the last tick; null without a device

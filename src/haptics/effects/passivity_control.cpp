@@ -19,21 +19,42 @@ class PassivityControl final : public Effect {
     if (tick.energy == nullptr || !(tick.energy->energy_j() < 0.0)) return 0;
     double owed_j = -tick.energy->energy_j();
     // The device's own velocities, as its energy.
-    const Vec3 force = damping(tick.energy->step_m() / tick.moved_s, tick.step_s, most_ns_per_m_, owed_j);
-    const Vec3 torque = damping(tick.energy->turn_rad() / tick.moved_s, tick.step_s, most_nms_per_rad_, owed_j);
-    on_hand.force_n += force / tick.force_scale;
-    on_hand.torque_nm += torque / tick.force_scale;
+    const double scale = tick.force_scale;
+    const Vec3 force = damping({tick.energy->step_m() / tick.moved_s, scale * on_hand.force_n, tick.max_force_n},
+                               tick.step_s, most_ns_per_m_, owed_j);
+    const Vec3 torque = damping({tick.energy->turn_rad() / tick.moved_s, scale * on_hand.torque_nm, tick.max_torque_nm},
+                                tick.step_s, most_nms_per_rad_, owed_j);
+    on_hand.force_n += force / scale;
+    on_hand.torque_nm += torque / scale;
     return force.isZero(0.0) && torque.isZero(0.0) ? 0 : 1;
   }
 
  private:
-  /// What slows the velocity down, and takes in a period of what is owed all that it may.
-  static Vec3 damping(const Vec3& velocity, double step_s, double most, double& owed_j) noexcept {
-    const double speed_squared = velocity.squaredNorm();
-    if (!(speed_squared > 0.0)) return Vec3::Zero();
+  /// How the hand moves along, or turns about, and what it is given in it.
+  struct Port {
+    Vec3 velocity;
+    Vec3 force;    // without the damping, before the limit
+    double limit;  // of the force's length
+    [[nodiscard]] Vec3 given(const Vec3& wanted) const noexcept {
+      const double length = wanted.stableNorm();
+      return length > limit ? Vec3(wanted * (limit / length)) : wanted;
+    }
+  };
+
+  /// What slows the velocity down, and takes in a period of what is owed all that it may, as far as the limit lets it.
+  static Vec3 damping(const Port& port, double step_s, double most, double& owed_j) noexcept {
+    const double speed_squared = port.velocity.squaredNorm();
+    if (!(speed_squared > 0.0) || !(port.limit > 0.0)) return Vec3::Zero();
     const double strength = std::min(most, owed_j / (speed_squared * step_s));
-    owed_j = strength < most ? 0.0 : owed_j - strength * speed_squared * step_s;
-    return -strength * velocity;
+    const Vec3 force = -strength * port.velocity;
+    const Vec3 whole = port.force + force;
+    if (std::max(port.force.stableNorm(), whole.stableNorm()) > port.limit) {
+      owed_j -= step_s * std::max(0.0, (port.given(port.force) - port.given(whole)).dot(port.velocity));
+    } else {
+      owed_j = strength < most ? 0.0 : owed_j - strength * speed_squared * step_s;
+    }
+    owed_j = std::max(0.0, owed_j);
+    return force;
   }
 
   double most_ns_per_m_;
