@@ -245,7 +245,7 @@ void find_exits(std::span<Patch> patches, const Pieces& pieces, const ConvexBody
   if (patches.size() == 1) return;
   std::array<const Piece*, most_pieces> everything;
   for (std::size_t i = 0; i < pieces.count; ++i) everything[i] = &pieces.all[i];
-  const Exit common = shortest_exit({everything.data(), pieces.count}, body, false, limit);
+  const Exit common = shortest_exit({everything.data(), pieces.count}, body, !pieces.complete, limit);
   const double tolerance = same_place * body.box_half_extents().norm();
   const bool is_common = common.depth <= longest * (1.0 + 1e-6) || are_convex(patches, tolerance);
   if (!is_common || !(common.depth < dInfinity)) return leave_plates_one_way(patches, body, tolerance);
