@@ -16,10 +16,7 @@ constexpr double radius = 0.3;
 
 // A ball of planar faces, as the arrays of dCreateConvex.
 struct Ball {
-  static constexpr unsigned around = 16;
-  static constexpr unsigned down = 8;
-
-  Ball() {
+  explicit Ball(unsigned around_axis = 16, unsigned down_axis = 8) : around(around_axis), down(down_axis) {
     add(Vec3(0, 0, radius));
     add(Vec3(0, 0, -radius));
     for (unsigned i = 1; i < down; ++i) {
@@ -48,7 +45,7 @@ struct Ball {
   unsigned faces = 0;
 
  private:
-  static unsigned at(unsigned i, unsigned k) { return 2 + (i - 1) * around + k % around; }
+  [[nodiscard]] unsigned at(unsigned i, unsigned k) const { return 2 + (i - 1) * around + k % around; }
   void add(const Vec3& corner) {
     corners.push_back(corner);
     points.insert(points.end(), corner.data(), corner.data() + 3);
@@ -60,6 +57,33 @@ struct Ball {
     polygons.insert(polygons.end(), of.begin(), of.end());
     ++faces;
   }
+
+  unsigned around;
+  unsigned down;
+};
+
+// Registered, until the test's end.
+struct ConvexBall : Ball {
+  ConvexBall(dSpaceID space, unsigned around_axis, unsigned down_axis) : Ball(around_axis, down_axis) {
+    const auto count = static_cast<unsigned>(corners.size());
+    geom = dCreateConvex(space, planes.data(), faces, points.data(), count, polygons.data());
+    EXPECT_EQ(oddsRegisterConvex(geom, points.data(), count, polygons.data(), faces), 1) << oddsGetLastError();
+  }
+  ~ConvexBall() { oddsForgetGeom(geom); }
+  ConvexBall(const ConvexBall&) = delete;
+  ConvexBall& operator=(const ConvexBall&) = delete;
+
+  dGeomID geom;
+};
+
+// While it lives, every look at the budgets' clock takes so long.
+struct SlowLooks {
+  explicit SlowLooks(std::int64_t look_ns) : clock(look_ns) { ode::use_budget_clock(clock.clock()); }
+  ~SlowLooks() { ode::use_budget_clock({}); }
+  SlowLooks(const SlowLooks&) = delete;
+  SlowLooks& operator=(const SlowLooks&) = delete;
+
+  realtime::ManualClock clock;
 };
 
 class FineMeshTest : public OdeTest {
@@ -110,20 +134,33 @@ TEST_F(FineMeshTest, ACylinderLiesAndStandsOnItsRim) {
 }
 
 TEST_F(FineMeshTest, AConvexBallRests) {
-  const Ball ball;
-  const dGeomID convex = dCreateConvex(space, ball.planes.data(), ball.faces, ball.points.data(),
-                                       static_cast<unsigned>(ball.corners.size()), ball.polygons.data());
-  ASSERT_EQ(oddsRegisterConvex(convex, ball.points.data(), static_cast<unsigned>(ball.corners.size()),
-                               ball.polygons.data(), ball.faces),
-            1)
-      << oddsGetLastError();
+  const ConvexBall ball(space, 16, 8);
   for (const double depth : {0.001, 0.01, 0.05}) {
     for (int round = 0; round < 20; ++round) {
       const Quat turn = any_turn();
-      expect_floor(put(convex, turn, ball.lowest(turn), depth), depth);
+      expect_floor(put(ball.geom, turn, ball.lowest(turn), depth), depth);
     }
   }
-  oddsForgetGeom(convex);
+}
+
+// One cut by its 960 sides took longer than the budget, and what was cut was not in it: it fell.
+TEST_F(FineMeshTest, InShortTimeAConvexOfManySidesIsHeld) {
+  const ConvexBall ball(space, 60, 16);
+  const SlowLooks slow(500);
+  for (const double budget_us : {2.0, 5.0, 20.0, 50.0}) {
+    ASSERT_EQ(dGeomOddsMeshSetBudget(floor, budget_us), 1);
+    for (int round = 0; round < 50; ++round) {
+      const Quat turn = any_turn();
+      const double depth = round % 2 == 0 ? 0.01 : 0.05;
+      const auto contacts = put(ball.geom, turn, ball.lowest(turn), depth);
+      ASSERT_FALSE(contacts.empty()) << "within " << budget_us << " us";
+      for (const dContactGeom& contact : contacts) {
+        EXPECT_NEAR(contact.normal[2], 1.0, 1e-9);
+        EXPECT_NEAR(contact.pos[2], 0.0, 1e-9);
+        EXPECT_LE(contact.depth, depth * (1.0 + 1e-6));
+      }
+    }
+  }
 }
 
 // Where some of the surface was left out, the ways through it seemed the shortest, and a corner went sideways.
@@ -217,15 +254,13 @@ TEST_F(FineMeshTest, BallsAndCapsulesTouchBothWallsOfAGroove) {
 // The nearest triangle was asked for after hundreds of others, when the time was up.
 TEST_F(FineMeshTest, InShortTimeACapsuleThatLiesIsHeld) {
   const dGeomID capsule = dCreateCapsule(space, radius, 0.6);
-  realtime::ManualClock clock(200);  // nanoseconds a look
-  ode::use_budget_clock(clock.clock());
+  const SlowLooks slow(200);
   ASSERT_EQ(dGeomOddsMeshSetBudget(floor, 60.0), 1);
   for (int round = 0; round < 50; ++round) {
     const Quat about(Eigen::AngleAxisd(3.0 * uniform(random), Vec3::UnitZ()));
     const Quat lies(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vec3::UnitX()));
     expect_floor(put(capsule, about * lies, -radius, 0.01), 0.01);
   }
-  ode::use_budget_clock({});
 }
 
 }  // namespace

@@ -125,7 +125,10 @@ void add_points(const Patch& patch, const Vec3& direction, const ConvexBody& bod
   if (!is_late) return;
   // Neighbours stand beside each other: a few from all over hold the body, the next ones on one side only.
   constexpr std::size_t few = 8;
-  for (std::size_t i = 0; i < few; ++i) add_corners(*pieces[i * pieces.size() / few], direction, body, points);
+  for (std::size_t i = 0; i < few; ++i) {
+    add_corners(*pieces[i * pieces.size() / few], direction, body, points);
+    if (has_many_sides(body) && limit.time_is_up()) return;
+  }
 }
 
 // Tips that lean are under the surface beside the section that it makes through the body, at whose corners the body is
@@ -302,17 +305,36 @@ void leave_by_the_near_side(const PreparedMesh& mesh, const math::Pose& body_in_
   }
 }
 
-// No surface inside the body: it may still be swallowed by a closed mesh, and is pushed to the nearest surface.
+// No surface inside the body: it may still be swallowed by a closed mesh, and is pushed to the nearest surface. `late`:
+// none was found in time. Then the surface over the body's lowest point is asked for, seen along the nearest one's
+// normal: this takes no cutting.
 void push_out(const PreparedMesh& mesh, const math::Pose& mesh_in_world, const math::Pose& body_in_mesh,
-              const ConvexBody& body, Limit& limit, ContactWriter& writer) noexcept {
+              const ConvexBody& body, bool late, Limit& limit, ContactWriter& writer) noexcept {
+  constexpr std::uint64_t most_units_late = 256;  // some ten microseconds: the search does not look at the clock
   const Vec3 center = body_in_mesh * body.center();
-  if (!mesh.closed || !in_bounds(mesh, center)) return;
-  const auto nearest = nearest_surface(mesh, center, std::numeric_limits<double>::infinity(), limit.units);
-  if (!nearest || !nearest->inside) return;
+  const bool may_be_inside = mesh.closed && in_bounds(mesh, center);
+  if (!may_be_inside && !late) return;
+  const double size = 2.0 * body.box_half_extents().norm();
+  const double reach = may_be_inside ? std::numeric_limits<double>::infinity() : size;
+  const std::uint64_t given = may_be_inside ? limit.units : std::min(limit.units, most_units_late);
+  std::uint64_t left = given;
+  const auto nearest = nearest_surface(mesh, center, reach, left);
+  limit.units -= given - left;
+  if (!nearest) return;
   const Vec3 outward = body_in_mesh.rotation.transpose() * nearest->outward;
-  const double below_center = body.reach(-outward) + outward.dot(body.center());
-  writer.add(mesh_in_world * nearest->point, -(mesh_in_world.rotation * nearest->outward),
-             nearest->distance + below_center, nearest->triangle, query::no_feature);
+  const Vec3 into_mesh = -(mesh_in_world.rotation * nearest->outward);
+  if (nearest->inside) {
+    const double below_center = body.reach(-outward) + outward.dot(body.center());
+    writer.add(mesh_in_world * nearest->point, into_mesh, nearest->distance + below_center, nearest->triangle,
+               query::no_feature);
+  } else if (late && outward != Vec3::Zero()) {
+    const Vec3 lowest = body.farthest(-outward);
+    const double most = body.way_through(lowest, outward);
+    const auto above = surface_above(mesh, body_in_mesh, body, lowest, outward, most, limit);
+    if (!above) return;
+    const Vec3 place = body_in_mesh * Vec3(lowest + above->way * outward);
+    writer.add(mesh_in_world * place, into_mesh, above->way, above->triangle, query::no_feature);
+  }
 }
 
 // What is kept of bodies that rest; false if the contacts must be made.
@@ -379,7 +401,7 @@ Seen write_convex_contacts(const PreparedMesh& mesh, const math::Pose& mesh_in_w
   Pieces pieces;
   gather_pieces(mesh, body_in_mesh, body, limit, pieces);
   if (pieces.count == 0) {
-    push_out(mesh, mesh_in_world, body_in_mesh, body, limit, writer);
+    push_out(mesh, mesh_in_world, body_in_mesh, body, pieces.cut_off, limit, writer);
   } else {
     std::array<Patch, most_patches> patches;
     const std::size_t count = group(pieces, patches);

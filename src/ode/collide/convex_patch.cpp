@@ -17,15 +17,15 @@ constexpr double clearly_shorter = 1.0 - 1e-6;
 // More normals than these are compared one by one without asking whether they were tried.
 constexpr std::size_t most_remembered = 8;
 
-// Keeps the part of the piece in the half-space (Sutherland and Hodgman 1974).
-void cut(Piece& piece, const HalfSpace& half_space, std::int16_t number) noexcept {
+// Keeps the part of the piece in the half-space (Sutherland and Hodgman 1974). False if that is all of it.
+bool cut(Piece& piece, const HalfSpace& half_space, std::int16_t number) noexcept {
   std::array<double, Piece::most_corners> above;
   bool any_above = false;
   for (std::size_t i = 0; i < piece.count; ++i) {
     above[i] = half_space.normal.dot(piece.corners[i]) - half_space.offset;
     any_above = any_above || above[i] > 0.0;
   }
-  if (!any_above) return;
+  if (!any_above) return false;
   Piece kept;
   const auto add = [&kept](const Vec3& corner, std::int16_t side) {
     if (kept.count == Piece::most_corners) return;
@@ -47,6 +47,33 @@ void cut(Piece& piece, const HalfSpace& half_space, std::int16_t number) noexcep
   piece.count = kept.count;
   std::copy_n(kept.corners.begin(), kept.count, piece.corners.begin());
   std::copy_n(kept.side.begin(), kept.count, piece.side.begin());
+  return true;
+}
+
+// A ball about a piece, which tells soonest that a side does not come near it.
+struct Ball {
+  explicit Ball(const Piece& piece) noexcept {
+    for (std::size_t i = 0; i < piece.count; ++i) center += piece.corners[i] / static_cast<double>(piece.count);
+    double square = 0.0;
+    for (std::size_t i = 0; i < piece.count; ++i) square = std::max(square, (piece.corners[i] - center).squaredNorm());
+    radius = (1.0 + 1e-9) * std::sqrt(square) + 1e-12 * center.norm();  // more than rounding takes
+  }
+  Vec3 center = Vec3::Zero();
+  double radius = 0.0;
+};
+
+// As sides in turn do, but most of them are passed over.
+void cut_by_many(Piece& piece, std::span<const HalfSpace> sides) noexcept {
+  Ball ball(piece);
+  for (std::size_t i = 0; i < sides.size() && piece.count >= 3; ++i) {
+    const double height = sides[i].normal.dot(ball.center) - sides[i].offset;
+    if (height <= -ball.radius) continue;
+    if (height > ball.radius) {
+      piece.count = 0;
+    } else if (cut(piece, sides[i], static_cast<std::int16_t>(i)) && piece.count >= 3) {
+      ball = Ball(piece);
+    }
+  }
 }
 
 // How far the body must go along `direction` to be clear of the patch; infinity as soon as it is more than `enough`.
@@ -109,7 +136,13 @@ bool cut_by_sides(const std::array<Vec3, 3>& triangle, const ConvexBody& body, P
     piece.side[i] = Piece::own_edge;
   }
   const std::span<const HalfSpace> sides = body.sides();
-  for (std::size_t i = 0; i < sides.size() && piece.count >= 3; ++i) cut(piece, sides[i], static_cast<std::int16_t>(i));
+  if (has_many_sides(body)) {
+    cut_by_many(piece, sides);
+  } else {
+    for (std::size_t i = 0; i < sides.size() && piece.count >= 3; ++i) {
+      cut(piece, sides[i], static_cast<std::int16_t>(i));
+    }
+  }
   if (piece.count < 3) return false;
   piece.normal = unit_normal(triangle);
   Vec3 twice_area = Vec3::Zero();

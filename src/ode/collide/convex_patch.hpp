@@ -15,6 +15,9 @@ constexpr double time_for_pieces = 0.5;
 constexpr double time_for_exits = 0.75;
 constexpr double time_for_points = 0.9;
 
+/// One cut, or one way through the body, may take longer than a short budget: the clock is looked at before each.
+[[nodiscard]] inline bool has_many_sides(const ConvexBody& body) noexcept { return body.sides().size() > 32; }
+
 /// Cuts a triangle (body frame) by the sides of the body. False if nothing with an area is left, or what is left does
 /// not meet the body.
 [[nodiscard]] bool cut_by_sides(const std::array<Vec3, 3>& triangle, const ConvexBody& body, Piece& piece) noexcept;

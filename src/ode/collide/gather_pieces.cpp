@@ -22,7 +22,7 @@ constexpr std::size_t least_cut = octants;
 /// Those of a tetrahedron first: any face of the body has two of them, opposite each other.
 constexpr std::array<std::size_t, octants> in_order = {0, 3, 5, 6, 7, 4, 2, 1};
 
-/// Triangles near the body, in groups: all in one, or by octants of it.
+/// Triangles near the body that are still to be cut, in groups: all in one, or by octants of it.
 struct Near {
   std::array<std::uint32_t, Pieces::most> triangles;
   std::size_t count = 0;
@@ -90,28 +90,32 @@ std::size_t octant_of(const Piece& piece, const Vec3& box_center) noexcept {
   return (sum.x() > 0.0 ? 1U : 0U) + (sum.y() > 0.0 ? 2U : 0U) + (sum.z() > 0.0 ? 4U : 0U);
 }
 
-/// The triangles whose pieces are in that octant, which the sieve is set to, but for so many of the first; as many as
-/// there is room for. False if there are more, or `nodes` were visited before.
+/// Adds the pieces in that octant, which the sieve is set to, but for so many of the first; at most `most`. False if
+/// there are more, or `nodes` were visited before.
 bool sift(const PreparedMesh& mesh, const Sieve& sieve, const ConvexBody& body, const math::Pose& mesh_in_body,
-          std::size_t octant, std::size_t skipped, std::uint64_t nodes, Limit& limit, std::span<std::uint32_t> found,
-          std::size_t& count) noexcept {
-  constexpr std::uint64_t nodes_a_cut = 4;  // takes as long
+          std::size_t octant, std::size_t skipped, std::uint64_t nodes, std::size_t most, Limit& limit,
+          Pieces& pieces) noexcept {
+  // A cut takes as long as these.
+  const std::uint64_t nodes_a_cut = std::max<std::uint64_t>(4, body.sides().size() / 32);
+  const bool takes_long = has_many_sides(body);
+  const std::size_t end = pieces.count + most;
   std::uint64_t left = nodes;
-  count = 0;
   const auto near = [&](const Vec3& center, const Vec3& half) { return sieve.lets_pass(center, half); };
   const auto take = [&](std::uint32_t triangle) {
     Corners corners = mesh.corners(triangle);
     if (!sieve.lets_pass(corners)) return true;
+    if (takes_long && limit.time_is_up(time_for_pieces)) return false;
     left -= std::min(left, nodes_a_cut);
     for (Vec3& corner : corners) corner = mesh_in_body * corner;
-    Piece piece;
+    Piece& piece = pieces.all[pieces.count];
     if (!cut_by_sides(corners, body, piece) || octant_of(piece, body.box_center()) != octant) return true;
     if (skipped > 0) {
       --skipped;
       return true;
     }
-    if (count == found.size()) return false;
-    found[count++] = triangle;
+    if (pieces.count == end) return false;
+    piece.triangle = triangle;
+    ++pieces.count;
     return true;
   };
   const bool all = mesh.triangle_tree.all_near(near, take, left);
@@ -145,13 +149,14 @@ void find_by_octants(const PreparedMesh& mesh, const math::Pose& body_in_mesh, c
   const auto find = [&](std::size_t octant, std::size_t skipped, std::size_t most) {
     const std::uint64_t nodes = std::max(least_nodes, limit.nodes_in_time(time_for_pieces) / turns--);
     sieve.set_octant(octant);
-    const std::span<std::uint32_t> room = near.room(most);
-    std::size_t found = 0;
+    const std::size_t room = std::min(most, Pieces::most - near.count - pieces.count);
+    const std::size_t before = pieces.count;
     const bool all =
-        sift(mesh, sieve, body, mesh_in_body, octant, skipped, std::min(limit.units, nodes), limit, room, found);
-    pieces.cut_off = pieces.cut_off || (!all && found < room.size());
-    if (!all && found == 0 && skipped == 0) found = find_in_box(mesh, body_in_mesh, body, octant, limit, room);
-    near.add_group(found);
+        sift(mesh, sieve, body, mesh_in_body, octant, skipped, std::min(limit.units, nodes), room, limit, pieces);
+    pieces.cut_off = pieces.cut_off || (!all && pieces.count < before + room);
+    if (!all && pieces.count == before && skipped == 0) {
+      near.add_group(find_in_box(mesh, body_in_mesh, body, octant, limit, near.room(room)));
+    }
     return all;
   };
   for (const std::size_t octant : in_order) {
@@ -165,7 +170,7 @@ void find_by_octants(const PreparedMesh& mesh, const math::Pose& body_in_mesh, c
   turns = std::max<std::size_t>(hungry_count, 1);
   pieces.complete = true;
   for (std::size_t i = 0; i < hungry_count && !pieces.cut_off; ++i) {
-    const std::size_t share = (near.triangles.size() - near.count) / (hungry_count - i);
+    const std::size_t share = (Pieces::most - near.count - pieces.count) / (hungry_count - i);
     pieces.complete = find(hungry[i], each, share) && pieces.complete;
   }
   pieces.complete = pieces.complete && !pieces.cut_off;
@@ -184,7 +189,7 @@ void find_near(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const C
     return near.add_group(found);
   }
   find_by_octants(mesh, body_in_mesh, body, limit, pieces, near);
-  if (pieces.cut_off && near.count == 0) near.add_group(found);
+  if (pieces.cut_off && pieces.count + near.count == 0) near.add_group(found);
 }
 
 /// How far it is along a line to where it comes out of the triangle; negative if it does not.
@@ -223,11 +228,13 @@ double entry(const Vec3& center, const Vec3& half, const Vec3& from, const Vec3&
 std::optional<Above> surface_above(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const ConvexBody& body,
                                    const Vec3& point, const Vec3& up, double most, Limit& limit) noexcept {
   constexpr std::uint64_t most_units = 256;  // some ten microseconds: the search does not look at the clock
+  constexpr std::uint64_t least_units = 64;  // from the root to a triangle and a few beside it
   constexpr double nothing = -std::numeric_limits<double>::infinity();
   const Vec3 from = body_in_mesh * point;
   const Vec3 along = body_in_mesh.rotation * up;
   const double tolerance = 1e-9 * body.box_half_extents().norm();
-  const std::uint64_t given = std::min(limit.nodes_in_time(time_for_exits), most_units);
+  const std::uint64_t given =
+      std::min(limit.units, std::clamp(limit.nodes_in_time(time_for_exits), least_units, most_units));
   std::uint64_t left = given;
   const std::uint32_t triangle = mesh.triangle_tree.greatest(
       [&](std::uint32_t t) {
@@ -265,10 +272,12 @@ void gather_pieces(const PreparedMesh& mesh, const math::Pose& body_in_mesh, con
   std::size_t rounds = 0;
   for (std::size_t i = 0; i < near.group_count; ++i) rounds = std::max(rounds, near.groups[i].size());
   std::size_t cut = 0;
+  const bool takes_long = has_many_sides(body);
   for (std::size_t round = 0; round < rounds; ++round) {
     for (std::size_t i = 0; i < near.group_count; ++i) {
       if (round >= near.groups[i].size()) continue;
-      if (cut++ >= least_cut && limit.time_is_up(time_for_pieces)) {
+      const bool may_end = cut++ >= least_cut || (takes_long && pieces.count > 0);
+      if (may_end && limit.time_is_up(time_for_pieces)) {
         pieces.complete = false;
         pieces.cut_off = true;
         return;
