@@ -119,6 +119,7 @@ std::shared_ptr<const PreparedMesh> PreparedMesh::make(std::shared_ptr<const que
   prepared->triangle_tree = BoxTree(boxes);
   const std::vector<std::uint32_t> representative = weld_equal_positions(mesh);
   // A sheet whose triangles are there twice, once for each side, closes, too, but has no inside to be pushed out of.
+  // (As part of a mesh that encloses something it is not told apart.)
   prepared->closed = closes(mesh, representative) && mesh::enclosed_volume(mesh) != 0.0;
   prepared->fans = find_fans(*prepared, representative);
   return prepared;
