@@ -141,11 +141,12 @@ void add_leaning_tips(const PreparedMesh& mesh, const math::Pose& body_in_mesh, 
   const double same = same_place * body.box_half_extents().norm();
   std::size_t asked = 0;
   for (const Vec3& corner : std::span(features.corners).first(features.corner_count)) {
+    if (limit.time_is_up(time_for_exits)) return;
     const auto is_over = [&](const ManifoldPoint& p) {
-      return (p.position - corner).cross(exit.direction).norm() <= same;
+      return (p.position - corner).cross(exit.direction).squaredNorm() <= same * same;
     };
     if (std::any_of(points.all.begin(), points.all.begin() + points.count, is_over)) continue;
-    if (asked++ == ManifoldPoints::most_tips || limit.time_is_up(time_for_exits)) return;
+    if (asked++ == ManifoldPoints::most_tips) return;
     const double most = exit.depth * (1.0 + 1e-6);
     const auto above = surface_above(mesh, body_in_mesh, body, corner, exit.direction, most, limit);
     if (above) points.add(corner + above->way * exit.direction, above->way, above->triangle, points.all.size());
