@@ -60,7 +60,8 @@ double least_distance(const Capsule& capsule, const Vec3& center, const Vec3& ha
   return std::max(between_boxes, from_ball);
 }
 
-// The nearest triangle of all, by the tree; no_item if the limit is reached first, or it is beyond the radius.
+// The nearest triangle of all, by the tree; if the limit is reached first, the nearest of those seen. no_item: none of
+// them is within the radius.
 std::uint32_t find_nearest(const PreparedMesh& mesh, const Capsule& capsule, Limit& limit) noexcept {
   // Along one that lies on flat ground all are as near as each other, but for rounding.
   constexpr double not_nearer = 1e-12;

@@ -35,7 +35,8 @@ struct CapsulePlaces {
   static constexpr std::size_t most = 256;
   std::array<CapsulePlace, most> all;
   std::size_t count = 0;
-  bool complete = true;  ///< false: some triangle was left out; the nearest of all is there if the time allowed it
+  bool complete =
+      true;  ///< false: some triangle was left out; the nearest of those that there was time to see is there
 
   [[nodiscard]] std::span<const CapsulePlace> span() const noexcept { return {all.data(), count}; }
 };

@@ -22,8 +22,8 @@ struct Pieces {
   bool cut_off = false;  ///< by the limit; else only the room for pieces was too small
 };
 
-/// Cuts every triangle near the body. Many small ones are gathered octant by octant, and cut in turn, so that those
-/// kept are spread evenly, also where the time ends. noexcept, no allocation.
+/// Cuts every triangle near the body. Many small ones are gathered by octants of its box, so that those kept are from
+/// all of them, unless the time ends; within an octant they are neighbours. noexcept, no allocation.
 void gather_pieces(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const ConvexBody& body, Limit& limit,
                    Pieces& pieces) noexcept;
 
