@@ -9,6 +9,7 @@
 
 #include "odds/math/tolerances.hpp"
 #include "query/patch/components.hpp"
+#include "query/patch/overlap.hpp"
 
 namespace odds::query::patch {
 
