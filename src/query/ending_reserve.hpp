@@ -52,6 +52,7 @@ struct EndingReserves {
   EndingReserve patch{{12000, 1000, 16000, 150, 3000, 1}};  ///< of a patch made hastily: witnesses, choice, writing
   EndingReserve single{{4000, 600, 10000, 150, 3000, 1}};   ///< the same of a single contact
   EndingReserve last{{1200, 600, 5000, 100, 400, 1}};       ///< the single contact of a hit that the search found last
+  EndingReserve around{{1000, 300, 5000, 100, 400, 1}};     ///< a look at the nodes about a contact
   EndingReserve rough{{4000, 600, 8000, 150, 3000, 1}};     ///< one more rough contact, and writing the answer
   EndingReserve late{{1500, 300, 5000, 150, 3000, 1}};      ///< of contacts that are carried along: writing the answer
   EndingReserve ray{{2000, 600, 6000, 150, 3000, 1}};       ///< one ray, and writing the answer

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "odds/math/tolerances.hpp"
 #include "odds/query/ray.hpp"
@@ -160,12 +159,66 @@ void make_rough_contacts(const PosedMeshes& meshes, const Vec3* known_normal, bo
 /// depth remains that of the two along their own direction: along another they may overlap by as much as they are
 /// large.
 void look_around(const PosedMeshes& meshes, Pair::Implementation& pair, Spending& spending) noexcept {
-  constexpr double takes_us = 1.0;
-  if (!(spending.left_us() > takes_us)) return;
-  spending.reserve_for_contacts(pair.endings.single);
+  EndingReserve& takes = pair.endings.around;
+  const double left_us = spending.left_us();
+  if (left_us * 1e3 < static_cast<double>(takes.ns())) return takes.ease();
+  spending.reserve_for_contacts(takes);  // so that what was made before counts as made
   for (Contact& contact : own_contacts(pair))
     contact.normal = direction_about(*pair.a, *pair.b, *pair.wide, meshes, contact);
-  static_cast<void>(spending.may_finish_contacts());  // if this was too long the next run keeps more
+  if (std::isfinite(left_us)) takes.note(static_cast<std::int64_t>((left_us - spending.left_us()) * 1e3));
+}
+
+/// All but how many of the hits there are.
+PatchInput input_of(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Vec3* known_normal,
+                    const Request& request, Pair::Implementation& pair) noexcept {
+  PatchInput input;
+  input.hits = pair.hits.pairs();
+  input.vertices_a = pair.a->mesh().vertices();
+  input.triangles_a = pair.a->mesh().triangles();
+  input.vertices_b = pair.b->mesh().vertices();
+  input.triangles_b = pair.b->mesh().triangles();
+  input.pose_b_in_a = pose_b_in_a;
+  input.solid_a = pair.a->is_solid();
+  input.solid_b = pair.b->is_solid();
+  input.reference_a = meshes.origin_a();
+  input.reference_b = meshes.pose().translation + meshes.origin_a();
+  if (!pair.previous_normal.isZero()) {
+    input.previous_normal = &pair.previous_normal;
+    input.previous_position = &pair.previous_position;
+  }
+  if (!pair.came.isZero()) input.came = &pair.came;
+  input.known_normal = known_normal;
+  input.max_contacts = request.max_contacts;
+  input.kernels = &pair.wide->patch;
+  if (request.max_contacts > 1) {  // a single contact is asked for its speed
+    input.probe_a = {&probe_depth, pair.a.get()};
+    input.probe_b = {&probe_depth, pair.b.get()};
+    input.probe_both = &probe_both_depths;
+  }
+  return input;
+}
+
+enum class Made : std::uint8_t { nothing, hastily, carefully };
+
+/// Contacts of the hits, as carefully as there is time for.
+Made make_of(const PatchInput& input, PatchBuilder& patches, Pair::Implementation& pair, Spending& spending) noexcept {
+  if (input.max_contacts <= 1) {
+    // Whatever the time: it takes no longer than a rough contact.
+    if (const auto one = patch::contact_of_one_pair(input, *input.kernels)) {
+      keep({&*one, 1}, pair);
+      pair.answer.contact_pairs = 1;
+      spending.end_from_last_piece(pair.endings.last);
+      return Made::carefully;
+    }
+  }
+  if (!spending.may_make_contacts()) return Made::nothing;
+  const Deadline deadline{[](void* state) noexcept { return !static_cast<Spending*>(state)->may_make_contacts(); },
+                          &spending};
+  const Deadline last{[](void* state) noexcept { return !static_cast<Spending*>(state)->may_finish_contacts(); },
+                      &spending};
+  keep(patches.build(input, deadline, last), pair);
+  pair.answer.contact_pairs = patches.pairs_used();
+  return patches.finished() ? Made::carefully : Made::hastily;
 }
 
 /// Along the direction that is known, if any, metres: what was measured and what the bodies have come since, or what
@@ -191,7 +244,6 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
                    double most_depth, const Request& request, PatchBuilder& patches, Pair::Implementation& pair,
                    Spending& spending) noexcept {
   const Progressed ended = searched.ended;
-  const Vec3 centre_b = meshes.pose().translation + meshes.origin_a();
   const bool single = request.max_contacts <= 1;
   spending.reserve_for_contacts(single ? pair.endings.single : pair.endings.patch, single ? hasty_single_ns : hasty_ns);
   const double smaller = smaller_size(pair);
@@ -202,33 +254,10 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
     make_contacts_over_runs(meshes, pose_b_in_a, known_normal, request, pair, spending);
     return;
   }
-  PatchInput input;
-  input.hits = pair.hits.pairs();
-  input.vertices_a = pair.a->mesh().vertices();
-  input.triangles_a = pair.a->mesh().triangles();
-  input.vertices_b = pair.b->mesh().vertices();
-  input.triangles_b = pair.b->mesh().triangles();
-  input.pose_b_in_a = pose_b_in_a;
-  input.solid_a = pair.a->is_solid();
-  input.solid_b = pair.b->is_solid();
-  input.reference_a = meshes.origin_a();
-  input.reference_b = centre_b;
-  if (!pair.previous_normal.isZero()) {
-    input.previous_normal = &pair.previous_normal;
-    input.previous_position = &pair.previous_position;
-  }
-  if (!pair.came.isZero()) input.came = &pair.came;
-  input.known_normal = known_normal;
+  PatchInput input = input_of(meshes, pose_b_in_a, known_normal, request, pair);
   // Other searches stop at as many as there is time for.
   const bool found_all = searched.method == Method::incremental && pair.a->volume() == volume::Kind::wide;
   if (found_all) input.most_pairs = hits_in(spending.left_us(), found_hits_per_microsecond);
-  input.max_contacts = request.max_contacts;
-  input.kernels = &pair.wide->patch;
-  if (request.max_contacts > 1) {  // a single contact is asked for its speed
-    input.probe_a = {&probe_depth, pair.a.get()};
-    input.probe_b = {&probe_depth, pair.b.get()};
-    input.probe_both = &probe_both_depths;
-  }
   // As many hits as there was time for are a part of them; as many as were asked for, or as are kept, are what was
   // asked.
   const bool as_many_as_kept =
@@ -238,27 +267,15 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   const bool all = ended != Progressed::spent && !part;
   if (!all) input.believed_depth = believed_depth(meshes, pose_b_in_a, known_normal, pair);
   input.found_all = ended == Progressed::finished && pair.hits.size() <= input.most_pairs;
-  bool finished = true;
-  const auto one = single ? patch::contact_of_one_pair(input, pair.wide->patch) : std::nullopt;
-  if (one) {  // whatever the time: it takes no longer than a rough contact
-    keep({&*one, 1}, pair);
-    pair.answer.contact_pairs = 1;
-    spending.end_from_last_piece(pair.endings.last);
-  } else if (!spending.may_make_contacts()) {
+  const Made made = make_of(input, patches, pair, spending);
+  if (made == Made::nothing) {
     (single ? pair.endings.single : pair.endings.patch).note(0);  // or it would never be tried again
     make_rough_contacts(meshes, known_normal, moved_little, request, pair, spending);
     note_unfinished(request, pair);
     return;
-  } else {
-    const Deadline deadline{[](void* state) noexcept { return !static_cast<Spending*>(state)->may_make_contacts(); },
-                            &spending};
-    const Deadline last{[](void* state) noexcept { return !static_cast<Spending*>(state)->may_finish_contacts(); },
-                        &spending};
-    keep(patches.build(input, deadline, last), pair);
-    if (pair.answer.contacts.empty()) return;
-    pair.answer.contact_pairs = patches.pairs_used();
-    finished = patches.finished();
   }
+  if (pair.answer.contacts.empty()) return;
+  const bool finished = made == Made::carefully;
   pair.answer.contacts_complete = finished && all;
   const bool whole = pair.answer.contacts_complete && ended == Progressed::finished;
   if (!finished || (!all && pair.hits.size() < pair.hits.capacity())) note_unfinished(request, pair);

@@ -41,6 +41,25 @@ namespace odds::query::patch {
   return previous != nullptr && previous->dot(direction) > tolerances::same_as_before ? tolerances::hysteresis : 1.0;
 }
 
+/// In which direction bodies that only touch are pressed together by a trifle before directions are compared: along
+/// the mean of the normals, or else where the bodies are; unit, or zero.
+[[nodiscard]] inline Vec3 pressing_direction(const PatchInput& input, const Vec3& normals_a, const Vec3& normals_b,
+                                             const Vec3& side) noexcept {
+  for (const Vec3& direction : {Vec3(normals_b - normals_a), side, Vec3(input.reference_a - input.reference_b)}) {
+    if (const Vec3 unit = unit_or_zero(direction); unit != Vec3::Zero()) return unit;
+  }
+  return Vec3::Zero();
+}
+
+/// A direction turned to a face's, the more the greater the share of the rim that is on the face; to the last bit the
+/// direction where that is too little.
+[[nodiscard]] inline Vec3 snapped_to(const Vec3& face, double share, const Vec3& direction) noexcept {
+  const double snap = smooth_step(tolerances::snap_from, tolerances::snap_to, share);
+  if (snap == 0.0) return direction;
+  const Vec3 snapped = unit_or_zero((1.0 - snap) * direction + snap * unit_or_zero(face));
+  return snapped == Vec3::Zero() ? direction : snapped;
+}
+
 /// A few directions with weights; directions within two degrees are one.
 struct Directions {
   struct One {

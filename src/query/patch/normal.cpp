@@ -113,12 +113,7 @@ Vec3 snap_to_face(const PatchView& view, const Vec3& normal, Watch& watch) noexc
   double share = 0.0;
   Vec3 mean = Vec3::Zero();
   faces.weigh(flat, share, mean, watch);
-  if (watch.late()) return normal;
-  mean = unit_or_zero(mean);
-  const double snap = smooth_step(tolerances::snap_from, tolerances::snap_to, share / view.sums.length);
-  if (snap == 0.0) return normal;  // to the last bit
-  const Vec3 snapped = unit_or_zero((1.0 - snap) * normal + snap * mean);
-  return snapped == Vec3::Zero() ? normal : snapped;
+  return watch.late() ? normal : snapped_to(mean, share / view.sums.length, normal);
 }
 
 /// Compares directions by the overlap along them, on a sample of the patch's triangle pairs.
@@ -126,9 +121,7 @@ class LeastOverlap {
  public:
   LeastOverlap(const PatchView& view, Watch& watch) noexcept
       : view_(view), watch_(watch), side_(side_of_bodies(view.input, view.sums.centre(view.rim.origin))) {
-    const Vec3 mean = unit_or_zero(view.sums.normals_b - view.sums.normals_a);
-    Vec3 pressing = mean == Vec3::Zero() ? unit_or_zero(side_) : mean;
-    if (pressing == Vec3::Zero()) pressing = unit_or_zero(view.input.reference_a - view.input.reference_b);
+    const Vec3 pressing = pressing_direction(view.input, view.sums.normals_a, view.sums.normals_b, side_);
     // Where the bodies only touch, every direction that parts them has no overlap. Pressing them together by a trifle
     // first tells the face's own normal from those that merely do.
     double size = 0.0;

@@ -37,6 +37,19 @@ struct Asked {
   [[nodiscard]] std::span<const Vec3> all() const noexcept { return {of.data(), count}; }
 };
 
+/// The faces' normals, their mean, the last run's normal.
+Asked candidates(const PatchInput& input, const PlacedPair& placed) noexcept {
+  const bool both_ways = !input.solid_a || !input.solid_b;
+  Asked asked;
+  Directions faces;
+  faces.add(placed.normal_b, 1.0);
+  faces.add(-placed.normal_a, 1.0);
+  for (std::size_t i = 0; i < faces.count; ++i) asked.add(faces.ones[i].mean(), both_ways);
+  asked.add(placed.normal_b - placed.normal_a, both_ways);
+  if (input.previous_normal != nullptr) asked.add(*input.previous_normal, false);
+  return asked;
+}
+
 /// The direction of least overlap of those that were offered.
 class Least {
  public:
@@ -76,9 +89,7 @@ Vec3 snapped(const PatchInput& input, const PlacedPair& placed, const Vec3& dire
   const Vec3 flat = unit_or_zero(faces.ones[0].sum);
   const double by_b = flatness(face_b, flat);
   const double by_a = flatness(face_a, flat);
-  const double snap = smooth_step(tolerances::snap_from, tolerances::snap_to, std::max(by_b, by_a));
-  const Vec3 made = unit_or_zero((1.0 - snap) * direction + snap * unit_or_zero(by_b * face_b + by_a * face_a));
-  return made == Vec3::Zero() ? direction : made;
+  return snapped_to(by_b * face_b + by_a * face_a, std::max(by_b, by_a), direction);
 }
 
 /// Over the middle of the rim, at the height of the deepest place.
@@ -103,32 +114,22 @@ std::optional<Contact> contact_of_one_pair(const PatchInput& input, const Kernel
   if (!cut_one(input, placed, piece)) return std::nullopt;
   const bool solid = input.solid_a && input.solid_b;
   const Vec3 side = side_of_bodies(input, piece.middle());
-
-  Asked asked;
-  Directions faces;
-  faces.add(placed.normal_b, 1.0);
-  faces.add(-placed.normal_a, 1.0);
-  for (std::size_t i = 0; i < faces.count; ++i) asked.add(faces.ones[i].mean(), !solid);
-  asked.add(placed.normal_b - placed.normal_a, !solid);
-  if (input.previous_normal != nullptr) asked.add(*input.previous_normal, false);
-  const std::size_t usual = asked.count;
   const Vec3 line = placed.normal_b.cross(placed.normal_a);
   const double steepness = line.norm();
+
+  Asked asked = candidates(input, placed);
+  const std::size_t usual = asked.count;
   // Along walls: only of solids, for of a sheet the rim says nothing of what is missing.
   if (solid && steepness > tolerances::steep) asked.add(line, true);
-
-  // Pressed together by a trifle first, for where the bodies only touch every direction that parts them has no overlap.
-  Vec3 pressing = unit_or_zero(placed.normal_b - placed.normal_a);
-  if (pressing == Vec3::Zero()) pressing = unit_or_zero(side);
-  if (pressing == Vec3::Zero()) pressing = unit_or_zero(input.reference_a - input.reference_b);
+  const Vec3 pressing = pressing_direction(input, placed.normal_a, placed.normal_b, side);
   const double size = std::min((placed.a[1] - placed.a[0]).norm(), (placed.b[1] - placed.b[0]).norm());
-  CornersOfEight corners;
-  kernels.corners_along(placed, asked.all(), -tolerances::pressing_share * size * pressing, corners);
+  CornersOfEight pressed;
+  kernels.corners_along(placed, asked.all(), -tolerances::pressing_share * size * pressing, pressed);
   Least least(input, side);
-  least.offer(asked, 0, usual, corners);
+  least.offer(asked, 0, usual, pressed);
   if (!least.found()) return std::nullopt;
 
-  // As they are, along what was found, along the walls, and along the faces that these are about.
+  // As they are: along what was found, along the walls, and along the faces that these are about.
   Asked ways;
   ways.add(asked.of[least.best()], false);
   for (std::size_t i = usual; i < asked.count; ++i) ways.add(asked.of[i], false);
@@ -140,7 +141,7 @@ std::optional<Contact> contact_of_one_pair(const PatchInput& input, const Kernel
   const double rounding = tolerances::rim_noise * piece.middle().cwiseAbs().maxCoeff();
   if (solid && as_they_are.deepest[0] > piece.length + rounding) {
     if (usual < asked.count) {
-      least.offer(asked, usual, asked.count, corners);
+      least.offer(asked, usual, asked.count, pressed);
       if (least.best() >= usual) way = least.best() - usual + 1;
     } else if (steepness < tolerances::flat_from && placed.normal_a.dot(placed.normal_b) > 0.0) {
       return std::nullopt;

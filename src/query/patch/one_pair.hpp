@@ -7,10 +7,10 @@
 
 namespace odds::query::patch {
 
-/// What PatchBuilder makes of the first hit alone, if no ray is cast and nothing is believed of the depth, in a fifth
-/// of the time: what that does with eight pairs at a time is done here along eight directions. Nothing if the pair
-/// needs more care: if its indices or coordinates are not in range or not finite, if it meets in a point or in a face,
-/// or as a wall on a wall.
+/// What PatchBuilder makes of the first hit alone where no ray is cast and nothing is believed of the depth, but by
+/// eight directions at a time, which for one pair takes less than eight pairs at a time do. Precondition: there is a
+/// hit. Nothing if the pair needs more care: if its indices or coordinates are not in range or not finite, if it meets
+/// in a point or in a face, or as a wall on a wall.
 [[nodiscard]] std::optional<Contact> contact_of_one_pair(const PatchInput& input, const Kernels& kernels) noexcept;
 
 }  // namespace odds::query::patch

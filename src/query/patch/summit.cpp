@@ -141,11 +141,11 @@ double Summit::rounding_of(double radius) const noexcept {
   return std::max(1e-9 * radius, 4.0 * tolerances::on_plane * centre_.cwiseAbs().maxCoeff());
 }
 
-Place Summit::highest(const Place& from, double radius) const noexcept {
-  constexpr int most_ridges = 12;
+Place Summit::highest(const Place& from, double radius, Watch& watch) const noexcept {
+  constexpr std::size_t most_ridges = 12;
   const double rounding = rounding_of(radius);
   Place place = from;
-  for (int i = 0; i < most_ridges; ++i) {
+  for (std::size_t i = 0; i < most_ridges && !watch.late_before_next(i); ++i) {
     const Ridge a(of_a_, place, rounding);
     const Ridge b(of_b_, place, rounding);
     const Place way = steepest(a, b);
@@ -188,7 +188,7 @@ Witness Summit::climb(const Witness& start, const Witness& beside, double radius
   constexpr int most_in_vain = 2;
   constexpr double shorter = 0.35;  // where a step led out of the overlap
   const double rounding = rounding_of(radius);
-  const bool may_lean = start.depth > tolerances::flat_overlap * 2.0 * radius;
+  const bool may_lean = start.depth > tolerances::flat_overlap * radius;
   Witness best = start;
   double step = radius;
   int in_vain = 0;  // steps out of the overlap, until there was one within it; -1: no longer counted
@@ -197,11 +197,11 @@ Witness Summit::climb(const Witness& start, const Witness& beside, double radius
     // Of surfaces that are not convex what was measured elsewhere may deny what is here.
     of_a_.leave_out_below(from, -height_of(best.on_a), rounding);
     of_b_.leave_out_below(from, height_of(best.on_b), rounding);
-    Place next = highest(from, step);
+    Place next = highest(from, step, watch);
     const auto leads_on = [&]() noexcept {
       return of_a_.at(next) + of_b_.at(next) > (1.0 + tolerances::level_overlap) * best.depth;
     };
-    if (step < radius && !leads_on()) next = highest(from, step = radius);
+    if (step < radius && !leads_on()) next = highest(from, step = radius, watch);
     if (!leads_on()) break;
     Witness found;
     if (measure(next, best, may_lean, reach, watch, found)) {

@@ -69,7 +69,7 @@ class Summit {
                Witness& found) noexcept;
   [[nodiscard]] double rounding_of(double radius) const noexcept;
   /// Where what is known allows the greatest depth, up to `radius` away along each axis.
-  [[nodiscard]] Roof::Place highest(const Roof::Place& from, double radius) const noexcept;
+  [[nodiscard]] Roof::Place highest(const Roof::Place& from, double radius, Watch& watch) const noexcept;
 
   const PatchInput& input_;
   const Frame& frame_;
