@@ -25,14 +25,7 @@ seconds = 0.5
 work_units = 1200
 )" + testing::ball_on_terrain;
 const std::string effects = "[effects.contact]\n[effects.virtual_coupling]\n";
-const std::string scripted = R"(
-[device.hand]
-type = "scripted"
-position_m = [-0.03, 0, 0.03]
-[[device.hand.motion]]
-kind = "slide"
-duration_s = 0.2
-by_m = [0, 0, -0.03]
+const std::string scripted = testing::hand_onto_terrain() + R"(
 [[device.hand.motion]]
 kind = "slide"
 duration_s = 0.2

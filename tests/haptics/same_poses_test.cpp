@@ -18,13 +18,7 @@ seconds = 0.4
                           "[effects.contact]\n[effects.virtual_coupling]\n";
 
 std::string hand(const std::string& type) {
-  return "[device.hand]\ntype = \"" + type + R"("
-position_m = [-0.03, 0, 0.03]
-[[device.hand.motion]]
-kind = "slide"
-duration_s = 0.2
-by_m = [0, 0, -0.03]
-[[device.hand.motion]]
+  return testing::hand_onto_terrain(type) + R"([[device.hand.motion]]
 kind = "slide"
 duration_s = 0.2
 by_m = [0.03, 0.01, 0]

@@ -22,14 +22,7 @@ seconds = 0.6
 [query]
 budget_us = 60
 )" + testing::ball_on_terrain;
-const std::string scripted = R"(
-[device.hand]
-type = "scripted"
-position_m = [-0.03, 0, 0.03]
-[[device.hand.motion]]
-kind = "slide"
-duration_s = 0.2
-by_m = [0, 0, -0.03]
+const std::string scripted = testing::hand_onto_terrain() + R"(
 [[device.hand.motion]]
 kind = "slide"
 duration_s = 0.4

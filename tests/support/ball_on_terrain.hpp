@@ -1,4 +1,4 @@
-// The bodies of a small scene: a ball on a hand, over a terrain.
+// A small scene: a ball on a hand, over a terrain, and the hand that lets it down.
 #pragma once
 
 #include <string>
@@ -22,5 +22,16 @@ motion = "dynamic"
 mass_kg = 0.05
 device = "hand"
 )";
+
+/// A device that begins above the terrain and is on it after 0.2 s; further motions may follow.
+inline std::string hand_onto_terrain(const std::string& type = "scripted") {
+  return "[device.hand]\ntype = \"" + type + R"("
+position_m = [-0.03, 0, 0.03]
+[[device.hand.motion]]
+kind = "slide"
+duration_s = 0.2
+by_m = [0, 0, -0.03]
+)";
+}
 
 }  // namespace odds::testing

@@ -17,16 +17,7 @@ using testing::TemporaryFolder;
 /// A ball that a hand presses onto a terrain; `query` and `loop` are keys of these sections.
 std::string scene(const std::string& query, const std::string& loop = "") {
   return "format = \"odds.scene/1\"\n[loop]\nseconds = 0.3\n" + loop + "[query]\n" + query + "\n" +
-         testing::ball_on_terrain + R"([device.hand]
-type = "scripted"
-position_m = [-0.03, 0, 0.03]
-[[device.hand.motion]]
-kind = "slide"
-duration_s = 0.2
-by_m = [0, 0, -0.03]
-[effects.contact]
-[effects.virtual_coupling]
-)";
+         testing::ball_on_terrain + testing::hand_onto_terrain() + "[effects.contact]\n[effects.virtual_coupling]\n";
 }
 
 /// The line of a table that begins so.
