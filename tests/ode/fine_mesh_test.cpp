@@ -76,16 +76,6 @@ struct ConvexBall : Ball {
   dGeomID geom;
 };
 
-// While it lives, every look at the budgets' clock takes so long.
-struct SlowLooks {
-  explicit SlowLooks(std::int64_t look_ns) : clock(look_ns) { ode::use_budget_clock(clock.clock()); }
-  ~SlowLooks() { ode::use_budget_clock({}); }
-  SlowLooks(const SlowLooks&) = delete;
-  SlowLooks& operator=(const SlowLooks&) = delete;
-
-  realtime::ManualClock clock;
-};
-
 class FineMeshTest : public OdeTest {
  protected:
   void SetUp() override {

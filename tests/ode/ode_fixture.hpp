@@ -10,6 +10,8 @@
 #include "odds/mesh/made/box.hpp"
 #include "odds/mesh/made/icosphere.hpp"
 #include "odds/ode/geom.hpp"
+#include "odds/realtime/clock.hpp"
+#include "ode/budget_clock.hpp"
 
 namespace odds::test {
 
@@ -94,6 +96,16 @@ class OdeTest : public ::testing::Test {
   }
 
   dSpaceID space = nullptr;
+};
+
+/// While it lives, every look at the budgets' clock takes so long.
+struct SlowLooks {
+  explicit SlowLooks(std::int64_t look_ns) : clock(look_ns) { ode::use_budget_clock(clock.clock()); }
+  ~SlowLooks() { ode::use_budget_clock({}); }
+  SlowLooks(const SlowLooks&) = delete;
+  SlowLooks& operator=(const SlowLooks&) = delete;
+
+  realtime::ManualClock clock;
 };
 
 }  // namespace odds::test

@@ -83,6 +83,19 @@ TEST_F(Resting, KeepsItsContactsWithEveryConvexBody) {
   }
 }
 
+// A face of 128 triangles and the walls beside it are more than there is room for, but not more than there is time for.
+TEST_F(Resting, KeepsContactsOfManyTrianglesWithinTheUsualBudget) {
+  const SlowLooks usual(30);
+  ASSERT_EQ(dGeomOddsMeshSetBudget(brick, 100.0), 1);
+  for (const char* kind : bodies) {
+    const dGeomID body = below(kind);
+    ASSERT_FALSE(collide(brick, body).empty());
+    EXPECT_FALSE(are_made_anew(body)) << kind;
+    dGeomDisable(body);
+    dGeomSetPosition(body, 0, 0, -100);
+  }
+}
+
 TEST_F(Resting, IsAskedAboutInBothOrders) {
   const dGeomID box = below("box");
   ASSERT_FALSE(collide(brick, box).empty());

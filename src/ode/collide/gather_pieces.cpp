@@ -95,8 +95,8 @@ std::size_t octant_of(const Piece& piece, const Vec3& box_center) noexcept {
 bool sift(const PreparedMesh& mesh, const Sieve& sieve, const ConvexBody& body, const math::Pose& mesh_in_body,
           std::size_t octant, std::size_t skipped, std::uint64_t nodes, std::size_t most, Limit& limit,
           Pieces& pieces) noexcept {
-  // A cut takes as long as these.
-  const std::uint64_t nodes_a_cut = std::max<std::uint64_t>(4, body.sides().size() / 32);
+  // A cut takes as long as these: of a box's six sides as one.
+  const std::uint64_t nodes_a_cut = 1 + body.sides().size() / 32;
   const bool takes_long = has_many_sides(body);
   const std::size_t end = pieces.count + most;
   std::uint64_t left = nodes;

@@ -15,7 +15,7 @@ namespace odds::ode {
 /// Work units and wall time of one collision; starts when it is made.
 class Limit {
  public:
-  explicit Limit(const Settings& own) noexcept : clock_(budget_clock()) {
+  explicit Limit(const Settings& own) noexcept : clock_(realtime::without_waiting(budget_clock())) {
     const Settings settings = within_share(own);
     shared_time_ = settings.budget_us < own.budget_us;
     shared_units_ = settings.work_units != own.work_units;
