@@ -9,6 +9,8 @@
 #include "ode/collide/gather_pieces.hpp"
 #include "ode/collide/manifold.hpp"
 #include "ode/collide/manifold_points.hpp"
+#include "ode/collide/points_over_features.hpp"
+#include "ode/collide/surface_above.hpp"
 #include "ode/geom/geom_data.hpp"
 #include "ode/mesh/nearest_surface.hpp"
 #include "ode/mesh/triangle_corners.hpp"
@@ -30,69 +32,39 @@ struct Patch {
   [[nodiscard]] std::span<const Piece* const> span() const noexcept { return {pieces.data(), count}; }
 };
 
-// Greedy, largest piece first: a piece joins the first patch whose leader's normal is close, or leads a new one.
-std::size_t group(Pieces& pieces, std::array<Patch, most_patches>& patches) noexcept {
-  std::sort(pieces.all.begin(), pieces.all.begin() + pieces.count, [](const Piece& a, const Piece& b) {
-    return a.area != b.area ? a.area > b.area : a.triangle < b.triangle;
-  });
+// Pieces, the largest first. They are too long to be moved about themselves.
+class BySize {
+ public:
+  explicit BySize(const Pieces& pieces) noexcept : count_(pieces.count) {
+    for (std::size_t i = 0; i < count_; ++i) all_[i] = &pieces.all[i];
+    std::sort(all_.begin(), all_.begin() + static_cast<std::ptrdiff_t>(count_), [](const Piece* a, const Piece* b) {
+      return a->area != b->area ? a->area > b->area : a->triangle < b->triangle;
+    });
+  }
+  [[nodiscard]] std::span<const Piece* const> span() const noexcept { return {all_.data(), count_}; }
+
+ private:
+  std::array<const Piece*, most_pieces> all_;
+  std::size_t count_;
+};
+
+// Greedy: a piece joins the first patch whose leader's normal is close, or leads a new one.
+std::size_t group(std::span<const Piece* const> pieces, std::array<Patch, most_patches>& patches) noexcept {
   std::size_t count = 0;
-  for (std::size_t i = 0; i < pieces.count; ++i) {
-    const Piece& piece = pieces.all[i];
+  for (const Piece* piece : pieces) {
     std::size_t into = count;
     double closest = same_patch;
     for (std::size_t k = 0; k < count; ++k) {
-      const double cosine = patches[k].pieces[0]->normal.dot(piece.normal);
+      const double cosine = patches[k].pieces[0]->normal.dot(piece->normal);
       if (cosine > closest || (count == most_patches && into == count)) {
         closest = std::max(closest, cosine);
         into = k;
       }
     }
     if (into == count) patches[count++].count = 0;
-    patches[into].pieces[patches[into].count++] = &piece;
+    patches[into].pieces[patches[into].count++] = piece;
   }
   return count;
-}
-
-bool contains(const Piece& piece, const Vec3& point) noexcept {
-  for (std::size_t i = 0; i < piece.count; ++i) {
-    const Vec3 edge = piece.corners[(i + 1) % piece.count] - piece.corners[i];
-    if (piece.normal.cross(edge).dot(point - piece.corners[i]) < -1e-12 * edge.squaredNorm()) return false;
-  }
-  return true;
-}
-
-// Corners of the body under the piece: where one dips through a face, no corner of the piece itself is deep.
-void add_corners_below(const Piece& piece, const Vec3& direction, const Features& features,
-                       ManifoldPoints& points) noexcept {
-  const double facing = piece.normal.dot(direction);
-  if (!(facing > 1e-6)) return;
-  for (std::size_t c = 0; c < features.corner_count; ++c) {
-    const Vec3& corner = features.corners[c];
-    const double depth = piece.normal.dot(piece.corners[0] - corner) / facing;
-    const Vec3 above = corner + depth * direction;
-    if (depth > 0.0 && contains(piece, above)) points.add(above, depth, piece.triangle);
-  }
-}
-
-// Edges of the surface over edges of the body: the deepest place where a ridge lies across an edge.
-void add_edge_crossings(const Piece& piece, const Vec3& direction, const Features& features,
-                        ManifoldPoints& points) noexcept {
-  for (std::size_t i = 0; i < piece.count; ++i) {
-    if (piece.side[i] != Piece::own_edge) continue;
-    const Vec3& begin = piece.corners[i];
-    const Vec3 edge = piece.corners[(i + 1) % piece.count] - begin;
-    for (std::size_t e = 0; e < features.edge_count; ++e) {
-      const Vec3 along = features.edges[e].end - features.edges[e].begin;
-      // begin + s edge = edge's begin + u along + depth direction
-      Mat3 system;
-      system << edge, -along, -direction;
-      const double determinant = system.determinant();
-      if (!(std::abs(determinant) > 1e-9 * edge.norm() * along.norm())) continue;
-      const Vec3 solution = system.inverse() * (features.edges[e].begin - begin);
-      const bool crosses = solution[0] >= 0.0 && solution[0] <= 1.0 && solution[1] >= 0.0 && solution[1] <= 1.0;
-      if (crosses && solution[2] > 0.0) points.add(begin + solution[0] * edge, solution[2], piece.triangle);
-    }
-  }
 }
 
 bool is_flat(const Patch& patch) noexcept {
@@ -111,11 +83,12 @@ void add_points(const Patch& patch, const Vec3& direction, const ConvexBody& bod
                 ManifoldPoints& points) noexcept {
   Features features;
   body.add_features(direction, patch.exit.depth, features);
+  const EdgesAlong edges(features, direction, body.box_center().norm() + body.box_half_extents().norm());
   const std::span<const Piece* const> pieces = patch.span();
   bool is_late = false;
   for (std::size_t i = 0; i < pieces.size() && !is_late; ++i) {
     add_corners_below(*pieces[i], direction, features, points);
-    if (ridges) add_edge_crossings(*pieces[i], direction, features, points);
+    if (ridges) edges.add_crossings(*pieces[i], points);
     is_late = limit.time_is_up(time_for_points);
   }
   for (std::size_t i = 0; i < pieces.size() && !is_late; ++i) {
@@ -240,16 +213,15 @@ void leave_plates_one_way(std::span<Patch> patches, const ConvexBody& body, doub
 
 // The exits of all patches: one and the same if the body lies on a convex edge or corner, or if a common way is no
 // longer than the longest of their own; else each its own (it stands in a concave corner).
-void find_exits(std::span<Patch> patches, const Pieces& pieces, const ConvexBody& body, const Limit& limit) noexcept {
+void find_exits(std::span<Patch> patches, std::span<const Piece* const> pieces, bool complete, const ConvexBody& body,
+                const Limit& limit) noexcept {
   double longest = 0.0;
   for (Patch& patch : patches) {
-    patch.exit = shortest_exit(patch.span(), body, !pieces.complete, limit);
+    patch.exit = shortest_exit(patch.span(), body, !complete, limit);
     longest = std::max(longest, patch.exit.depth);
   }
   if (patches.size() == 1) return;
-  std::array<const Piece*, most_pieces> everything;
-  for (std::size_t i = 0; i < pieces.count; ++i) everything[i] = &pieces.all[i];
-  const Exit common = shortest_exit({everything.data(), pieces.count}, body, !pieces.complete, limit);
+  const Exit common = shortest_exit(pieces, body, !complete, limit);
   const double tolerance = same_place * body.box_half_extents().norm();
   const bool is_common = common.depth <= longest * (1.0 + 1e-6) || are_convex(patches, tolerance);
   if (!is_common || !(common.depth < dInfinity)) return leave_plates_one_way(patches, body, tolerance);
@@ -258,19 +230,18 @@ void find_exits(std::span<Patch> patches, const Pieces& pieces, const ConvexBody
 
 // A body that lies across a solid would be left along its own length. Where that takes more than the body is thick, the
 // way out at the surface nearest to the middle of what lies within is tried, too.
-void leave_sideways(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const Pieces& pieces,
+void leave_sideways(const PreparedMesh& mesh, const math::Pose& body_in_mesh, std::span<const Piece* const> pieces,
                     const ConvexBody& body, Limit& limit, std::span<Patch> patches) noexcept {
   double deepest = 0.0;
   for (const Patch& patch : patches) deepest = std::max(deepest, patch.exit.depth);
   if (!mesh.closed || !(deepest > 2.0 * body.box_half_extents().minCoeff()) || limit.time_is_up(time_for_exits)) return;
   Vec3 middle = Vec3::Zero();
   double area = 0.0;
-  for (std::size_t i = 0; i < pieces.count; ++i) {
-    const Piece& piece = pieces.all[i];
+  for (const Piece* piece : pieces) {
     Vec3 sum = Vec3::Zero();
-    for (std::size_t k = 0; k < piece.count; ++k) sum += piece.corners[k];
-    middle += piece.area / static_cast<double>(piece.count) * sum;
-    area += piece.area;
+    for (std::size_t k = 0; k < piece->count; ++k) sum += piece->corners[k];
+    middle += piece->area / static_cast<double>(piece->count) * sum;
+    area += piece->area;
   }
   middle = body_in_mesh * Vec3(middle / area);
   if (!in_bounds(mesh, middle)) return;
@@ -349,7 +320,7 @@ bool write_resting(const PreparedMesh& mesh, const math::Pose& mesh_in_world, co
     Corners corners = mesh.corners(triangle);
     for (Vec3& corner : corners) corner = mesh_in_body * corner;
     Piece piece;
-    return cut_by_sides(corners, body, piece);
+    return cut_by_sides(corners, body, ~std::uint64_t{0}, piece);
   };
   std::array<query::Contact, query::most_contacts> held;
   const std::size_t count = resting.write(question, body_in_mesh, motion, size, meets, held);
@@ -405,9 +376,10 @@ Seen write_convex_contacts(const PreparedMesh& mesh, const math::Pose& mesh_in_w
     push_out(mesh, mesh_in_world, body_in_mesh, body, pieces.cut_off, limit, writer);
   } else {
     std::array<Patch, most_patches> patches;
-    const std::size_t count = group(pieces, patches);
-    find_exits(std::span(patches).first(count), pieces, body, limit);
-    leave_sideways(mesh, body_in_mesh, pieces, body, limit, std::span(patches).first(count));
+    const BySize by_size(pieces);
+    const std::size_t count = group(by_size.span(), patches);
+    find_exits(std::span(patches).first(count), by_size.span(), pieces.complete, body, limit);
+    leave_sideways(mesh, body_in_mesh, by_size.span(), body, limit, std::span(patches).first(count));
     if (!pieces.complete) {
       leave_by_the_near_side(mesh, body_in_mesh, body, limit, std::span(patches).first(count));
       add_deepest(mesh, body_in_mesh, body, limit, pieces, std::span(patches).first(count));

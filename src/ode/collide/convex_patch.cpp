@@ -2,6 +2,7 @@
 #include "ode/collide/convex_patch.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -50,18 +51,6 @@ bool cut(Piece& piece, const HalfSpace& half_space, std::int16_t number) noexcep
   return true;
 }
 
-// A ball about a piece, which tells soonest that a side does not come near it.
-struct Ball {
-  explicit Ball(const Piece& piece) noexcept {
-    for (std::size_t i = 0; i < piece.count; ++i) center += piece.corners[i] / static_cast<double>(piece.count);
-    double square = 0.0;
-    for (std::size_t i = 0; i < piece.count; ++i) square = std::max(square, (piece.corners[i] - center).squaredNorm());
-    radius = (1.0 + 1e-9) * std::sqrt(square) + 1e-12 * center.norm();  // more than rounding takes
-  }
-  Vec3 center = Vec3::Zero();
-  double radius = 0.0;
-};
-
 // As sides in turn do, but most of them are passed over.
 void cut_by_many(Piece& piece, std::span<const HalfSpace> sides) noexcept {
   Ball ball(piece);
@@ -76,29 +65,49 @@ void cut_by_many(Piece& piece, std::span<const HalfSpace> sides) noexcept {
   }
 }
 
-// How far the body must go along `direction` to be clear of the patch; infinity as soon as it is more than `enough`.
-double depth_along(const Vec3& direction, std::span<const Piece* const> patch, const ConvexBody& body,
-                   double enough) noexcept {
-  constexpr double no_way = std::numeric_limits<double>::infinity();
-  const double lowest = -body.reach(-direction);
-  double depth = 0.0;
-  for (const Piece* piece : patch) {
-    bool goes_on_ahead = false;
-    for (std::size_t i = 0; i < piece->count; ++i) {
-      depth = std::max(depth, direction.dot(piece->corners[i]) - lowest);
-      const std::int16_t side = piece->side[i];
-      goes_on_ahead = goes_on_ahead || (side != Piece::own_edge &&
-                                        body.sides()[static_cast<std::size_t>(side)].normal.dot(direction) > 1e-9);
+// Ways out of a patch. What bars one way bars most others that are no shorter: it is asked first.
+class Ways {
+ public:
+  Ways(std::span<const Piece* const> patch, const ConvexBody& body) noexcept : patch_(patch), body_(body) {}
+
+  // How far the body must go along `direction` to be clear of the patch; infinity if it is not less than `enough`.
+  double depth_along(const Vec3& direction, double enough) noexcept {
+    const auto bars = [&](const Piece& piece, double lowest) { return !(depth_of(piece, direction, lowest) < enough); };
+    // No point of the body is lower than its lowest.
+    if (barring_ < patch_.size() && bars(*patch_[barring_], direction.dot(low_))) return no_way;
+    low_ = body_.farthest(-direction);
+    const double lowest = direction.dot(low_);
+    double depth = 0.0;
+    for (std::size_t i = 0; i < patch_.size(); ++i) {
+      depth = std::max(depth, depth_of(*patch_[i], direction, lowest));
+      if (depth < enough) continue;
+      barring_ = i;
+      return no_way;
     }
-    if (goes_on_ahead) {
-      const double facing = direction.dot(piece->normal);
-      if (facing < least_facing) return no_way;
-      depth = std::max(depth, piece->plane_depth / facing);
-    }
-    if (!(depth < enough)) return no_way;
+    return depth;
   }
-  return depth;
-}
+
+ private:
+  static constexpr double no_way = std::numeric_limits<double>::infinity();
+  [[nodiscard]] double depth_of(const Piece& piece, const Vec3& direction, double lowest) const noexcept {
+    double depth = 0.0;
+    bool goes_on_ahead = false;
+    for (std::size_t i = 0; i < piece.count; ++i) {
+      depth = std::max(depth, direction.dot(piece.corners[i]) - lowest);
+      const std::int16_t side = piece.side[i];
+      goes_on_ahead = goes_on_ahead || (side != Piece::own_edge &&
+                                        body_.sides()[static_cast<std::size_t>(side)].normal.dot(direction) > 1e-9);
+    }
+    if (!goes_on_ahead) return depth;
+    const double facing = direction.dot(piece.normal);
+    return facing < least_facing ? no_way : std::max(depth, piece.plane_depth / facing);
+  }
+
+  std::span<const Piece* const> patch_;
+  const ConvexBody& body_;
+  std::size_t barring_ = std::numeric_limits<std::size_t>::max();
+  Vec3 low_ = Vec3::Zero();  // a point of the body
+};
 
 // Zero where they nearly cancel each other, as those of a mesh wholly within the body do, or of a plate that goes
 // through it: what is left of them is rounding, or one side's being a little larger.
@@ -129,18 +138,20 @@ double depth_below_middle(const Vec3& mean, std::span<const Piece* const> patch,
 
 }  // namespace
 
-bool cut_by_sides(const std::array<Vec3, 3>& triangle, const ConvexBody& body, Piece& piece) noexcept {
+bool cut_by_sides(const std::array<Vec3, 3>& triangle, const ConvexBody& body, std::uint64_t sides,
+                  Piece& piece) noexcept {
   piece.count = 3;
   for (std::size_t i = 0; i < 3; ++i) {
     piece.corners[i] = triangle[i];
     piece.side[i] = Piece::own_edge;
   }
-  const std::span<const HalfSpace> sides = body.sides();
   if (has_many_sides(body)) {
-    cut_by_many(piece, sides);
+    cut_by_many(piece, body.sides());
   } else {
-    for (std::size_t i = 0; i < sides.size() && piece.count >= 3; ++i) {
-      cut(piece, sides[i], static_cast<std::int16_t>(i));
+    for (; sides != 0 && piece.count >= 3; sides &= sides - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(sides));
+      if (i >= body.sides().size()) break;
+      cut(piece, body.sides()[i], static_cast<std::int16_t>(i));
     }
   }
   if (piece.count < 3) return false;
@@ -161,11 +172,12 @@ Exit shortest_exit(std::span<const Piece* const> patch, const ConvexBody& body, 
   const bool faces_all_ways = mean.isZero(0.0);
   Exit best = {faces_all_ways ? patch.front()->normal : mean, std::numeric_limits<double>::infinity()};
   const double beyond = goes_on && !faces_all_ways ? depth_below_middle(mean, patch, body) : 0.0;
+  Ways ways(patch, body);
   const auto consider = [&](const Vec3& direction) {
     const double facing = direction.dot(mean);
     if (!faces_all_ways && facing < least_facing) return;
     const double enough = best.depth * clearly_shorter;
-    double depth = depth_along(direction, patch, body, enough);
+    double depth = ways.depth_along(direction, enough);
     if (beyond > 0.0) depth = std::max(depth, beyond / facing);
     if (depth < enough) best = {direction, depth};
   };

@@ -1,7 +1,10 @@
 // The pieces of a mesh's surface inside a convex body, and the direction in which the body leaves them soonest.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <span>
 
 #include "ode/collide/limit.hpp"
@@ -18,9 +21,23 @@ constexpr double time_for_points = 0.9;
 /// One cut, or one way through the body, may take longer than a short budget: the clock is looked at before each.
 [[nodiscard]] inline bool has_many_sides(const ConvexBody& body) noexcept { return body.sides().size() > 32; }
 
-/// Cuts a triangle (body frame) by the sides of the body. False if nothing with an area is left, or what is left does
-/// not meet the body.
-[[nodiscard]] bool cut_by_sides(const std::array<Vec3, 3>& triangle, const ConvexBody& body, Piece& piece) noexcept;
+/// About a piece: what does not come near it is told soonest.
+struct Ball {
+  explicit Ball(const Piece& piece) noexcept {
+    for (std::size_t i = 0; i < piece.count; ++i) center += piece.corners[i] / static_cast<double>(piece.count);
+    double square = 0.0;
+    for (std::size_t i = 0; i < piece.count; ++i) square = std::max(square, (piece.corners[i] - center).squaredNorm());
+    radius = (1.0 + 1e-9) * std::sqrt(square) + 1e-12 * center.norm();  // more than rounding takes
+  }
+  Vec3 center = Vec3::Zero();
+  double radius = 0.0;
+};
+
+/// Cuts a triangle (body frame) by sides of the body: of the first ones those with a bit in `sides`, where no more than
+/// these may cut it; of a body with many sides all. False if nothing with an area is left, or what is left does not
+/// meet the body.
+[[nodiscard]] bool cut_by_sides(const std::array<Vec3, 3>& triangle, const ConvexBody& body, std::uint64_t sides,
+                                Piece& piece) noexcept;
 
 /// Where a body goes to leave a patch of surface.
 struct Exit {

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 
 #include "odds/math/pose.hpp"
 #include "ode/collide/limit.hpp"
@@ -26,17 +25,6 @@ struct Pieces {
 /// all of them, unless the time ends; within an octant they are neighbours. noexcept, no allocation.
 void gather_pieces(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const ConvexBody& body, Limit& limit,
                    Pieces& pieces) noexcept;
-
-/// Where a line from inside the surface comes out of it.
-struct Above {
-  std::uint32_t triangle;
-  double way;  ///< metres, > 0
-};
-
-/// Where the surface is over a point of the body, seen along `up` (both in the body's frame; unit), by no more than
-/// `most` (metres). Nothing if it is not, or not within the time. noexcept, no allocation.
-std::optional<Above> surface_above(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const ConvexBody& body,
-                                   const Vec3& point, const Vec3& up, double most, Limit& limit) noexcept;
 
 /// Where pieces were left out, the deepest may be among them. Adds the one that lies over the body's lowest point, seen
 /// along `up` (body frame, unit), by no more than `most` (metres). False if there is none, or not within the time, or

@@ -36,6 +36,14 @@ class Limit {
   /// `share` of the time, in (0, 1]: less for what has to be worked on afterwards.
   [[nodiscard]] bool time_is_up(double share = 1.0) const noexcept { return timed_ && clock_() >= end_ns(share); }
 
+  /// The share of the time that is gone; 0 where there is no limit.
+  [[nodiscard]] double used() const noexcept {
+    return timed_ ? static_cast<double>(clock_() - start_ns_) / time_ns_ : 0.0;
+  }
+
+  /// How many nodes a search may visit that looks at the clock itself.
+  [[nodiscard]] std::uint64_t nodes_left() const noexcept { return in_units_ ? units : most_units; }
+
   /// How many nodes a search may visit within that share that does not take them from `units` itself, nor look at the
   /// clock: what is left of the units, and of that time, but always some.
   [[nodiscard]] std::uint64_t nodes_in_time(double share) const noexcept {

@@ -60,6 +60,7 @@ struct Features {
   struct Edge {
     Vec3 begin;
     Vec3 end;
+    [[nodiscard]] Vec3 along() const noexcept { return end - begin; }
   };
   std::array<Vec3, most> corners;
   std::array<Edge, most> edges;

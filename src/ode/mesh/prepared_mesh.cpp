@@ -6,10 +6,12 @@
 #include <numeric>
 #include <span>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "odds/mesh/enclosed_volume.hpp"
 #include "ode/mesh/triangle_corners.hpp"
+#include "query/shape_data.hpp"
 
 namespace odds::ode {
 namespace {
@@ -106,6 +108,11 @@ std::shared_ptr<const PreparedMesh> PreparedMesh::make(std::shared_ptr<const que
   prepared->shape = std::move(shape);
   prepared->shape->find_flat_faces();  // or the first collision that prepares a pair would
   const mesh::TriangleMesh& mesh = prepared->mesh();
+  prepared->wide_tree = std::get_if<tree::WideTree>(&prepared->shape->data().tree);
+  if (prepared->wide_tree == nullptr) {
+    prepared->own_tree = tree::WideTree::build(mesh, {.leaf_triangles = tree::wide_lanes});
+    prepared->wide_tree = &*prepared->own_tree;
+  }
   prepared->vertices = used_vertices(mesh);
   std::vector<BoxTree::Box> boxes;
   boxes.reserve(std::max(prepared->vertices.size(), mesh.triangles().size()));

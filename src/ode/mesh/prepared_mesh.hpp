@@ -4,9 +4,11 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "odds/query/shape.hpp"
+#include "odds/tree/wide_tree.hpp"
 #include "ode/mesh/box_tree.hpp"
 
 namespace odds::ode {
@@ -29,6 +31,8 @@ struct PreparedMesh {
   std::vector<Vertex> vertices;               ///< those that triangles use
   BoxTree vertex_tree;                        ///< over `vertices`
   BoxTree triangle_tree;                      ///< over the mesh's triangles
+  std::optional<tree::WideTree> own_tree;     ///< where the shape has other bounding volumes
+  const tree::WideTree* wide_tree = nullptr;  ///< that, or the shape's; never null
   bool closed = false;    ///< every edge has its opposite, and something is enclosed: inside and outside are defined
   std::vector<Fan> fans;  ///< by the x of their tips
 

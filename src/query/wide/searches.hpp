@@ -13,6 +13,7 @@
 #include "query/patch/eight.hpp"
 #include "query/search/search.hpp"
 #include "query/wide/encounter.hpp"
+#include "query/wide/half_spaces.hpp"
 #include "query/wide/kinetic_front.hpp"
 #include "query/wide/known_faces.hpp"
 #include "query/wide/sweep.hpp"
@@ -90,6 +91,11 @@ struct Searches {
   RayHits (*two_rays)(const RayTask& first, const RayTask& second) noexcept;
   /// The leaves that places in two trees belong to, and the next larger nodes about them.
   std::array<SlotsAbout, 2> (*slots_about)(const Place& a, const Place& b) noexcept;
+  /// What of a node, of a leaf, is within half-spaces.
+  void (*children_within)(const tree::WideNode& node, const HalfSpaces& spaces, HalfSpaces::Sides sides,
+                          LanesWithin& within) noexcept;
+  void (*triangles_within)(const tree::WideLeaf& leaf, unsigned count, const Vec3f& center, const HalfSpaces& spaces,
+                           HalfSpaces::Sides sides, LanesWithin& within) noexcept;
   patch::Kernels patch;
 };
 

@@ -3,6 +3,7 @@
 
 #include "query/wide/beside_faces.hpp"
 #include "query/wide/exact.hpp"
+#include "query/wide/half_spaces.hpp"
 #include "query/wide/incremental.hpp"
 #include "query/wide/nearest.hpp"
 #include "query/wide/patch_kernel.hpp"
@@ -23,6 +24,8 @@ constexpr Searches searches_of() noexcept {
           &RayCast<L>::run,
           &RayCast<L>::run_two,
           &WayDown<L>::run,
+          &HalfSpaceKernel<L>::children,
+          &HalfSpaceKernel<L>::triangles,
           PatchKernel<L>::table()};
 }
 

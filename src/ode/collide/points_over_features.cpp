@@ -1,0 +1,94 @@
+// Corners and edges of a body under pieces of surface; those that are not near each other are told apart first.
+#include "ode/collide/points_over_features.hpp"
+
+#include <cmath>
+
+#include "ode/collide/convex_patch.hpp"
+
+namespace odds::ode {
+namespace {
+
+bool contains(const Piece& piece, const Vec3& point) noexcept {
+  for (std::size_t i = 0; i < piece.count; ++i) {
+    const Vec3 edge = piece.corners[(i + 1) % piece.count] - piece.corners[i];
+    if (piece.normal.cross(edge).dot(point - piece.corners[i]) < -1e-12 * edge.squaredNorm()) return false;
+  }
+  return true;
+}
+
+// A box around a piece, to which the points that it may contain come near.
+struct Around {
+  explicit Around(const Piece& piece) noexcept : lower(piece.corners[0]), upper(piece.corners[0]) {
+    for (std::size_t i = 1; i < piece.count; ++i) {
+      lower = lower.cwiseMin(piece.corners[i]);
+      upper = upper.cwiseMax(piece.corners[i]);
+    }
+    const double little = 1e-6 * (upper - lower).maxCoeff();
+    lower.array() -= little;
+    upper.array() += little;
+  }
+  [[nodiscard]] bool has(const Vec3& point) const noexcept {
+    return (point.array() >= lower.array()).all() && (point.array() <= upper.array()).all();
+  }
+  Vec3 lower;
+  Vec3 upper;
+};
+
+}  // namespace
+
+void add_corners_below(const Piece& piece, const Vec3& direction, const Features& features,
+                       ManifoldPoints& points) noexcept {
+  const double facing = piece.normal.dot(direction);
+  if (!(facing > 1e-6)) return;
+  const Around around(piece);
+  for (std::size_t c = 0; c < features.corner_count; ++c) {
+    const Vec3& corner = features.corners[c];
+    const double depth = piece.normal.dot(piece.corners[0] - corner) / facing;
+    if (!(depth > 0.0)) continue;
+    const Vec3 above = corner + depth * direction;
+    if (around.has(above) && contains(piece, above)) points.add(above, depth, piece.triangle);
+  }
+}
+
+EdgesAlong::EdgesAlong(const Features& features, const Vec3& direction, double far) noexcept
+    : edges_(std::span(features.edges).first(features.edge_count)), direction_(direction) {
+  constexpr double rounding = 1e-12;
+  for (std::size_t e = 0; e < edges_.size(); ++e) {
+    const Vec3 side = edges_[e].along().cross(direction);
+    const double length = side.norm();
+    sides_[e] = {side, side.dot(edges_[e].begin), length, rounding * length * far};
+  }
+}
+
+void EdgesAlong::add_crossings(const Piece& piece, ManifoldPoints& points) const noexcept {
+  std::array<std::uint8_t, Features::most> near;
+  std::size_t count = 0;
+  const Ball ball(piece);
+  for (std::size_t e = 0; e < edges_.size(); ++e) {
+    const double beside = std::abs(sides_[e].of(ball.center));
+    if (beside <= sides_[e].length * ball.radius + sides_[e].rounding) near[count++] = static_cast<std::uint8_t>(e);
+  }
+  for (std::size_t i = 0; i < piece.count && count > 0; ++i) {
+    if (piece.side[i] != Piece::own_edge) continue;
+    const Vec3& begin = piece.corners[i];
+    const Vec3& end = piece.corners[(i + 1) % piece.count];
+    for (const std::uint8_t e : std::span(near).first(count)) {
+      if (!sides_[e].has_beside(begin, end)) add_crossing(begin, end - begin, edges_[e], piece.triangle, points);
+    }
+  }
+}
+
+void EdgesAlong::add_crossing(const Vec3& begin, const Vec3& edge, const Features::Edge& own, std::uint32_t triangle,
+                              ManifoldPoints& points) const noexcept {
+  const Vec3 along = own.along();
+  // begin + s edge = own edge's begin + u along + depth direction
+  Mat3 system;
+  system << edge, -along, -direction_;
+  const double determinant = system.determinant();
+  if (!(std::abs(determinant) > 1e-9 * edge.norm() * along.norm())) return;
+  const Vec3 solution = system.inverse() * (own.begin - begin);
+  const bool crosses = solution[0] >= 0.0 && solution[0] <= 1.0 && solution[1] >= 0.0 && solution[1] <= 1.0;
+  if (crosses && solution[2] > 0.0) points.add(begin + solution[0] * edge, solution[2], triangle);
+}
+
+}  // namespace odds::ode

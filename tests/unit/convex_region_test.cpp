@@ -1,0 +1,177 @@
+// Triangles of a wide tree in convex regions, against looking at each.
+#include "query/shape/convex_region.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <memory>
+#include <set>
+#include <variant>
+#include <vector>
+
+#include "odds/math/random.hpp"
+#include "query/shape_data.hpp"
+#include "support/instruction_sets.hpp"
+#include "support/shapes.hpp"
+
+namespace odds::query {
+namespace {
+
+using Sides = ConvexRegion::Sides;
+
+struct HalfSpace {
+  Vec3 normal;
+  double offset;
+};
+
+class ConvexRegions : public ::testing::TestWithParam<double> {
+ protected:
+  // A wavy sphere about `middle`.
+  void SetUp() override {
+    const auto sphere = testing::wavy_sphere(24);
+    std::vector<Vec3> vertices(sphere->vertices().begin(), sphere->vertices().end());
+    for (Vec3& vertex : vertices) vertex += middle;
+    std::vector<mesh::Triangle> triangles(sphere->triangles().begin(), sphere->triangles().end());
+    mesh = std::make_shared<const mesh::TriangleMesh>(
+        mesh::TriangleMesh::make(std::move(vertices), std::move(triangles)).value());
+    shape = Shape::build(mesh).value();
+    tree = &std::get<tree::WideTree>(shape->data().tree);
+  }
+  std::vector<HalfSpace> any_half_spaces(math::Random& random, std::size_t count) {
+    const Vec3 about = middle + random.uniform(0.0, 1.2) * random.direction();
+    std::vector<HalfSpace> all(count);
+    for (HalfSpace& side : all) {
+      side.normal = random.direction();
+      side.offset = side.normal.dot(about) + random.uniform(0.0, 0.4);
+    }
+    return all;
+  }
+  [[nodiscard]] std::array<double, 3> heights(std::uint32_t triangle, const HalfSpace& side) const {
+    std::array<double, 3> above{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      above[i] = side.normal.dot(mesh->vertices()[mesh->triangles()[triangle][i]]) - side.offset;
+    }
+    return above;
+  }
+
+  Vec3 middle = Vec3::Constant(GetParam());
+  std::shared_ptr<const mesh::TriangleMesh> mesh;
+  std::shared_ptr<const Shape> shape;
+  const tree::WideTree* tree = nullptr;
+};
+
+TEST_P(ConvexRegions, HaveAllTrianglesThatAreNotBeyondASideAndWhatMayCutThem) {
+  math::Random random(5, 1);
+  const double rounding = 1e-12 * (1.0 + std::abs(GetParam()));
+  std::size_t left_out = 0;
+  std::size_t whole = 0;
+  for (int round = 0; round < 200; ++round) {
+    const std::vector<HalfSpace> sides = any_half_spaces(random, 1 + static_cast<std::size_t>(round) % 20);
+    ConvexRegion region(*tree, rounding);
+    for (const HalfSpace& side : sides) region.add(side.normal, side.offset);
+    std::vector<Sides> found(mesh->triangles().size());
+    std::vector<int> times(found.size(), 0);
+    std::uint64_t nodes = 1'000'000;
+    const bool all = region.search([](tree::ChildRef, Sides) { return ConvexRegion::Visit::open; },
+                                   [&](std::uint32_t triangle, Sides left) {
+                                     found[triangle] = left;
+                                     ++times[triangle];
+                                     return true;
+                                   },
+                                   nodes);
+    ASSERT_TRUE(all);
+    for (std::uint32_t t = 0; t < found.size(); ++t) {
+      ASSERT_LE(times[t], 1);
+      bool is_beyond = false;
+      for (std::size_t i = 0; i < sides.size(); ++i) {
+        const auto above = heights(t, sides[i]);
+        is_beyond = is_beyond || *std::min_element(above.begin(), above.end()) > 0.0;
+        if (times[t] == 1 && (found[t] >> i & 1U) == 0) {
+          EXPECT_LT(*std::max_element(above.begin(), above.end()), -rounding) << "it was told to be well within";
+          ++whole;
+        }
+      }
+      if (times[t] == 0) EXPECT_TRUE(is_beyond) << "left out: " << t;
+      left_out += times[t] == 0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(left_out, 100'000u);
+  EXPECT_GT(whole, 10'000u);
+}
+
+TEST_P(ConvexRegions, ForgetSidesAndEndWhereTheyAreTold) {
+  ConvexRegion region(*tree, 1e-9);
+  region.add(Vec3::UnitX(), middle.x() + 0.3);
+  region.add(Vec3::UnitX(), middle.x() - 1e300);  // nothing is within
+  const auto open = [](tree::ChildRef, Sides) { return ConvexRegion::Visit::open; };
+  std::size_t taken = 0;
+  const auto take = [&](std::uint32_t, Sides) { return ++taken < 5; };
+  std::uint64_t nodes = 100;
+  EXPECT_TRUE(region.search(open, take, nodes));
+  EXPECT_EQ(taken, 0u);
+  EXPECT_EQ(nodes, 100u);
+  region.keep(1);
+  EXPECT_FALSE(region.search(open, take, nodes));
+  EXPECT_EQ(taken, 5u);
+  nodes = 1;
+  taken = 0;
+  EXPECT_FALSE(region.search(open, take, nodes)) << "one node has no triangles";
+  EXPECT_EQ(taken, 0u);
+  EXPECT_EQ(nodes, 0u);
+  nodes = 100;
+  EXPECT_FALSE(region.search([](tree::ChildRef, Sides) { return ConvexRegion::Visit::end; }, take, nodes));
+  EXPECT_EQ(nodes, 100u);
+  EXPECT_TRUE(region.search([](tree::ChildRef, Sides) { return ConvexRegion::Visit::pass_over; }, take, nodes));
+  EXPECT_EQ(taken, 0u);
+}
+
+INSTANTIATE_TEST_SUITE_P(About, ConvexRegions, ::testing::Values(0.0, 1e3, -1e6));
+
+TEST(HalfSpaceKernels, OfEachInstructionSetGiveTheSame) {
+  const auto shape = Shape::build(testing::wavy_sphere(24)).value();
+  const auto& tree = std::get<tree::WideTree>(shape->data().tree);
+  const wide::Searches& portable = *wide::searches_for(InstructionSet::portable);
+  math::Random random(6, 1);
+  std::set<decltype(wide::Searches::children_within)> kernels;
+  for (const InstructionSet set : testing::instruction_sets) {
+    const wide::Searches* const searches = wide::searches_for(set);
+    if (searches == nullptr) continue;  // not on this processor
+    EXPECT_TRUE(kernels.insert(searches->children_within).second);
+    for (std::size_t n = 0; n < tree.node_count(); ++n) {
+      wide::HalfSpaces spaces;
+      for (spaces.count = 0; spaces.count < 9; ++spaces.count) {
+        const Vec3 normal = random.direction();
+        for (int axis = 0; axis < 3; ++axis) spaces.normal[spaces.count][axis] = static_cast<float>(normal[axis]);
+        spaces.offset[spaces.count] = static_cast<float>(random.uniform(0.2, 1.2));
+      }
+      spaces.margin = 1e-6F;
+      spaces.well_within = 2e-6F;
+      wide::LanesWithin expected;
+      wide::LanesWithin own;
+      const auto compare = [&] {
+        ASSERT_EQ(own.lanes, expected.lanes);
+        for (std::size_t lane = 0; lane < tree::wide_lanes; ++lane) {
+          if ((own.lanes >> lane & 1U) != 0) ASSERT_EQ(own.sides[lane], expected.sides[lane]);
+        }
+      };
+      const tree::WideNode& node = tree.nodes()[n];
+      portable.children_within(node, spaces, spaces.all(), expected);
+      searches->children_within(node, spaces, spaces.all(), own);
+      compare();
+      for (unsigned lane = 0; lane < tree::wide_lanes && !node.child[lane].is_nothing(); ++lane) {
+        const tree::ChildRef child = node.child[lane];
+        if (!child.is_leaf()) continue;
+        const Vec3f center(node.center[0][lane], node.center[1][lane], node.center[2][lane]);
+        const tree::WideLeaf& leaf = tree.leaves()[child.index()];
+        portable.triangles_within(leaf, child.count(), center, spaces, spaces.all(), expected);
+        searches->triangles_within(leaf, child.count(), center, spaces, spaces.all(), own);
+        EXPECT_EQ(own.lanes >> child.count(), 0u);
+        compare();
+      }
+    }
+  }
+  EXPECT_GE(kernels.size(), 1u);
+}
+
+}  // namespace
+}  // namespace odds::query
