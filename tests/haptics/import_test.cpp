@@ -193,6 +193,31 @@ TEST_F(Import, SdfPosesAreRelativeToWhatTheyName) {
   EXPECT_NE(imported.text.find("g_m_per_s2 = [0, 0, -1.62]"), std::string::npos) << imported.text;
 }
 
+// As in what Gazebo prints of a model with others in it (gz sdf -p).
+TEST_F(Import, SdfCollisionsStandInTheFrameThatTheyName) {
+  const auto box_at = [](const std::string& frame) {
+    return "<collision name=\"c\"><pose relative_to=\"" + frame +
+           "\">0 0 1 0 0 0</pose><geometry><box><size>0.2 0.2 0.2</size></box></geometry></collision>";
+  };
+  const auto moved = [&](const std::string& frame) {
+    return good("w.sdf", sdf(R"(<model name="m"><pose>5 0 0 0 0 0</pose><frame name="mark" attached_to="other">
+      <pose>0 3 0 0 1.5707963267948966 0</pose></frame><link name="a"><pose>1 0 0 0 0 1.5707963267948966</pose>)" +
+                             box_at(frame) + R"(</link><link name="other"/></model>)"));
+  };
+  const Vec3 half = Vec3::Constant(0.1);
+  for (const std::string own : {"", "a"}) {
+    expect_box(moved(own).meshes.at(0).mesh, Vec3(0, 0, 1) - half, Vec3(0, 0, 1) + half, 1e-12);
+  }
+  // One metre along z from the model's own frame: (-1, 0, 1) from the link, which is turned by 90 degrees.
+  expect_box(moved("__model__").meshes.at(0).mesh, Vec3(0, 1, 1) - half, Vec3(0, 1, 1) + half, 1e-12);
+  // The mark's z is the model's x: the box is at (1, 3, 0) there, and (0, 3, 0) from the link.
+  expect_box(moved("mark").meshes.at(0).mesh, Vec3(3, 0, 0) - half, Vec3(3, 0, 0) + half, 1e-12);
+  const Error error =
+      refused("w.sdf", sdf("<model name=\"m\">\n<link name=\"mark\">" + box_at("mork") + "</link></model>"));
+  EXPECT_EQ(error.place.rfind("3:", 0), 0U) << error.message();
+  EXPECT_NE(error.what.find("there is no frame named 'm::mork'"), std::string::npos) << error.message();
+}
+
 // A joint's ends may be frames, joints and models: the links that they are attached to are meant.
 TEST_F(Import, SdfJointsEndAtWhatIsAttachedToLinks) {
   const auto boxed = [](const std::string& name) {

@@ -39,12 +39,22 @@ class SdfReader {
     if (description_.models.empty()) xml_.fail(sdf, "there is no model", "add a <model>");
     std::size_t link = 0;
     for (Model& model : description_.models) {
-      for (Link& each : model.links) each.in_world = frames_.in_world(link_frames_[link++]);
+      for (Link& each : model.links) each.in_world = frames_.in_world(link_frames_[link++], sdf);
     }
+    place_framed_collisions();
     return std::move(description_);
   }
 
  private:
+  // A collision whose pose is not told in its link's frame: which one, and the frame.
+  struct FramedCollision {
+    std::size_t model = 0;
+    std::size_t link = 0;
+    std::size_t collision = 0;
+    std::string frame;
+    pugi::xml_node said_by;
+  };
+
   // One world is read, the first; what else the file holds, other worlds and single models, is counted.
   void leave_out_beside(pugi::xml_node world) {
     for (const pugi::xml_node node : xml_.root().children()) {
@@ -114,7 +124,7 @@ class SdfReader {
       const std::string_view name = part.name();
       if (name == "link") {
         add_frame(part, inside, frame, "");
-        model.links.push_back(read_link(part, inside));
+        model.links.push_back(read_link(part, inside, model.links.size()));
         index_.emplace(model.links.back().name, model.links.size() - 1);
         link_frames_.push_back(model.links.back().name);
       } else if (name == "frame") {
@@ -148,7 +158,8 @@ class SdfReader {
     return first < model.links.size() ? model.links[first].name : std::string();
   }
 
-  [[nodiscard]] Link read_link(pugi::xml_node node, const std::string& scope) {
+  // `index` is the one that it will have in its model.
+  [[nodiscard]] Link read_link(pugi::xml_node node, const std::string& scope, std::size_t index) {
     Link link;
     link.name = xml_.name(node, scope);
     link.place = xml_.place_of(node);
@@ -156,9 +167,10 @@ class SdfReader {
     for (const pugi::xml_node part : node.children()) {
       const std::string_view name = part.name();
       if (name == "collision") {
-        const math::Pose in_link = collision_pose(part);
+        const math::Pose pose = pose_of(part);
         if (auto geometry = geometry_of(xml_.child(part, "geometry"))) {
-          link.collisions.push_back({in_link, std::move(*geometry), xml_.place_of(part), density_of(part)});
+          note_frame(part, scope, link, index);
+          link.collisions.push_back({pose, std::move(*geometry), xml_.place_of(part), density_of(part)});
         }
         read_friction(part);
       } else if (name == "inertial") {
@@ -186,12 +198,22 @@ class SdfReader {
     return xml_.positive(node, node.text().get(), "density");
   }
 
-  [[nodiscard]] math::Pose collision_pose(pugi::xml_node node) const {
-    const pugi::xml_node pose = node.child("pose");
-    if (pose.attribute("relative_to")) {
-      xml_.fail(pose, "a collision's pose relative to another frame is not understood", "give it in the link's frame");
+  // Frames are known when all is read: until then a collision has the pose that is told, in whatever frame.
+  void note_frame(pugi::xml_node collision, const std::string& scope, const Link& link, std::size_t index) {
+    const pugi::xml_node pose = collision.child("pose");
+    const std::string_view relative_to = pose.attribute("relative_to").value();
+    if (relative_to.empty()) return;
+    std::string frame = scoped(scope, relative_to);
+    if (frame == link.name) return;
+    framed_.push_back({description_.models.size(), index, link.collisions.size(), std::move(frame), pose});
+  }
+
+  void place_framed_collisions() {
+    for (const FramedCollision& framed : framed_) {
+      Link& link = description_.models[framed.model].links[framed.link];
+      math::Pose& in_link = link.collisions[framed.collision].in_link;
+      in_link = link.in_world.inverse() * frames_.in_world(framed.frame, framed.said_by) * in_link;
     }
-    return pose_of(node);
   }
 
   void read_friction(pugi::xml_node collision) {
@@ -282,6 +304,7 @@ class SdfReader {
   std::map<std::string, std::size_t, std::less<>> index_;  // of links, by full name
   std::map<std::string, std::string> attached_;            // of other frames, by full name: what to; "": the world
   std::vector<std::string> link_frames_;                   // in the order of all models' links
+  std::vector<FramedCollision> framed_;
 };
 
 }  // namespace

@@ -22,12 +22,12 @@ void SdfFrames::refuse_unknown(const std::string& name, pugi::xml_node asked_by)
 }
 
 // Every frame is looked at once, however many ask for it.
-math::Pose SdfFrames::in_world(const std::string& name) {
+math::Pose SdfFrames::in_world(const std::string& name, pugi::xml_node asked_by) {
   std::vector<Frame*> chain;
   math::Pose pose;
   for (std::string at = name; !at.empty();) {
     const auto found = frames_.find(at);
-    if (found == frames_.end()) refuse_unknown(at, chain.empty() ? xml_.root() : chain.back()->said_by);
+    if (found == frames_.end()) refuse_unknown(at, chain.empty() ? asked_by : chain.back()->said_by);
     Frame& frame = found->second;
     if (frame.in_world) {
       pose = *frame.in_world;

@@ -17,8 +17,8 @@ class SdfFrames {
 
   /// A name in use is refused.
   void add(const std::string& name, const std::string& base, const math::Pose& in_base, pugi::xml_node said_by);
-  /// Refuses names that lead nowhere or back to themselves.
-  [[nodiscard]] math::Pose in_world(const std::string& name);
+  /// Refuses names that lead nowhere or back to themselves; `asked_by` is where `name` itself stands.
+  [[nodiscard]] math::Pose in_world(const std::string& name, pugi::xml_node asked_by);
 
  private:
   struct Frame {
