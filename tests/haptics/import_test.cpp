@@ -140,6 +140,20 @@ TEST_F(Import, AddressesHaveBlanksAsTheyAreOrAsProgramsWriteThem) {
   }
 }
 
+TEST_F(Import, AddressesGoUpBehindLinksAsTheSystemDoes) {
+  std::filesystem::create_directories(folder_.path() / "store/meshes");
+  std::filesystem::create_directory_symlink(folder_.path() / "store/meshes", folder_.path() / "link");
+  ASSERT_FALSE(mesh::write(mesh::made::make_shape("made:box:x=1,y=1,z=1").value(), folder_.path() / "store/a.stl"));
+  ASSERT_FALSE(mesh::write(mesh::made::make_shape("made:box:x=9,y=9,z=9").value(), folder_.path() / "b.stl"));
+  ASSERT_FALSE(mesh::write(mesh::made::make_shape("made:box:x=2,y=2,z=2").value(), folder_.path() / "store/b.stl"));
+  for (const auto& [uri, half] : {std::pair{"link/../a.stl", 0.5}, std::pair{"link/../b.stl", 1.0}}) {
+    const ImportedScene imported = good(
+        "r.urdf",
+        urdf(link("a", "<collision><geometry><mesh filename=\"" + std::string(uri) + "\"/></geometry></collision>")));
+    expect_box(imported.meshes.at(0).mesh, Vec3::Constant(-half), Vec3::Constant(half), 1e-6);
+  }
+}
+
 TEST_F(Import, RoundShapesAreClosedAndOfTheirSize) {
   const auto shape = [](const std::string& element) {
     return urdf(link("a", "<collision><geometry>" + element + "</geometry></collision>"));

@@ -113,7 +113,7 @@ fs::path Resources::locate(const std::string& uri, haptics::Place place) const {
   }
   for (const fs::path& path : tried) {
     std::error_code code;
-    if (fs::is_regular_file(path, code)) return path.lexically_normal();
+    if (fs::is_regular_file(path, code)) return path;  // as it is: behind a link ".." is not what was before it
   }
   const bool packaged = uri.starts_with("package://") || uri.starts_with("model://");
   fail(place,
