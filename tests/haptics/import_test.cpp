@@ -460,6 +460,17 @@ TEST_F(Import, RefusesWithPlaceAndRemedy) {
       std::string::npos);
 }
 
+TEST_F(Import, SaysWhereWhatIsMissingMayBeIncluded) {
+  const std::string include = "<include><uri>model://ground_plane</uri></include>";
+  for (const std::string& text : {sdf("<world name=\"w\">" + include + "</world>"), sdf(include),
+                                  sdf("<model name=\"m\">" + include + "</model>")}) {
+    const Error error = refused("w.sdf", text);
+    EXPECT_NE(error.what.find(", and what it includes is not read"), std::string::npos) << error.message();
+    EXPECT_NE(error.remedy.find("gz sdf -p"), std::string::npos) << error.message();
+  }
+  EXPECT_EQ(refused("w.sdf", sdf("<model name=\"m\"/>")).remedy, "add a <link>");
+}
+
 TEST_F(Import, SuggestsTheNameThatWasMeant) {
   const std::string text =
       urdf(link("forearm", box_of("1 1 1")) + link("hand", "") +

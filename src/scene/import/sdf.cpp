@@ -36,7 +36,7 @@ class SdfReader {
       }
     }
     if (world) leave_out_beside(world);
-    if (description_.models.empty()) xml_.fail(sdf, "there is no model", "add a <model>");
+    if (description_.models.empty()) refuse_empty(sdf, "there is no model", world ? world : sdf, "add a <model>");
     std::size_t link = 0;
     for (Model& model : description_.models) {
       for (Link& each : model.links) each.in_world = frames_.in_world(link_frames_[link++], sdf);
@@ -54,6 +54,16 @@ class SdfReader {
     std::string frame;
     pugi::xml_node said_by;
   };
+
+  // What is missing may be in a file that is included, and these are not read.
+  [[noreturn]] void refuse_empty(pugi::xml_node node, std::string what, pugi::xml_node inside,
+                                 std::string remedy) const {
+    if (inside.child("include")) {
+      what += ", and what it includes is not read";
+      remedy = "make one file of it: gz sdf -p FILE > whole.sdf";
+    }
+    xml_.fail(node, what, remedy);
+  }
 
   // One world is read, the first; what else the file holds, other worlds and single models, is counted.
   void leave_out_beside(pugi::xml_node world) {
@@ -98,7 +108,9 @@ class SdfReader {
     model.is_static = is_static(node);
     index_.clear();
     read_model(node, "", "", model, 0);
-    if (model.links.empty()) xml_.fail(node, fmt::format("the model '{}' has no link", model.name), "add a <link>");
+    if (model.links.empty()) {
+      refuse_empty(node, fmt::format("the model '{}' has no link", model.name), node, "add a <link>");
+    }
     description_.models.push_back(std::move(model));
   }
 
