@@ -205,10 +205,15 @@ int run(const AccuracyOptions& options) {
 }
 
 /// What the parser cannot say by itself.
-void check_usage(const AccuracyOptions& options) {
+void check_usage(const CLI::App& command, const AccuracyOptions& options) {
   if (options.merge.empty() && options.mesh_b.empty()) throw CLI::RequiredError("A and B, or --merge,");
   if (!options.merge.empty() && !options.mesh_a.empty()) {
     throw CLI::ValidationError("--merge", "the meshes are those of the shards; name none");
+  }
+  for (const CLI::Option* option : command.get_options()) {
+    const std::string name = option->get_name();
+    if (options.merge.empty() || option->count() == 0 || name == "--merge" || name == "--out") continue;
+    throw CLI::ValidationError("--merge", "nothing is measured, so " + name + " changes nothing; leave it out");
   }
   if (options.budgets_us == "none" && options.work == "none") {
     throw CLI::ValidationError("--budgets-us", "no limit is left: give microseconds, work units or both");
@@ -276,8 +281,8 @@ void add_accuracy(CLI::App& app, Action& action) {
   command->add_option("--scale-b", options->scale_b, "metres per unit of B's file")->check(positive_and_finite());
   command->add_option("--merge", options->merge,
                       "folders of all shards of a study: one report of them, nothing measured");
-  command->callback([options, &action] {
-    check_usage(*options);
+  command->callback([options, command, &action] {
+    check_usage(*command, *options);
     action = [options] { return run(*options); };
   });
 }

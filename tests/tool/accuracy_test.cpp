@@ -164,6 +164,8 @@ TEST(Accuracy, RefusesBadInputInOneLine) {
   refused("accuracy made:gear --out out", 2, "A and B");
   refused("accuracy made:gear made:gear", 2, "--out");
   refused("accuracy made:gear made:gear --merge x --out out", 2, "--merge");
+  refused("accuracy --merge x --seed 1 --out out", 2, "--seed changes nothing");
+  refused("accuracy --bv obb --merge x --out out", 2, "--bv changes nothing");
   refused(meshes + "--out out --budgets-us none --work none", 2, "no limit");
   for (const char* bad : {"--budgets-us 1,,2", "--budgets-us 1,x", "--budgets-us 0", "--budgets-us 1,1", "--work 1.5",
                           "--p-min 1.5", "--p-min none", "--shard 3/3", "--shard 1", "--poses 0", "--bv cube"}) {
