@@ -6,12 +6,15 @@
 #include <limits>
 
 #include "ode/mesh/triangle_corners.hpp"
+#include "query/shape/near_segment.hpp"
 
 namespace odds::ode {
 namespace {
 
 // Where more triangles are near than there is room for, each part of the axis gets its share.
 constexpr int slices = 8;
+// The share of the time after which places are no longer looked for.
+constexpr double time_for_places = 0.6;
 
 CapsulePlace place_of(const PreparedMesh& mesh, const Capsule& capsule, std::uint32_t triangle) noexcept {
   const Corners corners = mesh.corners(triangle);
@@ -48,63 +51,56 @@ void add(const PreparedMesh& mesh, const Capsule& capsule, std::span<const std::
   }
 }
 
-// No point of a box is nearer to the axis than this.
-double least_distance(const Capsule& capsule, const Vec3& center, const Vec3& half) noexcept {
-  const Vec3 axis = capsule.ends[1] - capsule.ends[0];
-  const Vec3 lower = capsule.ends[0].cwiseMin(capsule.ends[1]);
-  const Vec3 upper = capsule.ends[0].cwiseMax(capsule.ends[1]);
-  const double between_boxes = (lower - center - half).cwiseMax(center - half - upper).cwiseMax(0.0).norm();
-  const double square = axis.squaredNorm();
-  const double along = square > 0.0 ? std::clamp(axis.dot(center - capsule.ends[0]) / square, 0.0, 1.0) : 0.0;
-  const double from_ball = (center - capsule.ends[0] - along * axis).norm() - half.norm();
-  return std::max(between_boxes, from_ball);
-}
-
-// The nearest triangle of all, by the tree; if the limit is reached first, the nearest of those seen. no_item: none of
-// them is within the radius.
-std::uint32_t find_nearest(const PreparedMesh& mesh, const Capsule& capsule, Limit& limit) noexcept {
+// The nearest triangle, of those that are nearer than `within`; if the limit is reached first, the nearest of those
+// seen. no_feature: there is none.
+std::uint32_t find_nearest(const PreparedMesh& mesh, const Capsule& capsule, const query::NearSegment& axis,
+                           double within, Limit& limit, bool& finished) noexcept {
   // Along one that lies on flat ground all are as near as each other, but for rounding.
   constexpr double not_nearer = 1e-12;
-  constexpr double nothing = -std::numeric_limits<double>::infinity();
-  return mesh.triangle_tree.greatest(
-      [&](std::uint32_t t) {
-        const double distance = place_of(mesh, capsule, t).distance;
-        return distance < capsule.radius ? -distance : nothing;
-      },
-      [&](const Vec3& center, const Vec3& half) {
-        if (limit.time_is_up()) return nothing;
-        const double gap = least_distance(capsule, center, half);
-        return gap < capsule.radius ? -gap - not_nearer * capsule.radius : nothing;
-      },
-      limit.units);
+  constexpr std::uint64_t most_nodes = 64;
+  const auto distance = [&](std::uint32_t t) {
+    const double d = place_of(mesh, capsule, t).distance;
+    return d < capsule.radius ? d : std::numeric_limits<double>::infinity();
+  };
+  const std::uint64_t nodes = std::min(limit.nodes_left(), most_nodes);
+  std::uint64_t left = nodes;
+  const std::uint32_t nearest = axis.nearest(
+      within, axis.margin() + not_nearer * capsule.radius, distance, [&] { return !limit.time_is_up(); }, left,
+      finished);
+  limit.spend(nodes - left);
+  return nearest;
 }
 
-// All triangles within the radius, by the tree: the box around a capsule has many that are farther. False if there is
-// no room for them, or no time.
-bool add_all_within(const PreparedMesh& mesh, const Capsule& capsule, Limit& limit, CapsulePlaces& places) noexcept {
-  return mesh.triangle_tree.all_near(
-      [&](const Vec3& center, const Vec3& half) { return least_distance(capsule, center, half) < capsule.radius; },
-      [&](std::uint32_t t) {
-        if (limit.time_is_up()) return false;
-        const CapsulePlace place = place_of(mesh, capsule, t);
-        if (!(place.distance < capsule.radius)) return true;
-        if (places.count == CapsulePlaces::most) return false;
-        places.all[places.count++] = place;
-        return true;
-      },
-      limit.units);
+// All triangles within the radius, the nearest nodes first: the box around a capsule has many that are farther. False
+// if there is no room for them, or no time.
+bool add_all_within(const PreparedMesh& mesh, const Capsule& capsule, const query::NearSegment& axis, Limit& limit,
+                    CapsulePlaces& places) noexcept {
+  const auto take = [&](std::uint32_t t) {
+    const CapsulePlace place = place_of(mesh, capsule, t);
+    if (!(place.distance < capsule.radius)) return true;
+    if (places.count == CapsulePlaces::most) return false;
+    places.all[places.count++] = place;
+    return true;
+  };
+  const std::uint64_t nodes = limit.nodes_left();
+  std::uint64_t left = nodes;
+  const bool all = axis.all_within(
+      capsule.radius, take, [&] { return !limit.time_is_up(time_for_places); }, left);
+  limit.spend(nodes - left);
+  return all;
 }
 
-// More triangles are in the box around the capsule than there is room for. The nearest comes first: it holds the
-// capsule if there is no time for more.
-void add_of_many(const PreparedMesh& mesh, const Capsule& capsule, double half_length, Limit& limit,
-                 CapsulePlaces& places) noexcept {
-  const std::uint32_t nearest = find_nearest(mesh, capsule, limit);
-  places.complete = add_all_within(mesh, capsule, limit, places);
-  if (places.complete) return;
+// Not all triangles were seen, or there was no room for them. The nearest of those that there was time for comes first:
+// it holds the capsule.
+void add_of_many(const PreparedMesh& mesh, const Capsule& capsule, const query::NearSegment& axis, double half_length,
+                 Limit& limit, CapsulePlaces& places) noexcept {
+  double least = capsule.radius;
+  for (const CapsulePlace& place : places.span()) least = std::min(least, place.distance);
+  const std::uint32_t nearest = find_nearest(mesh, capsule, axis, least, limit, places.nearest_is_sure);
   // Each crossing of the axis is a way out; beside the axis, places are of use only if they are all there.
   const bool crosses =
-      nearest != no_item && place_of(mesh, capsule, nearest).distance <= Capsule::same_place * capsule.radius;
+      std::min(least, nearest == query::no_feature ? least : place_of(mesh, capsule, nearest).distance) <=
+      Capsule::same_place * capsule.radius;
   if (crosses && !limit.time_is_up()) {
     places.count = 0;
     Triangles near;
@@ -117,7 +113,7 @@ void add_of_many(const PreparedMesh& mesh, const Capsule& capsule, double half_l
       add(mesh, capsule, room.first(found), limit, places);
     }
   }
-  if (nearest == no_item) return;
+  if (nearest == query::no_feature) return;
   if (places.count == CapsulePlaces::most) --places.count;
   places.all[places.count++] = place_of(mesh, capsule, nearest);
 }
@@ -126,13 +122,9 @@ void add_of_many(const PreparedMesh& mesh, const Capsule& capsule, double half_l
 
 void find_places(const PreparedMesh& mesh, const Capsule& capsule, Limit& limit, CapsulePlaces& places) noexcept {
   const double half_length = 0.5 * (capsule.ends[1] - capsule.ends[0]).norm() + capsule.radius;
-  Triangles near;
-  const std::size_t found = triangles_about(mesh, capsule, capsule.middle(), half_length, limit, near, places.complete);
-  if (places.complete || limit.units == 0) {
-    add(mesh, capsule, std::span(near).first(found), limit, places);
-  } else {
-    add_of_many(mesh, capsule, half_length, limit, places);
-  }
+  const query::NearSegment axis(*mesh.wide_tree, capsule.ends[0], capsule.ends[1]);
+  places.complete = add_all_within(mesh, capsule, axis, limit, places);
+  if (!places.complete) add_of_many(mesh, capsule, axis, half_length, limit, places);
   std::sort(places.all.begin(), places.all.begin() + places.count, [](const CapsulePlace& a, const CapsulePlace& b) {
     return a.distance != b.distance ? a.distance < b.distance : a.triangle < b.triangle;
   });

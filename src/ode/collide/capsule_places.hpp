@@ -35,8 +35,8 @@ struct CapsulePlaces {
   static constexpr std::size_t most = 256;
   std::array<CapsulePlace, most> all;
   std::size_t count = 0;
-  bool complete =
-      true;  ///< false: some triangle was left out; the nearest of those that there was time to see is there
+  bool complete = true;         ///< false: some triangle was left out; the nearest of those that were seen is there
+  bool nearest_is_sure = true;  ///< no triangle is nearer than the first place, or within the radius if there is none
 
   [[nodiscard]] std::span<const CapsulePlace> span() const noexcept { return {all.data(), count}; }
 };

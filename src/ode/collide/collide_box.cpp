@@ -28,7 +28,7 @@ class BoxBody final : public ConvexBody {
   }
 
   // Its faces, and the crossings of its edges with the surface's edges.
-  void add_exits(std::span<const Piece* const> patch, ExitList& exits) const noexcept override {
+  void add_exits(std::span<const Piece* const> patch, bool, ExitList& exits) const noexcept override {
     for (int axis = 0; axis < 3; ++axis) {
       exits.add(Vec3::Unit(axis));
       exits.add(-Vec3::Unit(axis));

@@ -189,9 +189,17 @@ void add_end_balls(const PreparedMesh& mesh, const Capsule& capsule, Limit& limi
 // No triangle crosses the axis: outside the mesh, or all of it inside.
 void add_beside(const PreparedMesh& mesh, const Capsule& capsule, const CapsulePlaces& places, Limit& limit,
                 CapsuleContacts& contacts) noexcept {
-  const Vec3 probe = places.count > 0 ? places.all[0].on_axis : capsule.middle();
-  if (mesh.closed && in_bounds(mesh, probe)) {
-    const auto nearest = nearest_surface(mesh, probe, std::numeric_limits<double>::infinity(), limit.units);
+  if (mesh.closed && places.count > 0) {
+    // The surface's nearest point to the axis is its nearest to that point of the axis, too.
+    const CapsulePlace& nearest = places.all[0];
+    const Vec3 outward = outward_at(mesh, nearest.on_surface, nearest.triangle, nearest.on_axis);
+    if (outward.dot(nearest.on_axis - nearest.on_surface) < 0.0) {
+      if (!places.nearest_is_sure) return;  // then nobody knows on which side of the surface it is
+      add_ends_behind(capsule, nearest.on_surface, outward, nearest.triangle, contacts);
+      return;
+    }
+  } else if (mesh.closed && in_bounds(mesh, capsule.middle())) {
+    const auto nearest = nearest_surface(mesh, capsule.middle(), std::numeric_limits<double>::infinity(), limit.units);
     if (!nearest) return;  // the search was cut short: nobody knows on which side of the surface it is
     if (nearest->inside) {
       add_ends_behind(capsule, nearest->point, nearest->outward, nearest->triangle, contacts);

@@ -84,10 +84,10 @@ class CylinderBody final : public ConvexBody {
   }
 
   // Along the axis; away from corners of the surface, straight through the wall; across the wall and an edge.
-  void add_exits(std::span<const Piece* const> patch, ExitList& exits) const noexcept override {
+  void add_exits(std::span<const Piece* const> patch, bool refined, ExitList& exits) const noexcept override {
     exits.add(Vec3::UnitZ());
     exits.add(-Vec3::UnitZ());
-    add_refined_exit(*this, patch, exits);
+    if (refined) add_refined_exit(*this, patch, exits);
     std::size_t edges = 0;
     std::size_t radii = 0;
     for (const Piece* piece : patch) {

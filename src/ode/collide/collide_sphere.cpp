@@ -9,6 +9,7 @@
 #include "ode/mesh/nearest_surface.hpp"
 #include "ode/mesh/triangle_corners.hpp"
 #include "ode/statistics.hpp"
+#include "query/shape/near_segment.hpp"
 
 namespace odds::ode {
 namespace {
@@ -43,21 +44,13 @@ bool add_place(const PreparedMesh& mesh, const Vec3& center, double radius, std:
 
 // The nearest point of every triangle that is no farther than the radius, nearest first.
 void find_places(const PreparedMesh& mesh, const Vec3& center, double radius, Limit& limit, Places& places) noexcept {
-  std::array<std::uint32_t, most_near_triangles> near;
-  std::uint64_t visited = 0;
-  const std::size_t count = query::triangles_in_box(*mesh.shape, center, Mat3::Identity(), Vec3::Constant(radius), near,
-                                                    limit.units, &places.complete, &visited);
-  limit.spend(visited);
   const auto add = [&](std::uint32_t triangle) { return add_place(mesh, center, radius, triangle, limit, places); };
-  if (places.complete || limit.units == 0) {
-    places.complete = std::all_of(near.begin(), near.begin() + count, add) && places.complete;
-  } else {  // of a fine mesh, the box around a ball has many more than the ball touches
-    places.complete = mesh.triangle_tree.all_near(
-        [&](const Vec3& middle, const Vec3& half) {
-          return ((center - middle).cwiseAbs() - half).cwiseMax(0.0).norm() <= radius;
-        },
-        add, limit.units);
-  }
+  const std::uint64_t nodes = limit.nodes_left();
+  std::uint64_t left = nodes;
+  places.complete = query::NearSegment(*mesh.wide_tree, center, center)
+                        .all_within(
+                            radius, add, [] { return true; }, left);
+  limit.spend(nodes - left);
   std::sort(places.all.begin(), places.all.begin() + places.count, [](const Place& a, const Place& b) {
     return a.distance != b.distance ? a.distance < b.distance : a.triangle < b.triangle;
   });

@@ -72,17 +72,26 @@ bool is_flat(const Patch& patch) noexcept {
                      [&](const Piece* piece) { return piece->normal.dot(patch.pieces[0]->normal) > 1.0 - 1e-9; });
 }
 
-void add_corners(const Piece& piece, const Vec3& direction, const ConvexBody& body, ManifoldPoints& points) noexcept {
+// False if the time is up: of a body with many sides, each corner takes long.
+bool add_corners(const Piece& piece, const Vec3& direction, const ConvexBody& body, const Limit& limit,
+                 ManifoldPoints& points) noexcept {
   for (std::size_t i = 0; i < piece.count; ++i) {
     const Vec3 corner = body.pull_in(piece.corners[i]);
     points.add(corner, body.way_through(corner, -direction), piece.triangle);
+    if (has_many_sides(body) && limit.time_is_up()) return false;
   }
+  return true;
 }
 
 void add_points(const Patch& patch, const Vec3& direction, const ConvexBody& body, bool ridges, const Limit& limit,
                 ManifoldPoints& points) noexcept {
   Features features;
-  body.add_features(direction, patch.exit.depth, features);
+  if (has_many_sides(body) && limit.time_is_up(time_for_points)) {
+    features.add_corner(body.farthest(-direction));  // only the deepest, if it is below a face
+    ridges = false;
+  } else {
+    body.add_features(direction, patch.exit.depth, features);
+  }
   const EdgesAlong edges(features, direction, body.box_center().norm() + body.box_half_extents().norm());
   const std::span<const Piece* const> pieces = patch.span();
   bool is_late = false;
@@ -92,15 +101,14 @@ void add_points(const Patch& patch, const Vec3& direction, const ConvexBody& bod
     is_late = limit.time_is_up(time_for_points);
   }
   for (std::size_t i = 0; i < pieces.size() && !is_late; ++i) {
-    add_corners(*pieces[i], direction, body, points);
+    if (!add_corners(*pieces[i], direction, body, limit, points)) return;
     is_late = limit.time_is_up(time_for_points);
   }
   if (!is_late) return;
   // Neighbours stand beside each other: a few from all over hold the body, the next ones on one side only.
   constexpr std::size_t few = 8;
   for (std::size_t i = 0; i < few; ++i) {
-    add_corners(*pieces[i * pieces.size() / few], direction, body, points);
-    if (has_many_sides(body) && limit.time_is_up()) return;
+    if (!add_corners(*pieces[i * pieces.size() / few], direction, body, limit, points)) return;
   }
 }
 
@@ -282,7 +290,7 @@ void leave_by_the_near_side(const PreparedMesh& mesh, const math::Pose& body_in_
 // normal: this takes no cutting.
 void push_out(const PreparedMesh& mesh, const math::Pose& mesh_in_world, const math::Pose& body_in_mesh,
               const ConvexBody& body, bool late, Limit& limit, ContactWriter& writer) noexcept {
-  constexpr std::uint64_t most_units_late = 256;  // some ten microseconds: the search does not look at the clock
+  constexpr std::uint64_t most_units_late = 64;  // some five microseconds: the search does not look at the clock
   const Vec3 center = body_in_mesh * body.center();
   const bool may_be_inside = mesh.closed && in_bounds(mesh, center);
   if (!may_be_inside && !late) return;

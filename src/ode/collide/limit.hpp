@@ -41,6 +41,11 @@ class Limit {
     return timed_ ? static_cast<double>(clock_() - start_ns_) / time_ns_ : 0.0;
   }
 
+  /// Whether so much of the time is left, or there is no limit.
+  [[nodiscard]] bool has_time_left(double microseconds) const noexcept {
+    return !timed_ || clock_() + static_cast<std::int64_t>(1e3 * microseconds) < end_ns(1.0);
+  }
+
   /// How many nodes a search may visit that looks at the clock itself.
   [[nodiscard]] std::uint64_t nodes_left() const noexcept { return in_units_ ? units : most_units; }
 

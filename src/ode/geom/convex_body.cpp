@@ -81,7 +81,8 @@ double ConvexBody::way_through(const Vec3& point, const Vec3& direction) const n
   for (const HalfSpace& side : sides_) {
     const double speed = side.normal.dot(direction);
     if (speed < 1e-12) continue;
-    way = std::min(way, std::max(0.0, (side.offset - side.normal.dot(point)) / speed));
+    const double room = std::max(0.0, side.offset - side.normal.dot(point));
+    if (room < way * speed) way = room / speed;
   }
   return way;
 }

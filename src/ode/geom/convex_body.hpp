@@ -105,8 +105,9 @@ class ConvexBody {
   [[nodiscard]] virtual bool may_lean() const noexcept { return false; }
   /// Whether a piece that the sides left over really meets the body.
   [[nodiscard]] virtual bool meets(const Piece&) const noexcept { return true; }
-  /// Directions other than the surface's normals in which the body may leave a patch soonest.
-  virtual void add_exits(std::span<const Piece* const> patch, ExitList& exits) const noexcept = 0;
+  /// Directions other than the surface's normals in which the body may leave a patch soonest; `refined`: also those
+  /// that take some ten microseconds to find.
+  virtual void add_exits(std::span<const Piece* const> patch, bool refined, ExitList& exits) const noexcept = 0;
   /// Corners and edges less than `depth` above the lowest point, where `up` (unit) points up.
   virtual void add_features(const Vec3& up, double depth, Features& features) const noexcept = 0;
 

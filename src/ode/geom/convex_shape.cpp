@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -124,6 +125,7 @@ Result<std::shared_ptr<const ConvexShape>> ConvexShape::make(std::span<const Vec
   shape->sides_ = shape->faces_;
   shape->box_center_ = 0.5 * (lower + upper);
   shape->box_half_extents_ = 0.5 * (upper - lower);
+  shape->prepare_climbing();
   return std::shared_ptr<const ConvexShape>(shape);
 }
 
@@ -145,6 +147,7 @@ std::optional<std::array<unsigned, 2>> ConvexShape::open_edge(double tolerance) 
 }
 
 Vec3 ConvexShape::farthest(const Vec3& direction) const noexcept {
+  if (climbs_) return points_[climb(direction)];
   const Vec3* best = &points_.front();
   double greatest = direction.dot(*best);
   for (const Vec3& point : points_) {
@@ -154,6 +157,75 @@ Vec3 ConvexShape::farthest(const Vec3& direction) const noexcept {
     best = &point;
   }
   return *best;
+}
+
+// Of a convex body no corner is lower than all its neighbours but the lowest.
+unsigned ConvexShape::climb(const Vec3& direction) const noexcept {
+  unsigned at = starts_[start_of(direction)];
+  double greatest = direction.dot(points_[at]);
+  for (bool higher = true; higher;) {
+    higher = false;
+    const unsigned from = at;
+    for (unsigned i = neighbours_at_[from]; i < neighbours_at_[from + 1]; ++i) {
+      const double value = direction.dot(points_[neighbours_[i]]);
+      if (!(value > greatest)) continue;
+      greatest = value;
+      at = neighbours_[i];
+      higher = true;
+    }
+  }
+  return at;
+}
+
+// By the greatest component, and the halves of the others.
+std::size_t ConvexShape::start_of(const Vec3& direction) noexcept {
+  Eigen::Index axis = 0;
+  const double most = direction.cwiseAbs().maxCoeff(&axis);
+  const auto part = [&](Eigen::Index other) {
+    const double part_of_most = direction[other];
+    return part_of_most < -0.5 * most ? 0U : part_of_most < 0.0 ? 1U : part_of_most < 0.5 * most ? 2U : 3U;
+  };
+  const std::size_t side = 2U * static_cast<std::size_t>(axis) + (direction[axis] < 0.0 ? 1U : 0U);
+  return (side * 4U + part((axis + 1) % 3)) * 4U + part((axis + 2) % 3);
+}
+
+// Whether climbing along edges finds what looking at all points does: not where faces are parted and share no corners,
+// nor where a face is a little dented.
+void ConvexShape::prepare_climbing() {
+  constexpr std::size_t few_points = 32;
+  if (points_.size() <= few_points) return;
+  neighbours_at_.assign(points_.size() + 1, 0);
+  for (const auto& [a, b] : edges_) {
+    ++neighbours_at_[a + 1];
+    ++neighbours_at_[b + 1];
+  }
+  std::partial_sum(neighbours_at_.begin(), neighbours_at_.end(), neighbours_at_.begin());
+  neighbours_.resize(2 * edges_.size());
+  std::vector<unsigned> next(neighbours_at_.begin(), neighbours_at_.end() - 1);
+  for (const auto& [a, b] : edges_) {
+    neighbours_[next[a]++] = b;
+    neighbours_[next[b]++] = a;
+  }
+  const double size = box_half_extents_.norm();
+  const auto finds = [&](const Vec3& direction) {
+    const double error = direction.dot(farthest(direction) - points_[climb(direction)]);
+    return error <= 1e-12 * size * direction.norm();
+  };
+  starts_.fill(edges_.front()[0]);
+  std::array<bool, start_count> is_set{};
+  bool all = true;
+  const auto look = [&](const Vec3& direction) {
+    all = all && finds(direction);
+    const std::size_t start = start_of(direction);
+    if (!is_set[start]) starts_[start] = climb(direction);
+    is_set[start] = true;
+  };
+  for (const HalfSpace& face : faces_) {
+    look(face.normal);
+    look(-face.normal);
+  }
+  for (const Vec3& point : points_) look(point - center_);
+  climbs_ = all;
 }
 
 // Across an edge of the surface and one of the body: of a body that has few directions of edges, any of them, as of a
@@ -187,8 +259,8 @@ void ConvexShape::add_crossings(std::span<const Piece* const> patch, ExitList& e
 
 // Through the faces that the surface enters by, and the way that the refinement finds. One that lies wholly within has
 // entered by none: the nearest ones are tried.
-void ConvexShape::add_exits(std::span<const Piece* const> patch, ExitList& exits) const noexcept {
-  add_refined_exit(*this, patch, exits);
+void ConvexShape::add_exits(std::span<const Piece* const> patch, bool refined, ExitList& exits) const noexcept {
+  if (refined) add_refined_exit(*this, patch, exits);
   std::array<std::int16_t, most_face_exits> used;
   std::size_t count = 0;
   for (const Piece* piece : patch) {
@@ -204,14 +276,15 @@ void ConvexShape::add_exits(std::span<const Piece* const> patch, ExitList& exits
   if (patch.empty()) return;
   // One that lies below the surface altogether, as the face on which the body rests, is cut by none.
   const Vec3& within = patch.front()->corners[0];
-  const auto way = [&](std::uint16_t face) { return faces_[face].offset - faces_[face].normal.dot(within); };
+  std::array<double, most_faces> way;
+  for (std::size_t i = 0; i < faces_.size(); ++i) way[i] = faces_[i].offset - faces_[i].normal.dot(within);
   std::array<std::uint16_t, most_faces> nearest;
   const auto end = nearest.begin() + static_cast<std::ptrdiff_t>(faces_.size());
   std::iota(nearest.begin(), end, std::uint16_t{0});
   const std::size_t most = count > 0 ? most_uncut_exits : most_face_exits;
   const auto last = nearest.begin() + static_cast<std::ptrdiff_t>(std::min(most, faces_.size()));
   std::partial_sort(nearest.begin(), last, end,
-                    [&](std::uint16_t a, std::uint16_t b) { return way(a) != way(b) ? way(a) < way(b) : a < b; });
+                    [&](std::uint16_t a, std::uint16_t b) { return way[a] != way[b] ? way[a] < way[b] : a < b; });
   std::for_each(nearest.begin(), last, [&](std::uint16_t face) {
     const auto side = static_cast<std::int16_t>(face);
     if (std::find(used.begin(), used.begin() + count, side) == used.begin() + count) exits.add(-faces_[face].normal);
@@ -221,22 +294,31 @@ void ConvexShape::add_exits(std::span<const Piece* const> patch, ExitList& exits
 
 // Of too many corners the lowest are kept.
 void ConvexShape::add_features(const Vec3& up, double depth, Features& features) const noexcept {
-  const double highest = up.dot(farthest(-up)) + depth;
-  const auto height = [&up](const Vec3& point) { return up.dot(point); };
-  for (const Vec3& point : points_) {
-    if (height(point) > highest) continue;
-    if (features.corner_count < Features::most) {
-      features.add_corner(point);
-      continue;
-    }
-    const auto top = std::max_element(features.corners.begin(), features.corners.end(),
-                                      [&](const Vec3& a, const Vec3& b) { return height(a) < height(b); });
-    if (height(point) < height(*top)) *top = point;
+  std::array<double, most_points> height;
+  double lowest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    height[i] = up.dot(points_[i]);
+    lowest = std::min(lowest, height[i]);
   }
-  for (const auto& [from, to] : edges_) {
-    if (std::min(height(points_[from]), height(points_[to])) <= highest) {
-      features.add_edge(points_[from], points_[to]);
+  const double highest = lowest + depth;
+  std::array<std::uint16_t, Features::most> kept;  // a heap, the highest on top
+  std::size_t count = 0;
+  const auto is_lower = [&](std::uint16_t a, std::uint16_t b) { return height[a] < height[b]; };
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    if (height[i] > highest) continue;
+    if (count == kept.size()) {
+      if (!(height[i] < height[kept[0]])) continue;
+      std::pop_heap(kept.begin(), kept.end(), is_lower);
+      --count;
     }
+    kept[count++] = static_cast<std::uint16_t>(i);
+    std::push_heap(kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(count), is_lower);
+  }
+  std::sort(kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(count), is_lower);
+  for (const std::uint16_t i : std::span(kept).first(count)) features.add_corner(points_[i]);
+  for (const auto& [from, to] : edges_) {
+    if (features.edge_count == Features::most) return;
+    if (std::min(height[from], height[to]) <= highest) features.add_edge(points_[from], points_[to]);
   }
 }
 

@@ -32,7 +32,7 @@ class ConvexShape final : public ConvexBody {
   [[nodiscard]] std::uint64_t number() const noexcept override { return number_; }
   [[nodiscard]] Vec3 farthest(const Vec3& direction) const noexcept override;
   [[nodiscard]] bool may_lean() const noexcept override { return leans_; }
-  void add_exits(std::span<const Piece* const> patch, ExitList& exits) const noexcept override;
+  void add_exits(std::span<const Piece* const> patch, bool refined, ExitList& exits) const noexcept override;
   void add_features(const Vec3& up, double depth, Features& features) const noexcept override;
 
  private:
@@ -44,12 +44,21 @@ class ConvexShape final : public ConvexBody {
 
   void add_crossings(std::span<const Piece* const> patch, ExitList& exits) const noexcept;
 
+  static constexpr std::size_t start_count = 96;  ///< six sides of a cube, sixteen parts of each
+  void prepare_climbing();
+  [[nodiscard]] unsigned climb(const Vec3& direction) const noexcept;
+  [[nodiscard]] static std::size_t start_of(const Vec3& direction) noexcept;
+
   std::vector<Vec3> points_;
   std::vector<HalfSpace> faces_;
   std::vector<std::array<unsigned, 2>> edges_;
   std::vector<Vec3> edge_directions_;  ///< unit, of `edges_`, no two parallel; of many only the first
   bool leans_ = false;                 ///< two faces at one corner face away from each other
-  std::uint64_t number_;               ///< unique for the process, never 0
+  bool climbs_ = false;                ///< the farthest point is found along edges, from a start for each direction
+  std::array<unsigned, start_count> starts_{};
+  std::vector<unsigned> neighbours_;     ///< of all points in turn
+  std::vector<unsigned> neighbours_at_;  ///< of each point's first one, and the end
+  std::uint64_t number_;                 ///< unique for the process, never 0
 };
 
 }  // namespace odds::ode

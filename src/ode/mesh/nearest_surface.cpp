@@ -1,4 +1,4 @@
-// Nearest triangle by branch and bound; its side by the pseudo-normal.
+// The nearest triangle; its side by the pseudo-normal.
 #include "ode/mesh/nearest_surface.hpp"
 
 #include <algorithm>
@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "ode/mesh/triangle_corners.hpp"
+#include "query/shape/near_segment.hpp"
 
 namespace odds::ode {
 namespace {
@@ -23,9 +24,16 @@ Vec3 pseudo_normal(const PreparedMesh& mesh, const Vec3& point, std::uint32_t at
   const Vec3 own_normal = unit_normal(own);
   if (angle_at(own, point, tolerance) > 1.5 * std::numbers::pi && own_normal != Vec3::Zero()) return own_normal;
   std::array<std::uint32_t, PreparedMesh::most_touching> touching;
-  constexpr std::uint64_t most_nodes = 4096;
-  const std::size_t count = query::triangles_in_box(*mesh.shape, point, Mat3::Identity(), Vec3::Constant(tolerance),
-                                                    touching, most_nodes, nullptr);
+  std::size_t count = 0;
+  std::uint64_t nodes = 4096;
+  const auto take = [&](std::uint32_t triangle) {
+    if ((closest_point(mesh.corners(triangle), point) - point).norm() > tolerance) return true;
+    touching[count++] = triangle;
+    return count < touching.size();
+  };
+  const query::NearSegment about(*mesh.wide_tree, point, point);
+  static_cast<void>(about.all_within(
+      tolerance, take, [] { return true; }, nodes));
   if (count == touching.size()) {
     const auto before = [](const PreparedMesh::Fan& fan, double x) { return fan.tip.x() < x; };
     auto fan = std::lower_bound(mesh.fans.begin(), mesh.fans.end(), point.x() - tolerance, before);
@@ -33,10 +41,10 @@ Vec3 pseudo_normal(const PreparedMesh& mesh, const Vec3& point, std::uint32_t at
       if ((fan->tip - point).norm() <= tolerance) return fan->normal;
     }
   }
+  std::sort(touching.begin(), touching.begin() + static_cast<std::ptrdiff_t>(count));  // the same sum in every tree
   Vec3 sum = Vec3::Zero();
   for (std::size_t i = 0; i < count; ++i) {
     const Corners corners = mesh.corners(touching[i]);
-    if ((closest_point(corners, point) - point).norm() > tolerance) continue;
     sum += angle_at(corners, point, tolerance) * unit_normal(corners);
   }
   const double length = sum.norm();
@@ -53,19 +61,12 @@ Vec3 outward_at(const PreparedMesh& mesh, const Vec3& point, std::uint32_t trian
 
 std::optional<NearestSurface> nearest_surface(const PreparedMesh& mesh, const Vec3& point, double reach,
                                               std::uint64_t& units) noexcept {
-  constexpr double nothing = -std::numeric_limits<double>::infinity();
-  const double square_reach = reach * reach;
-  const std::uint32_t triangle = mesh.triangle_tree.greatest(
-      [&](std::uint32_t t) {
-        const double square = (closest_point(mesh.corners(t), point) - point).squaredNorm();
-        return square <= square_reach ? -square : nothing;
-      },
-      [&](const Vec3& center, const Vec3& half) {
-        const double square = ((point - center).cwiseAbs() - half).cwiseMax(0.0).squaredNorm();
-        return square <= square_reach ? -square : nothing;
-      },
-      units);
-  if (triangle == no_item) return std::nullopt;
+  const auto distance = [&](std::uint32_t t) { return (closest_point(mesh.corners(t), point) - point).norm(); };
+  bool finished = false;
+  const std::uint32_t triangle = query::NearSegment(*mesh.wide_tree, point, point)
+                                     .nearest(
+                                         reach, 0.0, distance, [] { return true; }, units, finished);
+  if (triangle == query::no_feature) return std::nullopt;
   NearestSurface nearest;
   nearest.triangle = triangle;
   nearest.point = closest_point(mesh.corners(triangle), point);
@@ -74,7 +75,7 @@ std::optional<NearestSurface> nearest_surface(const PreparedMesh& mesh, const Ve
   nearest.inside = mesh.closed && nearest.outward.dot(point - nearest.point) < 0.0;
   // Where the search was cut short there may be nearer triangles, and of one that is not the nearest the side tells
   // nothing: a ball in a cavity would be pushed out through its walls.
-  if (nearest.inside && units == 0) return std::nullopt;
+  if (nearest.inside && !finished) return std::nullopt;
   return nearest;
 }
 

@@ -27,16 +27,15 @@ class ConvexRegion {
   }
 
   /// {x : normal . x <= offset}; `normal` is a unit vector in the mesh's frame, metres.
-  void add(const Vec3& normal, double offset) noexcept {
+  void add(const Vec3& normal, double offset) noexcept { set(spaces_.count++, normal, offset); }
+  /// The same in place of one that was added.
+  void set(std::size_t place, const Vec3& normal, double offset) noexcept {
     // One that is farther away has all of the mesh on one side.
     const double farthest = 2.0 * tree_.reach() + 4.0 * static_cast<double>(spaces_.well_within);
     const double from_origin = std::clamp(offset - normal.dot(tree_.origin()), -farthest, farthest);
-    for (int axis = 0; axis < 3; ++axis) spaces_.normal[spaces_.count][axis] = static_cast<float>(normal[axis]);
-    spaces_.offset[spaces_.count++] = static_cast<float>(from_origin);
+    for (int axis = 0; axis < 3; ++axis) spaces_.normal[place][axis] = static_cast<float>(normal[axis]);
+    spaces_.offset[place] = static_cast<float>(from_origin);
   }
-  [[nodiscard]] std::size_t count() const noexcept { return spaces_.count; }
-  /// Forgets all but the first ones.
-  void keep(std::size_t count) noexcept { spaces_.count = count; }
 
   /// Depth first. `node(child, sides)` says what is done with a node or leaf that is not beyond a half-space, `sides`
   /// being those that may cut it; `take(triangle, sides)` gets each triangle that is not beyond one, and some that are

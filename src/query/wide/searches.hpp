@@ -16,6 +16,7 @@
 #include "query/wide/half_spaces.hpp"
 #include "query/wide/kinetic_front.hpp"
 #include "query/wide/known_faces.hpp"
+#include "query/wide/near_segment.hpp"
 #include "query/wide/sweep.hpp"
 
 namespace odds::query::wide {
@@ -96,6 +97,11 @@ struct Searches {
                           LanesWithin& within) noexcept;
   void (*triangles_within)(const tree::WideLeaf& leaf, unsigned count, const Vec3f& center, const HalfSpaces& spaces,
                            HalfSpaces::Sides sides, LanesWithin& within) noexcept;
+  /// How near what is in a node, in a leaf, may be to a segment.
+  void (*children_near)(const tree::WideNode& node, const SegmentInTree& segment,
+                        float (&least)[tree::wide_lanes]) noexcept;
+  void (*triangles_near)(const tree::WideLeaf& leaf, unsigned count, const Vec3f& from, const SegmentInTree& segment,
+                         float (&least)[tree::wide_lanes]) noexcept;
   patch::Kernels patch;
 };
 

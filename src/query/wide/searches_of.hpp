@@ -5,6 +5,7 @@
 #include "query/wide/exact.hpp"
 #include "query/wide/half_spaces.hpp"
 #include "query/wide/incremental.hpp"
+#include "query/wide/near_segment.hpp"
 #include "query/wide/nearest.hpp"
 #include "query/wide/patch_kernel.hpp"
 #include "query/wide/ray_cast.hpp"
@@ -26,6 +27,8 @@ constexpr Searches searches_of() noexcept {
           &WayDown<L>::run,
           &HalfSpaceKernel<L>::children,
           &HalfSpaceKernel<L>::triangles,
+          &NearSegmentKernel<L>::children,
+          &NearSegmentKernel<L>::triangles,
           PatchKernel<L>::table()};
 }
 

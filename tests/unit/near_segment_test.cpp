@@ -1,0 +1,158 @@
+// The nearest triangle to a segment or a point, and all within a distance, against looking at each.
+#include "query/shape/near_segment.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <variant>
+#include <vector>
+
+#include "odds/math/random.hpp"
+#include "odds/primitive/triangle_distance.hpp"
+#include "query/shape_data.hpp"
+#include "support/instruction_sets.hpp"
+#include "support/shapes.hpp"
+
+namespace odds::query {
+namespace {
+
+class NearSegments : public ::testing::TestWithParam<double> {
+ protected:
+  // A wavy sphere about `middle`.
+  void SetUp() override {
+    const auto sphere = testing::wavy_sphere(24);
+    std::vector<Vec3> vertices(sphere->vertices().begin(), sphere->vertices().end());
+    for (Vec3& vertex : vertices) vertex += middle;
+    std::vector<mesh::Triangle> triangles(sphere->triangles().begin(), sphere->triangles().end());
+    mesh = std::make_shared<const mesh::TriangleMesh>(
+        mesh::TriangleMesh::make(std::move(vertices), std::move(triangles)).value());
+    shape = Shape::build(mesh).value();
+    tree = &std::get<tree::WideTree>(shape->data().tree);
+  }
+  [[nodiscard]] double distance(std::uint32_t triangle, const Vec3& begin, const Vec3& end) const {
+    const mesh::Triangle& t = mesh->triangles()[triangle];
+    const Vec3 corners[3] = {mesh->vertices()[t[0]], mesh->vertices()[t[1]], mesh->vertices()[t[2]]};
+    return std::sqrt(primitive::closest_points_segment_triangle(begin, end, corners).squared_distance);
+  }
+
+  Vec3 middle = Vec3::Constant(GetParam());
+  std::shared_ptr<const mesh::TriangleMesh> mesh;
+  std::shared_ptr<const Shape> shape;
+  const tree::WideTree* tree = nullptr;
+};
+
+TEST_P(NearSegments, FindWhatLookingAtEachTriangleFinds) {
+  math::Random random(8, 1);
+  std::size_t none = 0;
+  std::size_t passed_over = 0;
+  for (int round = 0; round < 120; ++round) {
+    const Vec3 begin = middle + random.uniform(0.0, 2.0) * random.direction();
+    const double length = round % 3 == 0 ? 0.0 : random.uniform(0.0, 1.5);
+    const Vec3 end = begin + length * random.direction();
+    std::vector<double> distances(mesh->triangles().size());
+    for (std::uint32_t t = 0; t < distances.size(); ++t) distances[t] = distance(t, begin, end);
+    const double least = *std::min_element(distances.begin(), distances.end());
+    const NearSegment near(*tree, begin, end);
+    std::size_t asked = 0;
+    const auto counted = [&](std::uint32_t t) {
+      ++asked;
+      return distances[t];
+    };
+    for (const double within : {0.3, std::numeric_limits<double>::infinity()}) {
+      std::uint64_t nodes = 1'000'000;
+      bool finished = false;
+      const std::uint32_t found = near.nearest(
+          within, 0.0, counted, [] { return true; }, nodes, finished);
+      EXPECT_TRUE(finished);
+      ASSERT_EQ(found == no_feature, least > within);
+      if (found == no_feature) {
+        ++none;
+      } else {
+        EXPECT_EQ(distances[found], least);
+      }
+    }
+    passed_over += 2 * distances.size() - asked;
+    std::vector<int> times(distances.size(), 0);
+    std::uint64_t nodes = 1'000'000;
+    const double within = random.uniform(0.0, 0.5);
+    EXPECT_TRUE(near.all_within(
+        within,
+        [&](std::uint32_t t) {
+          ++times[t];
+          return true;
+        },
+        [] { return true; }, nodes));
+    for (std::uint32_t t = 0; t < distances.size(); ++t) {
+      EXPECT_LE(times[t], 1);
+      EXPECT_TRUE(times[t] == 1 || distances[t] > within) << t;
+    }
+  }
+  EXPECT_GT(none, 5u);
+  EXPECT_GT(passed_over, 200 * mesh->triangles().size()) << "most need not be looked at";
+}
+
+TEST_P(NearSegments, EndWhereTheyAreTold) {
+  const Vec3 from = middle + Vec3(2.0, 0.3, 0.1);
+  const NearSegment near(*tree, from, from);
+  const auto far = [&](std::uint32_t t) { return distance(t, from, from); };
+  bool finished = true;
+  std::uint64_t nodes = 2;
+  EXPECT_EQ(near.nearest(
+                10.0, 0.0, far, [] { return true; }, nodes, finished),
+            no_feature);
+  EXPECT_FALSE(finished);
+  EXPECT_EQ(nodes, 0u);
+  nodes = 100;
+  EXPECT_EQ(near.nearest(
+                10.0, 0.0, far, [] { return false; }, nodes, finished),
+            no_feature);
+  EXPECT_FALSE(finished);
+  EXPECT_EQ(nodes, 100u);
+  std::size_t taken = 0;
+  EXPECT_FALSE(near.all_within(
+      10.0, [&](std::uint32_t) { return ++taken < 3; }, [] { return true; }, nodes));
+  EXPECT_EQ(taken, 3u);
+}
+
+INSTANTIATE_TEST_SUITE_P(About, NearSegments, ::testing::Values(0.0, 1e3, -1e6));
+
+TEST(NearSegmentKernels, OfEachInstructionSetGiveTheSame) {
+  const auto shape = Shape::build(testing::wavy_sphere(24)).value();
+  const auto& tree = std::get<tree::WideTree>(shape->data().tree);
+  const wide::Searches& portable = *wide::searches_for(InstructionSet::portable);
+  math::Random random(9, 1);
+  for (const InstructionSet set : testing::instruction_sets) {
+    const wide::Searches* const searches = wide::searches_for(set);
+    if (searches == nullptr) continue;  // not on this processor
+    for (std::size_t n = 0; n < tree.node_count(); ++n) {
+      wide::SegmentInTree segment;
+      segment.middle = random.direction().cast<float>();
+      segment.half = (n % 4 == 0 ? 0.0 : 0.4) * random.direction().cast<float>();
+      const float square = segment.half.squaredNorm();
+      segment.inverse_square = square > 0.0F ? 1.0F / square : 0.0F;
+      float expected[tree::wide_lanes];
+      float own[tree::wide_lanes];
+      const tree::WideNode& node = tree.nodes()[n];
+      portable.children_near(node, segment, expected);
+      searches->children_near(node, segment, own);
+      for (unsigned lane = 0; lane < tree::wide_lanes; ++lane) {
+        EXPECT_EQ(own[lane], expected[lane]);
+        EXPECT_EQ(node.child[lane].is_nothing(), own[lane] == std::numeric_limits<float>::infinity());
+      }
+      for (unsigned lane = 0; lane < tree::wide_lanes && !node.child[lane].is_nothing(); ++lane) {
+        const tree::ChildRef child = node.child[lane];
+        if (!child.is_leaf()) continue;
+        const Vec3f from(node.center[0][lane], node.center[1][lane], node.center[2][lane]);
+        const tree::WideLeaf& leaf = tree.leaves()[child.index()];
+        portable.triangles_near(leaf, child.count(), from, segment, expected);
+        searches->triangles_near(leaf, child.count(), from, segment, own);
+        for (unsigned t = 0; t < tree::wide_lanes; ++t) EXPECT_EQ(own[t], expected[t]);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace odds::query
