@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <initializer_list>
+#include <memory>
 
 #include "odds/query/contact_patch.hpp"
+#include "odds/query/pair.hpp"
 #include "support/contact_scene.hpp"
 
 namespace odds::query {
@@ -126,6 +128,28 @@ TEST(PartOfARim, OnAWallKeepsItsNormalWhateverIsKnown) {
     }
   });
   EXPECT_GT(against_the_wall, 100);
+}
+
+// Pieces of a rim that curls span areas of both signs about their middle: what is left of their sum put a contact
+// beside both bodies, by twice a radius.
+TEST(PartOfARim, ThatCurlsHasItsContactsWhereTheBodiesAre) {
+  const auto shape_of = [](const char* name) {
+    return Shape::build(std::make_shared<const mesh::TriangleMesh>(mesh::made::make_shape(name).value())).value();
+  };
+  Pair pair =
+      Pair::make(shape_of("torus:ring=0.25,tube=0.1,around=120,across=48"), shape_of("uv_sphere:radius=0.25")).value();
+  Request request;
+  request.max_contacts = 2;
+  for (const math::Pose& pose : {shift(0.08, 0.1, 0.11), shift(0.03, 0.1, -0.09), shift(-0.1, 0.07, -0.09)}) {
+    pair.reset();
+    const Answer& answer = pair.run(pose, request);
+    ASSERT_EQ(pair.crossings().size(), PairOptions{}.hit_capacity);
+    ASSERT_FALSE(answer.contacts.empty());
+    for (const Contact& c : answer.contacts) {
+      EXPECT_LE((c.position - pose.translation).norm(), 0.25 + 0.5 * c.depth);
+      EXPECT_LE(c.position.head<2>().norm(), 0.35 + 0.5 * c.depth);
+    }
+  }
 }
 
 }  // namespace

@@ -25,9 +25,12 @@ using patch::thorough;
 using patch::Watch;
 using patch::Witness;
 
-/// Centroid of the surface that the rim spans, which unlike the mean of the rim does not care how finely it is cut.
-Vec3 span_centre(const patch::Rim& rim, std::span<const std::uint32_t> indices, const Vec3& middle, const Vec3& normal,
-                 Watch& watch) noexcept {
+/// Centroid of the surface that the rim spans, which unlike the mean of the rim does not care how finely it is cut. Of
+/// a rim that crosses itself as seen along the normal, or is not whole, areas of both signs may put it anywhere: never
+/// beyond the rim's box.
+Vec3 span_centre(const patch::Rim& rim, std::span<const std::uint32_t> indices, const patch::RimSums& sums,
+                 const Vec3& normal, Watch& watch) noexcept {
+  const Vec3 middle = sums.centre(rim.origin);
   Vec3 sum = Vec3::Zero();
   double weight = 0.0;
   double magnitude = 0.0;
@@ -42,7 +45,7 @@ Vec3 span_centre(const patch::Rim& rim, std::span<const std::uint32_t> indices, 
     magnitude += std::abs(w);
   }
   if (!(std::abs(weight) > 0.1 * magnitude)) return middle;
-  return middle + sum / weight;
+  return (middle + sum / weight).cwiseMax(sums.lower).cwiseMin(sums.upper);
 }
 
 }  // namespace
@@ -263,7 +266,7 @@ Patch PatchBuilder::Scratch::patch_along(const Vec3& normal, const PatchInput& i
   made.length = sums.length;
   if (watch.late()) return made;  // here and below: what is not finished then is not used
   const patch::Frame frame(made.normal);
-  const Vec3 centre = span_centre(rim, indices, sums.centre(rim.origin), made.normal, watch);
+  const Vec3 centre = span_centre(rim, indices, sums, made.normal, watch);
   find_witnesses(effort.ends_only ? telling.ends_of(*kernels, rim, indices, frame, fan, centre, watch)
                                   : telling.of(*kernels, rim, indices, frame, fan, centre, watch),
                  frame, watch);
