@@ -1,8 +1,12 @@
 // A single contact is made with the same care however late its hit comes.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <memory>
+#include <utility>
+#include <vector>
 
+#include "odds/mesh/made/by_name.hpp"
 #include "odds/query/pair.hpp"
 #include "odds/realtime/clock.hpp"
 #include "support/shapes.hpp"
@@ -53,6 +57,45 @@ TEST(SingleContact, IsNoRougherWhereItsHitComesLast) {
   EXPECT_GT(hits, 200);
   EXPECT_GT(last, 20);
   EXPECT_LT(last, hits - 20);
+}
+
+// A sheet has two sides: which way its triangles are wound changes nothing. Of a ground wound downwards, walls of what
+// stood on it pushed that into the ground.
+TEST(SingleContact, OfASheetIsTheSameWhicheverWayItIsWound) {
+  const mesh::TriangleMesh ground = mesh::made::make_shape("terrain:side=2,height=0.05,cells=20").value();
+  std::vector<mesh::Triangle> turned(ground.triangles().begin(), ground.triangles().end());
+  for (mesh::Triangle& t : turned) std::swap(t[1], t[2]);
+  const auto sheet = [&ground](std::vector<mesh::Triangle> triangles) {
+    return std::make_shared<const mesh::TriangleMesh>(
+        mesh::TriangleMesh::make({ground.vertices().begin(), ground.vertices().end()}, std::move(triangles)).value());
+  };
+  const auto as_made = Shape::build(sheet({ground.triangles().begin(), ground.triangles().end()})).value();
+  const auto downwards = Shape::build(sheet(turned)).value();
+  int hits = 0;
+  for (const char* name : {"box:x=0.4,y=0.3,z=0.2", "icosphere:radius=0.15"}) {
+    const auto body =
+        Shape::build(std::make_shared<const mesh::TriangleMesh>(mesh::made::make_shape(name).value())).value();
+    Pair usual = Pair::make(as_made, body).value();
+    Pair other = Pair::make(downwards, body).value();
+    for (int i = 0; i < 200; ++i) {
+      const Vec3 axis = Vec3(std::cos(i), std::sin(2.0 * i), 3.0 * std::sin(i)).normalized();
+      const math::Pose pose{Eigen::AngleAxisd(0.1 * std::sin(5.0 * i), axis).toRotationMatrix(),
+                            Vec3(0.7 * std::sin(7.0 * i), 0.7 * std::cos(11.0 * i), 0.08 + 0.0005 * i)};
+      usual.reset();
+      other.reset();
+      const Answer& expected = usual.run(pose, {});
+      const Answer& answer = other.run(pose, {});
+      ASSERT_EQ(answer.verdict, expected.verdict);
+      if (expected.contacts.empty() || answer.contacts[0].triangle_a != expected.contacts[0].triangle_a ||
+          answer.contacts[0].triangle_b != expected.contacts[0].triangle_b) {
+        continue;
+      }
+      ++hits;
+      EXPECT_LE((answer.contacts[0].normal - expected.contacts[0].normal).norm(), 0.01) << name << " " << i;
+      EXPECT_NEAR(answer.contacts[0].depth, expected.contacts[0].depth, 1e-6) << name << " " << i;
+    }
+  }
+  EXPECT_GT(hits, 150);
 }
 
 }  // namespace

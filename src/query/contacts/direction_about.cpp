@@ -88,11 +88,9 @@ OfBoth nodes_about(const Shape& a, const Vec3f& place_a, const Shape& b, const V
   return about;
 }
 
-/// Whether a leaf is met from behind, as a sheet may be: then its normals say nothing of where it pushes.
-bool is_met_from_behind(const NodesAbout& a, const NodesAbout& b, const math::Pose& b_in_a,
-                        const Vec3& into_a) noexcept {
-  return a[0]->mean_normal.cast<double>().dot(into_a) > 0.0 ||
-         (b_in_a.rotation * b[0]->mean_normal.cast<double>()).dot(into_a) < 0.0;
+/// Whether a leaf whose normals have that mean, outwards, is met from behind.
+bool is_met_from_behind(const Vec3& outwards, const Vec3& mean_normal) noexcept {
+  return mean_normal.dot(outwards) < 0.0;
 }
 
 double longest_side(const tree::TriangleCorners& t) noexcept {
@@ -118,11 +116,19 @@ Vec3 direction_about(const Shape& a, const Shape& b, const wide::Searches& searc
   const Vec3 place = contact.position - meshes.origin_a();
   const auto [about_a, about_b] =
       nodes_about(a, place.cast<float>(), b, (b_in_a.inverse() * place).cast<float>(), searches);
-  const bool both_solid = a.is_solid() && b.is_solid();
-  if (!both_solid && is_met_from_behind(about_a, about_b, b_in_a, contact.normal)) return contact.normal;
+  double sign_a = 1.0;
+  double sign_b = 1.0;
+  if (!a.is_solid() || !b.is_solid()) {
+    const bool behind_a = is_met_from_behind(-contact.normal, about_a[0]->mean_normal.cast<double>());
+    const bool behind_b = is_met_from_behind(contact.normal, b_in_a.rotation * about_b[0]->mean_normal.cast<double>());
+    // A sheet has two sides; the normals of a solid, from behind, say nothing of where it pushes.
+    if ((behind_a && a.is_solid()) || (behind_b && b.is_solid())) return contact.normal;
+    if (behind_a) sign_a = -1.0;
+    if (behind_b) sign_b = -1.0;
+  }
   Vec3 sum = worth_of_triangles(meshes, contact, flatness_of(*about_a[0], *about_b[0])) * contact.normal;
   for (std::size_t i = 0; i < sizes; ++i) {
-    const Facing facing = facing_of(*about_a[i], *about_b[i], b_in_a);
+    const Facing facing = facing_of(*about_a[i], *about_b[i], b_in_a, sign_a, sign_b);
     sum += facing.opposition * facing.direction;
   }
   const double length = sum.norm();

@@ -44,10 +44,11 @@ struct Facing {
   double opposition;  ///< 0 .. 1: how much the mean normals face each other; 0 of sides of an edge, that cannot meet
 };
 
+/// `sign_a`, `sign_b`: -1 of a sheet that is met from behind, else 1.
 [[nodiscard]] inline Facing facing_of(const tree::NodeStatistics& a, const tree::NodeStatistics& b,
-                                      const math::Pose& b_in_a) noexcept {
-  const Vec3 normal_a = a.mean_normal.cast<double>();
-  const Vec3 normal_b = b_in_a.rotation * b.mean_normal.cast<double>();
+                                      const math::Pose& b_in_a, double sign_a = 1.0, double sign_b = 1.0) noexcept {
+  const Vec3 normal_a = sign_a * a.mean_normal.cast<double>();
+  const Vec3 normal_b = sign_b * (b_in_a.rotation * b.mean_normal.cast<double>());
   return {facing_where_they_touch(normal_a, static_cast<double>(a.area), normal_b, static_cast<double>(b.area),
                                   a.centroid.cast<double>() - b_in_a * b.centroid.cast<double>()),
           std::clamp(-normal_a.dot(normal_b), 0.0, 1.0)};

@@ -41,11 +41,20 @@ namespace odds::query::patch {
   return previous != nullptr && previous->dot(direction) > tolerances::same_as_before ? tolerances::hysteresis : 1.0;
 }
 
+/// B's normal less A's, or of sums of them. That of a sheet, whose triangles may be turned either way, is taken as that
+/// of a body on its side.
+[[nodiscard]] inline Vec3 difference_of_normals(const PatchInput& input, const Vec3& normal_a, const Vec3& normal_b,
+                                                const Vec3& side) noexcept {
+  const Vec3 a = !input.solid_a && normal_a.dot(side) > 0.0 ? Vec3(-normal_a) : normal_a;
+  const Vec3 b = !input.solid_b && normal_b.dot(side) < 0.0 ? Vec3(-normal_b) : normal_b;
+  return b - a;
+}
+
 /// In which direction bodies that only touch are pressed together by a trifle before directions are compared: along
-/// the mean of the normals, or else where the bodies are; unit, or zero.
-[[nodiscard]] inline Vec3 pressing_direction(const PatchInput& input, const Vec3& normals_a, const Vec3& normals_b,
+/// the difference of the normals, or else where the bodies are; unit, or zero.
+[[nodiscard]] inline Vec3 pressing_direction(const PatchInput& input, const Vec3& difference,
                                              const Vec3& side) noexcept {
-  for (const Vec3& direction : {Vec3(normals_b - normals_a), side, Vec3(input.reference_a - input.reference_b)}) {
+  for (const Vec3& direction : {difference, side, Vec3(input.reference_a - input.reference_b)}) {
     if (const Vec3 unit = unit_or_zero(direction); unit != Vec3::Zero()) return unit;
   }
   return Vec3::Zero();

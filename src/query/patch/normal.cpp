@@ -121,7 +121,7 @@ class LeastOverlap {
  public:
   LeastOverlap(const PatchView& view, Watch& watch) noexcept
       : view_(view), watch_(watch), side_(side_of_bodies(view.input, view.sums.centre(view.rim.origin))) {
-    const Vec3 pressing = pressing_direction(view.input, view.sums.normals_a, view.sums.normals_b, side_);
+    const Vec3 pressing = pressing_direction(view.input, difference_of_normals(), side_);
     // Where the bodies only touch, every direction that parts them has no overlap. Pressing them together by a trifle
     // first tells the face's own normal from those that merely do.
     double size = 0.0;
@@ -160,6 +160,10 @@ class LeastOverlap {
     offer(-direction, factor);
   }
   [[nodiscard]] Vec3 best() const noexcept { return found_ ? best_ : Vec3::Zero(); }
+  /// Of all of the rim.
+  [[nodiscard]] Vec3 difference_of_normals() const noexcept {
+    return patch::difference_of_normals(view_.input, view_.sums.normals_a, view_.sums.normals_b, side_);
+  }
   /// Whether the bodies overlap along the best direction by more than the rim is wide (and than rounding).
   [[nodiscard]] bool is_a_long_way() const noexcept {
     const double reach = view_.rim.origin.cwiseAbs().maxCoeff();
@@ -339,7 +343,8 @@ Vec3 least_overlap(const PatchView& view, const Vec3& area, Watch& watch) noexce
   };
   // The area of a rim of which pieces are missing is one candidate of many: where it is small, so may be what is left.
   // Of one that ends with a sheet it is along the sheet's normal, whichever way the border came in.
-  const bool is_open = is_part_of_a_rim(view) || ends_at_a_border(view);
+  const bool at_border = ends_at_a_border(view);
+  const bool is_open = is_part_of_a_rim(view) || at_border;
   offer(area, is_open ? 1.0 : tolerances::area_preferred);
   Directions faces;
   const bool in_part = view.input.believed_depth > 0.0;
@@ -355,9 +360,10 @@ Vec3 least_overlap(const PatchView& view, const Vec3& area, Watch& watch) noexce
   }
   for (std::size_t i = 0; i < faces.count; ++i) offer(faces.ones[i].mean(), 1.0);
   // Of a crumb along an edge, all that a sample has left of a long rim, the mean of the two faces' normals cuts the
-  // corner: at places near the rim it seems shorter than it is.
+  // corner: at places near the rim it seems shorter than it is. So it does at a border, whose sheet's normal leads
+  // aside.
   const bool is_crumb = is_part_of_a_rim(view) && !in_part && faces.count == 2 && view.input.max_contacts > 1;
-  if (!is_crumb || search.best() == Vec3::Zero()) offer(view.sums.normals_b - view.sums.normals_a, 1.0);
+  if (!(is_crumb || at_border) || search.best() == Vec3::Zero()) offer(search.difference_of_normals(), 1.0);
   if (view.input.previous_normal != nullptr) search.offer(*view.input.previous_normal, 1.0);
   const bool walls_only = is_part_of_a_rim(view) || view.sums.length == 0.0;
   if (walls_only && !watch.late() && ((in_part && faces.count == 0) || search.is_a_long_way())) {

@@ -37,15 +37,15 @@ struct Asked {
   [[nodiscard]] std::span<const Vec3> all() const noexcept { return {of.data(), count}; }
 };
 
-/// The faces' normals, their mean, the last run's normal.
-Asked candidates(const PatchInput& input, const PlacedPair& placed) noexcept {
+/// The faces' normals, their mean, which is along their difference, the last run's normal.
+Asked candidates(const PatchInput& input, const PlacedPair& placed, const Vec3& difference) noexcept {
   const bool both_ways = !input.solid_a || !input.solid_b;
   Asked asked;
   Directions faces;
   faces.add(placed.normal_b, 1.0);
   faces.add(-placed.normal_a, 1.0);
   for (std::size_t i = 0; i < faces.count; ++i) asked.add(faces.ones[i].mean(), both_ways);
-  asked.add(placed.normal_b - placed.normal_a, both_ways);
+  asked.add(difference, both_ways);
   if (input.previous_normal != nullptr) asked.add(*input.previous_normal, false);
   return asked;
 }
@@ -116,12 +116,13 @@ std::optional<Contact> contact_of_one_pair(const PatchInput& input, const Kernel
   const Vec3 side = side_of_bodies(input, piece.middle());
   const Vec3 line = placed.normal_b.cross(placed.normal_a);
   const double steepness = line.norm();
+  const Vec3 difference = difference_of_normals(input, placed.normal_a, placed.normal_b, side);
 
-  Asked asked = candidates(input, placed);
+  Asked asked = candidates(input, placed, difference);
   const std::size_t usual = asked.count;
   // Along walls: only of solids, for of a sheet the rim says nothing of what is missing.
   if (solid && steepness > tolerances::steep) asked.add(line, true);
-  const Vec3 pressing = pressing_direction(input, placed.normal_a, placed.normal_b, side);
+  const Vec3 pressing = pressing_direction(input, difference, side);
   const double size = std::min((placed.a[1] - placed.a[0]).norm(), (placed.b[1] - placed.b[0]).norm());
   CornersOfEight pressed;
   kernels.corners_along(placed, asked.all(), -tolerances::pressing_share * size * pressing, pressed);
