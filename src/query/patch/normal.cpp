@@ -337,16 +337,17 @@ Vec3 noticeable_area(const PatchView& view) noexcept {
 Vec3 least_overlap(const PatchView& view, const Vec3& area, Watch& watch) noexcept {
   LeastOverlap search(view, watch);
   const bool solid = view.input.solid_a && view.input.solid_b;
-  const auto offer = [&search, solid](const Vec3& direction, double factor) noexcept {
+  const auto offer = [&search](const Vec3& direction, double factor, bool both_ways) noexcept {
     search.offer(direction, factor);
-    if (!solid) search.offer(-direction, factor);  // a sheet's normal may point either way
+    if (both_ways) search.offer(-direction, factor);
   };
   // The area of a rim of which pieces are missing is one candidate of many: where it is small, so may be what is left.
   // Of one that ends with a sheet it is along the sheet's normal, whichever way the border came in.
   const bool at_border = ends_at_a_border(view);
   const bool is_open = is_part_of_a_rim(view) || at_border;
-  offer(area, is_open ? 1.0 : tolerances::area_preferred);
-  Directions faces;
+  offer(area, is_open ? 1.0 : tolerances::area_preferred, !solid);
+  Directions faces;   // of solids: out of them
+  Directions sheets;  // may be turned either way
   const bool in_part = view.input.believed_depth > 0.0;
   for (std::size_t i = 0; i < view.pieces.size() && !watch.late(i); ++i) {
     const RimPiece& piece = view.rim.pieces[view.pieces[i]];
@@ -355,18 +356,21 @@ Vec3 least_overlap(const PatchView& view, const Vec3& area, Watch& watch) noexce
     // a search without time has left of the rim.
     if (solid && in_part && placed.normal_a.dot(placed.normal_b) > tolerances::same_face) continue;
     const double weight = piece.length;
-    faces.add(placed.normal_b, weight);
-    faces.add(-placed.normal_a, weight);
+    (view.input.solid_b ? faces : sheets).add(placed.normal_b, weight);
+    (view.input.solid_a ? faces : sheets).add(-placed.normal_a, weight);
   }
-  for (std::size_t i = 0; i < faces.count; ++i) offer(faces.ones[i].mean(), 1.0);
+  for (std::size_t i = 0; i < faces.count; ++i) offer(faces.ones[i].mean(), 1.0, false);
+  for (std::size_t i = 0; i < sheets.count; ++i) offer(sheets.ones[i].mean(), 1.0, true);
   // Of a crumb along an edge, all that a sample has left of a long rim, the mean of the two faces' normals cuts the
   // corner: at places near the rim it seems shorter than it is. So it does at a border, whose sheet's normal leads
   // aside.
   const bool is_crumb = is_part_of_a_rim(view) && !in_part && faces.count == 2 && view.input.max_contacts > 1;
-  if (!(is_crumb || at_border) || search.best() == Vec3::Zero()) offer(search.difference_of_normals(), 1.0);
+  if (!(is_crumb || at_border) || search.best() == Vec3::Zero()) {
+    offer(search.difference_of_normals(), 1.0, !view.input.solid_a && !view.input.solid_b);
+  }
   if (view.input.previous_normal != nullptr) search.offer(*view.input.previous_normal, 1.0);
   const bool walls_only = is_part_of_a_rim(view) || view.sums.length == 0.0;
-  if (walls_only && !watch.late() && ((in_part && faces.count == 0) || search.is_a_long_way())) {
+  if (walls_only && !watch.late() && ((in_part && faces.count + sheets.count == 0) || search.is_a_long_way())) {
     const Directions ways = ways_along_walls(view, watch);
     for (std::size_t i = 0; i < ways.count; ++i) search.offer_both(ways.ones[i].first, 1.0);
   }

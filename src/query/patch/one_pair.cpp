@@ -37,15 +37,17 @@ struct Asked {
   [[nodiscard]] std::span<const Vec3> all() const noexcept { return {of.data(), count}; }
 };
 
-/// The faces' normals, their mean, which is along their difference, the last run's normal.
+/// The faces' normals, their mean, which is along their difference, the last run's normal. A solid's lead out of it;
+/// those of a sheet may be turned either way.
 Asked candidates(const PatchInput& input, const PlacedPair& placed, const Vec3& difference) noexcept {
-  const bool both_ways = !input.solid_a || !input.solid_b;
   Asked asked;
   Directions faces;
-  faces.add(placed.normal_b, 1.0);
-  faces.add(-placed.normal_a, 1.0);
-  for (std::size_t i = 0; i < faces.count; ++i) asked.add(faces.ones[i].mean(), both_ways);
-  asked.add(difference, both_ways);
+  Directions sheets;
+  (input.solid_b ? faces : sheets).add(placed.normal_b, 1.0);
+  (input.solid_a ? faces : sheets).add(-placed.normal_a, 1.0);
+  for (std::size_t i = 0; i < faces.count; ++i) asked.add(faces.ones[i].mean(), false);
+  for (std::size_t i = 0; i < sheets.count; ++i) asked.add(sheets.ones[i].mean(), true);
+  asked.add(difference, !input.solid_a && !input.solid_b);
   if (input.previous_normal != nullptr) asked.add(*input.previous_normal, false);
   return asked;
 }
