@@ -15,8 +15,8 @@ namespace odds::query {
 /// next two larger nodes say more, each pair of nodes the more the more they face each other. But the triangles know
 /// better where they have only just met, so that little else can have, and where what is about the place is not flat,
 /// as of bodies of few triangles. The weights are those of least error over seventeen pairs of bodies at 1e-6 to 1 % of
-/// the size. Of sheets met from behind, and of plates that are thinner than a leaf is wide, it is that of the
-/// triangles.
+/// the size. Sheets may be met from behind as well as from the front. Beside a sheet, of solids that are thinner than a
+/// leaf is wide it is that of the triangles.
 ///
 /// Takes 0.5 us where caches know the surfaces, 1 to 3 where they do not.
 [[nodiscard]] Vec3 direction_about(const Shape& a, const Shape& b, const wide::Searches& searches,
