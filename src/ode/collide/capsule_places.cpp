@@ -57,12 +57,11 @@ std::uint32_t find_nearest(const PreparedMesh& mesh, const Capsule& capsule, con
                            double within, Limit& limit, bool& finished) noexcept {
   // Along one that lies on flat ground all are as near as each other, but for rounding.
   constexpr double not_nearer = 1e-12;
-  constexpr std::uint64_t most_nodes = 64;
   const auto distance = [&](std::uint32_t t) {
     const double d = place_of(mesh, capsule, t).distance;
     return d < capsule.radius ? d : std::numeric_limits<double>::infinity();
   };
-  const std::uint64_t nodes = std::min(limit.nodes_left(), most_nodes);
+  const std::uint64_t nodes = limit.nodes_left();
   std::uint64_t left = nodes;
   const std::uint32_t nearest = axis.nearest(
       within, axis.margin() + not_nearer * capsule.radius, distance, [&] { return !limit.time_is_up(); }, left,

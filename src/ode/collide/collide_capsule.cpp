@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "odds/query/ray.hpp"
 #include "ode/collide/capsule_places.hpp"
 #include "ode/collide/contact_writer.hpp"
 #include "ode/collide/manifold.hpp"
@@ -186,16 +187,34 @@ void add_end_balls(const PreparedMesh& mesh, const Capsule& capsule, Limit& limi
   }
 }
 
+struct SurfaceSeen {
+  Vec3 point;
+  Vec3 outward;
+  std::uint32_t triangle;
+};
+
+// The surface at the first place, as the axis has it before it. The nearest point of the surface to the axis is the
+// nearest to that point of the axis, too, and its pseudo-normal tells the side; of one that may not be the nearest,
+// what a ray to it meets first does.
+SurfaceSeen seen_from_axis(const PreparedMesh& mesh, const CapsulePlaces& places) noexcept {
+  constexpr std::uint64_t most_nodes = 256;
+  const CapsulePlace& place = places.all[0];
+  if (places.nearest_is_sure) {
+    return {place.on_surface, outward_at(mesh, place.on_surface, place.triangle, place.on_axis), place.triangle};
+  }
+  const Vec3 direction = (place.on_surface - place.on_axis) / place.distance;
+  const auto hit = query::cast_ray(*mesh.shape, place.on_axis, direction, place.distance, most_nodes);
+  if (!hit) return {place.on_surface, unit_normal(mesh.corners(place.triangle)), place.triangle};
+  return {place.on_axis + hit->distance * direction, unit_normal(mesh.corners(hit->triangle)), hit->triangle};
+}
+
 // No triangle crosses the axis: outside the mesh, or all of it inside.
 void add_beside(const PreparedMesh& mesh, const Capsule& capsule, const CapsulePlaces& places, Limit& limit,
                 CapsuleContacts& contacts) noexcept {
   if (mesh.closed && places.count > 0) {
-    // The surface's nearest point to the axis is its nearest to that point of the axis, too.
-    const CapsulePlace& nearest = places.all[0];
-    const Vec3 outward = outward_at(mesh, nearest.on_surface, nearest.triangle, nearest.on_axis);
-    if (outward.dot(nearest.on_axis - nearest.on_surface) < 0.0) {
-      if (!places.nearest_is_sure) return;  // then nobody knows on which side of the surface it is
-      add_ends_behind(capsule, nearest.on_surface, outward, nearest.triangle, contacts);
+    const SurfaceSeen seen = seen_from_axis(mesh, places);
+    if (seen.outward.dot(places.all[0].on_axis - seen.point) < 0.0) {
+      add_ends_behind(capsule, seen.point, seen.outward, seen.triangle, contacts);
       return;
     }
   } else if (mesh.closed && in_bounds(mesh, capsule.middle())) {
