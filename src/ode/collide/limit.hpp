@@ -25,7 +25,7 @@ class Limit {
     const double ns = settings.budget_us * 1e3;
     timed_ = ns < 9e18;
     if (!timed_) return;
-    time_ns_ = ns;
+    time_ns_ = ns - std::min(ending_ns, longest_ending * ns);
     start_ns_ = clock_();
     const auto units_of_time = static_cast<std::uint64_t>(std::ceil(settings.budget_us * nodes_per_us));
     if (units_of_time < units) shared_units_ = shared_time_;
@@ -88,6 +88,9 @@ class Limit {
  private:
   // Searches in a tree do not read the clock at each node; a node takes 10 to 50 ns where the cache holds it.
   static constexpr double nodes_per_us = 30.0;
+  // What choosing and writing contacts takes after the last look; of a short time no more than a share.
+  static constexpr double ending_ns = 800.0;
+  static constexpr double longest_ending = 0.2;
   static constexpr std::uint64_t most_units = std::uint64_t{1} << 40;
   [[nodiscard]] std::int64_t end_ns(double share) const noexcept {
     return start_ns_ + static_cast<std::int64_t>(share * time_ns_);
