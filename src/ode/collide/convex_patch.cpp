@@ -15,8 +15,9 @@ namespace {
 constexpr double least_facing = 0.05;
 // A relative margin, so that among equal ways the first one considered wins whatever the rounding.
 constexpr double clearly_shorter = 1.0 - 1e-6;
-// What refining an exit takes.
+// What it takes to refine an exit, and to list those of a body with many sides.
 constexpr double refining_us = 15.0;
+constexpr double listing_us = 3.0;
 // More normals than these are compared one by one without asking whether they were tried.
 constexpr std::size_t most_remembered = 8;
 
@@ -193,7 +194,7 @@ Exit shortest_exit(std::span<const Piece* const> patch, const ConvexBody& body, 
     consider(piece->normal);
     if (tried_count < tried.size()) tried[tried_count++] = piece->normal;
   }
-  if (limit.time_is_up(time_for_exits)) return best;
+  if (limit.time_is_up(time_for_exits) || (has_many_sides(body) && !limit.has_time_left(listing_us))) return best;
   ExitList exits(mean);
   body.add_exits(patch, limit.has_time_left(refining_us), exits);
   for (const Vec3& direction : exits.all()) {

@@ -62,7 +62,9 @@ class Gathering {
   /// Whether more triangles are in the body than there is room for, as far as a part of the tree tells.
   [[nodiscard]] bool seem_many() noexcept {
     constexpr std::size_t below_leaves = 40;  // of a node above them, as they usually are
+    constexpr double long_us = 20.0;          // what asking takes is nothing to it
     if (mesh_.mesh().triangles().size() <= Pieces::most) return false;
+    if (has_many_sides(body_) && !limit_.has_time_left(long_us)) return true;
     std::size_t about = 0;
     const auto node = [&](tree::ChildRef child, Sieve::Sides sides) {
       if (!child.is_leaf() && sides != 0) return Visit::open;
