@@ -114,12 +114,12 @@ inline std::string other_byte_order(std::string bytes) {
   bytes.replace(header.checksums_at, table.size(), table);
   header.checksum_of_checksums = tree::checksum(bytes_of(table));
   put_header(bytes, header);
-  for (const std::size_t at : {8, 12, 40, 44}) detail::reverse(bytes, at, 4);
-  for (const std::size_t at : {16, 24, 32}) detail::reverse(bytes, at, 8);
+  for (const std::size_t at : {8U, 12U, 40U, 44U}) detail::reverse(bytes, at, 4);
+  for (const std::size_t at : {16U, 24U, 32U}) detail::reverse(bytes, at, 8);
   for (std::size_t i = 0; i < header.sections.size(); ++i) {
     const std::size_t at = 48 + i * sizeof(tree::SectionEntry);
-    for (const std::size_t k : {0, 4}) detail::reverse(bytes, at + k, 4);
-    for (const std::size_t k : {8, 16, 24}) detail::reverse(bytes, at + k, 8);
+    for (const std::size_t k : {0U, 4U}) detail::reverse(bytes, at + k, 4);
+    for (const std::size_t k : {8U, 16U, 24U}) detail::reverse(bytes, at + k, 8);
   }
   const std::size_t end = offsetof(tree::SavedHeader, checksum);
   const std::uint64_t seal = tree::checksum(bytes_of(bytes).first(end));
