@@ -318,6 +318,27 @@ TEST_F(SphereTest, UnderAFaceAnEarlyEndPushesNothingIn) {
   EXPECT_GT(found, 900);
 }
 
+// A search that ends early knows no nearest place, but what is met first on the way to the one that it has.
+TEST_F(SphereTest, DeepInASolidAnEarlyEndStillPushesItOut) {
+  const dGeomID solid = mesh_geom(sphere_shape(1.0, 40), space);
+  const dGeomID ball = dCreateSphere(space, 0.1);
+  dGeomSetPosition(ball, 0.5, 0.1, 0.2);
+  const double nearest = 1.0 - Vec3(0.5, 0.1, 0.2).norm();
+  std::size_t early = 0;
+  for (int units = 8; units < 200; ++units) {
+    dGeomOddsMeshSetWorkBudget(solid, static_cast<std::uint64_t>(units));
+    oddsResetStats();
+    const auto contacts = collide(solid, ball);
+    ASSERT_EQ(contacts.size(), 1u) << units;
+    EXPECT_NEAR(position_of(contacts[0]).norm(), 1.0, 2e-3);
+    EXPECT_LT(normal_of(contacts[0]).dot(position_of(contacts[0])), -0.5) << "into the solid";
+    EXPECT_GE(contacts[0].depth, nearest + 0.1 - 2e-3);
+    EXPECT_LE(contacts[0].depth, 1.3 * nearest + 0.1);
+    early += stats().primitive_cut_off;
+  }
+  EXPECT_GT(early, 0u);
+}
+
 // More triangles meet at the tip than a collision looks at: those of one side spoke for all.
 TEST_F(SphereTest, AboveTheTipOfAConeOfManySidesItIsOutside) {
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);

@@ -20,6 +20,8 @@ namespace odds::ode {
 namespace {
 
 constexpr double same_place = Capsule::same_place;
+// The share of the time after which the way out of a solid that holds all of it is not looked for.
+constexpr double time_for_nearest = 0.9;
 // An end adds a contact only if it is this part of the radius away from those that are there.
 constexpr double separate_end = 1e-2;
 // Cosine from which on two contacts lead the same way.
@@ -218,8 +220,11 @@ void add_beside(const PreparedMesh& mesh, const Capsule& capsule, const CapsuleP
       return;
     }
   } else if (mesh.closed && in_bounds(mesh, capsule.middle())) {
-    const auto nearest = nearest_surface(mesh, capsule.middle(), std::numeric_limits<double>::infinity(), limit.units);
-    if (!nearest) return;  // the search was cut short: nobody knows on which side of the surface it is
+    const std::uint64_t nodes = limit.nodes_to_nearest(time_for_nearest);
+    std::uint64_t left = nodes;
+    const auto nearest = nearest_surface(mesh, capsule.middle(), std::numeric_limits<double>::infinity(), left);
+    limit.spend(nodes - left);
+    if (!nearest) return;
     if (nearest->inside) {
       add_ends_behind(capsule, nearest->point, nearest->outward, nearest->triangle, contacts);
       return;

@@ -15,6 +15,8 @@ namespace odds::ode {
 namespace {
 
 constexpr std::size_t most_near_triangles = 256;
+// The share of the time for the deepest place; then others are looked for.
+constexpr double time_for_nearest = 0.8;
 // Relative to the radius: nearer places are one place. Neighbours share their common edge to rounding only.
 constexpr double same_place = 1e-6;
 
@@ -88,8 +90,11 @@ int collide_sphere(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, in
   const Vec3 center = pose->inverse() * world_center;
   const bool may_be_inside = mesh.closed && in_bounds(mesh, center);
   const double reach = may_be_inside ? std::numeric_limits<double>::infinity() : radius;
-  const std::optional<NearestSurface> nearest = nearest_surface(mesh, center, reach, limit.units);
-  bool complete = limit.units > 0;
+  const std::uint64_t nodes = limit.nodes_to_nearest(time_for_nearest);
+  std::uint64_t left = nodes;
+  const std::optional<NearestSurface> nearest = nearest_surface(mesh, center, reach, left);
+  limit.spend(nodes - left);
+  bool complete = left > 0;
 
   ContactWriter writer(o1, o2, room_for(flags, data.settings.max_contacts), contacts, skip);
   if (nearest && (nearest->inside || nearest->distance <= radius)) {

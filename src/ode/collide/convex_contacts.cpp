@@ -253,7 +253,10 @@ void leave_sideways(const PreparedMesh& mesh, const math::Pose& body_in_mesh, st
   }
   middle = body_in_mesh * Vec3(middle / area);
   if (!in_bounds(mesh, middle)) return;
-  const auto nearest = nearest_surface(mesh, middle, deepest, limit.units);
+  const std::uint64_t given = limit.nodes_to_nearest(time_for_points);
+  std::uint64_t left = given;
+  const auto nearest = nearest_surface(mesh, middle, deepest, left);
+  limit.spend(given - left);
   if (!nearest || !nearest->inside || nearest->outward == Vec3::Zero()) return;
   const Vec3 out = body_in_mesh.rotation.transpose() * nearest->outward;
   const double depth = out.dot(body_in_mesh.inverse() * nearest->point) + body.reach(-out);
@@ -270,7 +273,7 @@ void leave_by_the_near_side(const PreparedMesh& mesh, const math::Pose& body_in_
   const auto is_long = [&](const Patch& p) { return p.exit.depth > body.box_half_extents().minCoeff(); };
   if (!mesh.closed || std::none_of(patches.begin(), patches.end(), is_long) || limit.time_is_up(time_for_exits)) return;
   const double size = body.box_half_extents().norm();
-  const std::uint64_t given = std::min(limit.nodes_in_time(time_for_exits), most_units);
+  const std::uint64_t given = std::min(limit.nodes_to_nearest(time_for_exits), most_units);
   std::uint64_t left = given;
   const auto nearest = nearest_surface(mesh, body_in_mesh * body.center(), size, left);
   limit.units -= given - left;
@@ -290,16 +293,15 @@ void leave_by_the_near_side(const PreparedMesh& mesh, const math::Pose& body_in_
 // normal: this takes no cutting.
 void push_out(const PreparedMesh& mesh, const math::Pose& mesh_in_world, const math::Pose& body_in_mesh,
               const ConvexBody& body, bool late, Limit& limit, ContactWriter& writer) noexcept {
-  constexpr std::uint64_t most_units_late = 64;  // some five microseconds: the search does not look at the clock
   const Vec3 center = body_in_mesh * body.center();
   const bool may_be_inside = mesh.closed && in_bounds(mesh, center);
   if (!may_be_inside && !late) return;
   const double size = 2.0 * body.box_half_extents().norm();
   const double reach = may_be_inside ? std::numeric_limits<double>::infinity() : size;
-  const std::uint64_t given = may_be_inside ? limit.units : std::min(limit.units, most_units_late);
+  const std::uint64_t given = limit.nodes_to_nearest(time_for_points);
   std::uint64_t left = given;
   const auto nearest = nearest_surface(mesh, center, reach, left);
-  limit.units -= given - left;
+  limit.spend(given - left);
   if (!nearest) return;
   const Vec3 outward = body_in_mesh.rotation.transpose() * nearest->outward;
   const Vec3 into_mesh = -(mesh_in_world.rotation * nearest->outward);

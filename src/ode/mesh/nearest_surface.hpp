@@ -17,8 +17,8 @@ struct NearestSurface {
 };
 
 /// Nothing if the surface is farther than `reach` (metres; infinity allowed) or `units` ran out before any triangle was
-/// seen, or before it was sure that the point is inside. Each visited node takes one from `units`. noexcept, no
-/// allocation.
+/// seen. Each visited node takes one from `units`; if they run out later, a place that may not be the nearest is given,
+/// which is the first one in its direction, so that the side is right. noexcept, no allocation.
 [[nodiscard]] std::optional<NearestSurface> nearest_surface(const PreparedMesh& mesh, const Vec3& point, double reach,
                                                             std::uint64_t& units) noexcept;
 
