@@ -89,8 +89,8 @@ bool add_all_within(const PreparedMesh& mesh, const Capsule& capsule, const quer
   return all;
 }
 
-// Not all triangles were seen, or there was no room for them. The nearest of those that there was time for comes first:
-// it holds the capsule.
+// Not all triangles were seen, or there was no room for them. The nearest of those that there was time for is among the
+// places: it holds the capsule.
 void add_of_many(const PreparedMesh& mesh, const Capsule& capsule, const query::NearSegment& axis, double half_length,
                  Limit& limit, CapsulePlaces& places) noexcept {
   double least = capsule.radius;
@@ -101,7 +101,12 @@ void add_of_many(const PreparedMesh& mesh, const Capsule& capsule, const query::
       std::min(least, nearest == query::no_feature ? least : place_of(mesh, capsule, nearest).distance) <=
       Capsule::same_place * capsule.radius;
   if (crosses && !limit.time_is_up()) {
-    places.count = 0;
+    // What crosses stays; the rest would take the room.
+    const auto end = places.all.begin() + static_cast<std::ptrdiff_t>(places.count);
+    const auto kept = std::partition(places.all.begin(), end, [&](const CapsulePlace& place) {
+      return place.distance <= Capsule::same_place * capsule.radius;
+    });
+    places.count = std::min(static_cast<std::size_t>(kept - places.all.begin()), CapsulePlaces::most / 2);
     Triangles near;
     for (int i = 0; i < slices; ++i) {
       const double along = (2.0 * i + 1.0) / slices - 1.0;

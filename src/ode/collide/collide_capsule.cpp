@@ -211,7 +211,7 @@ SurfaceSeen seen_from_axis(const PreparedMesh& mesh, const CapsulePlaces& places
 }
 
 // No triangle crosses the axis: outside the mesh, or all of it inside.
-void add_beside(const PreparedMesh& mesh, const Capsule& capsule, const CapsulePlaces& places, Limit& limit,
+void add_beside(const PreparedMesh& mesh, const Capsule& capsule, CapsulePlaces& places, Limit& limit,
                 CapsuleContacts& contacts) noexcept {
   if (mesh.closed && places.count > 0) {
     const SurfaceSeen seen = seen_from_axis(mesh, places);
@@ -224,6 +224,7 @@ void add_beside(const PreparedMesh& mesh, const Capsule& capsule, const CapsuleP
     std::uint64_t left = nodes;
     const auto nearest = nearest_surface(mesh, capsule.middle(), std::numeric_limits<double>::infinity(), left);
     limit.spend(nodes - left);
+    places.complete = places.complete && left > 0;
     if (!nearest) return;
     if (nearest->inside) {
       add_ends_behind(capsule, nearest->point, nearest->outward, nearest->triangle, contacts);

@@ -290,19 +290,20 @@ void leave_by_the_near_side(const PreparedMesh& mesh, const math::Pose& body_in_
 
 // No surface inside the body: it may still be swallowed by a closed mesh, and is pushed to the nearest surface. `late`:
 // none was found in time. Then the surface over the body's lowest point is asked for, seen along the nearest one's
-// normal: this takes no cutting.
-void push_out(const PreparedMesh& mesh, const math::Pose& mesh_in_world, const math::Pose& body_in_mesh,
+// normal: this takes no cutting. False if the limit ended the search for the nearest surface.
+bool push_out(const PreparedMesh& mesh, const math::Pose& mesh_in_world, const math::Pose& body_in_mesh,
               const ConvexBody& body, bool late, Limit& limit, ContactWriter& writer) noexcept {
   const Vec3 center = body_in_mesh * body.center();
   const bool may_be_inside = mesh.closed && in_bounds(mesh, center);
-  if (!may_be_inside && !late) return;
+  if (!may_be_inside && !late) return true;
   const double size = 2.0 * body.box_half_extents().norm();
   const double reach = may_be_inside ? std::numeric_limits<double>::infinity() : size;
   const std::uint64_t given = limit.nodes_to_nearest(time_for_points);
   std::uint64_t left = given;
   const auto nearest = nearest_surface(mesh, center, reach, left);
   limit.spend(given - left);
-  if (!nearest) return;
+  const bool is_sure = left > 0;
+  if (!nearest) return is_sure;
   const Vec3 outward = body_in_mesh.rotation.transpose() * nearest->outward;
   const Vec3 into_mesh = -(mesh_in_world.rotation * nearest->outward);
   if (nearest->inside) {
@@ -313,10 +314,11 @@ void push_out(const PreparedMesh& mesh, const math::Pose& mesh_in_world, const m
     const Vec3 lowest = body.farthest(-outward);
     const double most = body.way_through(lowest, outward);
     const auto above = surface_above(mesh, body_in_mesh, body, lowest, outward, most, limit);
-    if (!above) return;
+    if (!above) return is_sure;
     const Vec3 place = body_in_mesh * Vec3(lowest + above->way * outward);
     writer.add(mesh_in_world * place, into_mesh, above->way, above->triangle, query::no_feature);
   }
+  return is_sure;
 }
 
 // What is kept of bodies that rest; false if the contacts must be made.
@@ -383,7 +385,7 @@ Seen write_convex_contacts(const PreparedMesh& mesh, const math::Pose& mesh_in_w
   Pieces pieces;
   gather_pieces(mesh, body_in_mesh, body, limit, pieces);
   if (pieces.count == 0) {
-    push_out(mesh, mesh_in_world, body_in_mesh, body, pieces.cut_off, limit, writer);
+    if (!push_out(mesh, mesh_in_world, body_in_mesh, body, pieces.cut_off, limit, writer)) pieces.cut_off = true;
   } else {
     std::array<Patch, most_patches> patches;
     const BySize by_size(pieces);

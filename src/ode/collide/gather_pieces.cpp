@@ -2,10 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
-#include <limits>
-#include <span>
 
 #include "ode/collide/convex_patch.hpp"
 #include "ode/collide/sieve.hpp"
@@ -18,7 +15,7 @@ namespace {
 using Visit = Sieve::Visit;
 
 constexpr std::size_t octants = 8;
-constexpr std::size_t each = Pieces::most / octants;
+constexpr std::size_t each = Pieces::most / (2 * octants);  // twice, from both ends of the tree
 constexpr std::size_t any_octant = octants;
 /// At the clock; in nodes: about a microsecond.
 constexpr std::uint64_t work_between_looks = 16;
@@ -47,7 +44,7 @@ class Gathering {
   void run() noexcept {
     if (!seem_many()) {
       end_share_ = time_for_pieces;
-      pieces_.complete = sift(any_octant, 0, limit_.nodes_left(), Pieces::most);
+      pieces_.complete = sift(any_octant, Way::forwards, limit_.nodes_left(), Pieces::most);
       if (pieces_.complete || pieces_.cut_off) return;
       if (used_ >= time_for_pieces) {
         pieces_.cut_off = true;
@@ -56,15 +53,18 @@ class Gathering {
       pieces_.count = 0;
     }
     by_octants();
+    if (pieces_.count > 0 || !has_spare_) return;
+    pieces_.all[0] = spare_;
+    pieces_.count = 1;
   }
 
  private:
+  using Way = query::ConvexRegion::Way;
+
   /// Whether more triangles are in the body than there is room for, as far as a part of the tree tells.
   [[nodiscard]] bool seem_many() noexcept {
     constexpr std::size_t below_leaves = 40;  // of a node above them, as they usually are
-    constexpr double long_us = 20.0;          // what asking takes is nothing to it
     if (mesh_.mesh().triangles().size() <= Pieces::most) return false;
-    if (has_many_sides(body_) && !limit_.has_time_left(long_us)) return true;
     std::size_t about = 0;
     const auto node = [&](tree::ChildRef child, Sieve::Sides sides) {
       if (!child.is_leaf() && sides != 0) return Visit::open;
@@ -80,9 +80,9 @@ class Gathering {
     return about > Pieces::most;
   }
 
-  /// Adds the pieces in that octant, which the sieve is set to, but for so many of the first; at most `most`. False if
+  /// Adds the pieces in that octant, which the sieve is set to, but for those that are there; at most `most`. False if
   /// there are more, or the limit, or `nodes`, ended it: then `cut_off`.
-  [[nodiscard]] bool sift(std::size_t octant, std::size_t skipped, std::uint64_t nodes, std::size_t most) noexcept {
+  [[nodiscard]] bool sift(std::size_t octant, Way way, std::uint64_t nodes, std::size_t most) noexcept {
     const std::size_t before = pieces_.count;
     const std::size_t end = before + most;
     std::uint64_t left = nodes;
@@ -97,57 +97,68 @@ class Gathering {
     const auto node = [&](tree::ChildRef, Sieve::Sides) { return is_late(1) ? Visit::end : Visit::open; };
     bool full = false;
     const auto take = [&](std::uint32_t triangle, Sieve::Sides sides) {
+      if (has(triangle)) return true;
       if (is_late(2 * nodes_a_cut_)) return false;
-      left -= std::min(left, nodes_a_cut_);
       Corners corners = mesh_.corners(triangle);
       for (Vec3& corner : corners) corner = mesh_in_body_ * corner;
       Piece& piece = pieces_.all[pieces_.count];
-      if (!cut_by_sides(corners, body_, sieve_.of_body(sides), piece)) return true;
-      if (octant != any_octant && octant_of(piece, body_.box_center()) != octant) return true;
-      if (skipped > 0) {
-        --skipped;
+      if (!cut_by_sides(corners, body_, sieve_.of_body(sides), piece)) {
+        // Where nothing was found yet, what is cut in vain must not use up all work.
+        left -= std::min(left, pieces_.count == 0 ? 1 : nodes_a_cut_);
+        return true;
+      }
+      left -= std::min(left, nodes_a_cut_);
+      piece.triangle = triangle;
+      if (octant != any_octant && octant_of(piece, body_.box_center()) != octant) {
+        if (pieces_.count == 0 && !has_spare_) spare_ = piece;
+        has_spare_ = has_spare_ || pieces_.count == 0;
         return true;
       }
       full = pieces_.count == end;
       if (full) return false;
-      piece.triangle = triangle;
       ++pieces_.count;
       return true;
     };
-    const bool all = sieve_.region().search(node, take, left);
+    const bool all = sieve_.region().search(node, take, left, way);
     limit_.spend(nodes - left);
     pieces_.cut_off = pieces_.cut_off || !(all || full);
     return all;
   }
+  [[nodiscard]] bool has(std::uint32_t triangle) const noexcept {
+    const auto end = pieces_.all.begin() + static_cast<std::ptrdiff_t>(pieces_.count);
+    return std::any_of(pieces_.all.begin(), end, [=](const Piece& piece) { return piece.triangle == triangle; });
+  }
 
-  /// Octant by octant, each its share of the room; then what is left of it goes to those that need more. What lies
-  /// beside the body in its box takes no place of what is in the body.
+  /// Octant by octant, each its share of the room, from both ends of the tree: neighbours are often of one side of a
+  /// plate. Then what is left of the room goes to those that need more. What lies beside the body in its box takes no
+  /// place of what is in the body.
   void by_octants() noexcept {
-    std::array<std::size_t, octants> hungry;
-    std::size_t hungry_count = 0;
-    std::size_t turns = octants;
-    const auto find = [&](std::size_t octant, std::size_t skipped, std::size_t most) {
-      constexpr std::uint64_t least_nodes = 64;  // down to some triangles
-      const std::uint64_t nodes = std::min(limit_.nodes_left(), std::max(least_nodes, limit_.nodes_left() / turns));
-      end_share_ = used_ + (time_for_pieces - used_) / static_cast<double>(turns--);
-      sieve_.set_octant(octant);
-      return sift(octant, skipped, nodes, most);
-    };
-    for (const std::size_t octant : in_order) {
-      if (pieces_.count > 0 && used_ >= time_for_pieces) {
-        pieces_.cut_off = true;
-        break;
+    std::array<std::size_t, octants> hungry = in_order;
+    std::size_t hungry_count = octants;
+    for (int round = 0; round < 3 && hungry_count > 0 && !pieces_.cut_off; ++round) {
+      const bool last = round == 2;
+      std::size_t still_hungry = 0;
+      for (std::size_t i = 0; i < hungry_count; ++i) {
+        if (used_ >= (pieces_.count > 0 ? time_for_pieces : 1.0)) {
+          pieces_.cut_off = true;
+          break;
+        }
+        const std::size_t turns = hungry_count - i;
+        const std::size_t room = last ? (Pieces::most - pieces_.count) / turns : each;
+        if (!find(hungry[i], round == 1 ? Way::backwards : Way::forwards, room, turns)) {
+          hungry[still_hungry++] = hungry[i];
+        }
       }
-      if (!find(octant, 0, each)) hungry[hungry_count++] = octant;
+      hungry_count = still_hungry;
     }
-    pieces_.complete = !pieces_.cut_off;
-    if (pieces_.cut_off) return;
-    turns = std::max<std::size_t>(hungry_count, 1);
-    for (std::size_t i = 0; i < hungry_count && !pieces_.cut_off; ++i) {
-      const std::size_t share = (Pieces::most - pieces_.count) / (hungry_count - i);
-      pieces_.complete = find(hungry[i], each, share) && pieces_.complete;
-    }
-    pieces_.complete = pieces_.complete && !pieces_.cut_off;
+    pieces_.complete = hungry_count == 0 && !pieces_.cut_off;
+  }
+  [[nodiscard]] bool find(std::size_t octant, Way way, std::size_t most, std::size_t turns) noexcept {
+    constexpr std::uint64_t least_nodes = 64;  // down to some triangles
+    const std::uint64_t nodes = std::min(limit_.nodes_left(), std::max(least_nodes, limit_.nodes_left() / turns));
+    end_share_ = used_ + (time_for_pieces - used_) / static_cast<double>(turns);
+    sieve_.set_octant(octant);
+    return sift(octant, way, nodes, most);
   }
 
   const PreparedMesh& mesh_;
@@ -160,6 +171,8 @@ class Gathering {
   double end_share_ = time_for_pieces;
   std::uint64_t since_look_ = 0;  ///< work
   double used_ = 0.0;             ///< of the time, at the last look
+  Piece spare_;                   ///< found while another octant was looked at, and nothing else
+  bool has_spare_ = false;
 };
 
 }  // namespace

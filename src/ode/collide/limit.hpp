@@ -38,7 +38,8 @@ class Limit {
 
   /// The share of the time that is gone; 0 where there is no limit.
   [[nodiscard]] double used() const noexcept {
-    return timed_ ? static_cast<double>(clock_() - start_ns_) / time_ns_ : 0.0;
+    if (!timed_) return 0.0;
+    return time_ns_ > 0.0 ? static_cast<double>(clock_() - start_ns_) / time_ns_ : 1.0;
   }
 
   /// Whether so much of the time is left, or there is no limit.

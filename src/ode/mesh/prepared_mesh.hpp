@@ -36,6 +36,10 @@ struct PreparedMesh {
   bool closed = false;    ///< every edge has its opposite, and something is enclosed: inside and outside are defined
   std::vector<Fan> fans;  ///< by the x of their tips
 
+  PreparedMesh() = default;
+  PreparedMesh(const PreparedMesh&) = delete;  // it points into itself
+  PreparedMesh& operator=(const PreparedMesh&) = delete;
+
   /// Precondition: `shape` is not null. May throw std::bad_alloc.
   static std::shared_ptr<const PreparedMesh> make(std::shared_ptr<const query::Shape> shape);
 

@@ -18,6 +18,7 @@ class ConvexRegion {
  public:
   using Sides = wide::HalfSpaces::Sides;  ///< a bit for each half-space, in the order of `add`
   enum class Visit : std::uint8_t { pass_over, open, end };
+  enum class Way : std::uint8_t { forwards, backwards };
 
   /// `rounding`: what half-spaces and the mesh may be off against each other, metres.
   ConvexRegion(const tree::WideTree& tree, double rounding) noexcept : tree_(tree) {
@@ -37,12 +38,14 @@ class ConvexRegion {
     spaces_.offset[place] = static_cast<float>(from_origin);
   }
 
-  /// Depth first. `node(child, sides)` says what is done with a node or leaf that is not beyond a half-space, `sides`
-  /// being those that may cut it; `take(triangle, sides)` gets each triangle that is not beyond one, and some that are
-  /// by rounding, until it says false. Each node and leaf opened takes one from `nodes_left`. False if that, `node` or
-  /// `take` ended it. noexcept, no allocation.
+  /// Depth first, each node's children and each leaf's triangles in their order or in the opposite one. `node(child,
+  /// sides)` says what is done with a node or leaf that is not beyond a half-space, `sides` being those that may cut
+  /// it; `take(triangle, sides)` gets each triangle that is not beyond one, and some that are by rounding, until it
+  /// says false. Each node and leaf opened takes one from `nodes_left`. False if that, `node` or `take` ended it.
+  /// noexcept, no allocation.
   template <class Node, class Take>
-  [[nodiscard]] bool search(const Node& node, const Take& take, std::uint64_t& nodes_left) const noexcept {
+  [[nodiscard]] bool search(const Node& node, const Take& take, std::uint64_t& nodes_left,
+                            Way way = Way::forwards) const noexcept {
     struct Open {
       tree::ChildRef child;
       Vec3f center;
@@ -52,9 +55,15 @@ class ConvexRegion {
     std::size_t size = 0;
     const wide::Searches& searches = *wide::searches_for(InstructionSet::best);
     wide::LanesWithin within;
+    const auto first_of = [way](unsigned lanes) {
+      return static_cast<unsigned>(way == Way::forwards ? std::countr_zero(lanes) : std::bit_width(lanes) - 1);
+    };
+    const auto last_of = [way](unsigned lanes) {
+      return static_cast<unsigned>(way == Way::forwards ? std::bit_width(lanes) - 1 : std::countr_zero(lanes));
+    };
     const auto push = [&](const tree::WideNode& opened) {
       for (unsigned lanes = within.lanes; lanes != 0;) {
-        const auto lane = static_cast<unsigned>(std::bit_width(lanes)) - 1U;  // the first is visited first
+        const unsigned lane = last_of(lanes);  // what is pushed last is visited first
         lanes &= ~(1U << lane);
         const Vec3f center(opened.center[0][lane], opened.center[1][lane], opened.center[2][lane]);
         stack[size++] = {opened.child[lane], center, within.sides[lane]};
@@ -76,8 +85,9 @@ class ConvexRegion {
       }
       const tree::WideLeaf& leaf = tree_.leaves()[top.child.index()];
       searches.triangles_within(leaf, top.child.count(), top.center, spaces_, top.sides, within);
-      for (unsigned lanes = within.lanes; lanes != 0; lanes &= lanes - 1U) {
-        const auto lane = static_cast<unsigned>(std::countr_zero(lanes));
+      for (unsigned lanes = within.lanes; lanes != 0;) {
+        const unsigned lane = first_of(lanes);
+        lanes &= ~(1U << lane);
         if (!take(leaf.triangle[lane], within.sides[lane])) return false;
       }
     }

@@ -40,7 +40,7 @@ class NearSegment {
                                       bool& finished) const noexcept {
     std::uint32_t best = no_feature;
     double least = within;
-    const auto is_near = [&](float bound) { return static_cast<double>(bound) - margin_ <= least - not_nearer; };
+    const auto is_near = [&](float bound) { return !(static_cast<double>(bound) - margin_ > least - not_nearer); };
     const auto take = [&](std::uint32_t triangle) {
       const double d = distance(triangle);
       if (d < least || (d == least && best == no_feature)) {
@@ -59,7 +59,7 @@ class NearSegment {
   template <class Take, class MayGoOn>
   [[nodiscard]] bool all_within(double distance, const Take& take, const MayGoOn& may_go_on,
                                 std::uint64_t& nodes_left) const noexcept {
-    const auto is_near = [&](float bound) { return static_cast<double>(bound) - margin_ <= distance; };
+    const auto is_near = [&](float bound) { return !(static_cast<double>(bound) - margin_ > distance); };
     return search(is_near, may_go_on, take, nodes_left);
   }
 
