@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <limits>
 #include <random>
 
 #include "odds/mesh/made/icosphere.hpp"
+#include "ode/geom/convex_shape.hpp"
 #include "ode/ode_fixture.hpp"
 
 namespace odds::test {
@@ -356,6 +358,48 @@ TEST_F(ConvexTest, AnExhaustedBudgetIsCountedAndSound) {
   ASSERT_EQ(dGeomOddsMeshSetWorkBudget(mesh, 2), 1);
   expect_sound(collide(mesh, convex), mesh, convex);
   EXPECT_EQ(stats().primitive_cut_off, 1u);
+}
+
+// Climbing along edges finds the corner that looking at all of them does.
+TEST(ConvexShapes, TheFarthestCornerIsFarthestOfAll) {
+  std::mt19937 random(17);
+  std::normal_distribution<double> normal;
+  for (const std::uint32_t frequency : {1u, 3u, 7u}) {
+    const auto ball = make(mesh::made::Icosphere{.frequency = frequency}).value();
+    std::vector<Vec3> points(ball.vertices().begin(), ball.vertices().end());
+    for (Vec3& point : points) point = Vec3(2.0 * point.x() + 5.0, point.y(), 0.3 * point.z());  // long and flat
+    std::vector<unsigned> polygons;
+    for (const mesh::Triangle& t : ball.triangles()) polygons.insert(polygons.end(), {3u, t[0], t[1], t[2]});
+    const auto shape = ode::ConvexShape::make(points, polygons.data(), ball.triangles().size());
+    ASSERT_TRUE(shape.ok()) << shape.error().message();
+    for (int i = 0; i < 2000; ++i) {
+      Vec3 direction(normal(random), normal(random), normal(random));
+      if (i % 5 == 0) direction[i % 3] = 0.0;
+      if (i % 7 == 0) direction = i % 2 == 0 ? Vec3::Unit(i % 3) : Vec3(-Vec3::Unit(i % 3));
+      double farthest = -std::numeric_limits<double>::infinity();
+      for (const Vec3& point : points) farthest = std::max(farthest, direction.dot(point));
+      EXPECT_NEAR(direction.dot(shape.value()->farthest(direction)), farthest, 1e-12);
+    }
+  }
+}
+
+// Of more corners than there is room for, the lowest are kept.
+TEST(ConvexShapes, FeaturesAreTheLowestCorners) {
+  const auto ball = make(mesh::made::Icosphere{.frequency = 7}).value();
+  std::vector<Vec3> points(ball.vertices().begin(), ball.vertices().end());
+  std::vector<unsigned> polygons;
+  for (const mesh::Triangle& t : ball.triangles()) polygons.insert(polygons.end(), {3u, t[0], t[1], t[2]});
+  const auto shape = ode::ConvexShape::make(points, polygons.data(), ball.triangles().size()).value();
+  const Vec3 up = Vec3(0.2, -0.3, 1.0).normalized();
+  ode::Features features;
+  shape->add_features(up, 1.0, features);
+  ASSERT_EQ(features.corner_count, ode::Features::most);
+  std::vector<double> heights;
+  for (const Vec3& point : points) heights.push_back(up.dot(point));
+  std::sort(heights.begin(), heights.end());
+  for (std::size_t i = 0; i < features.corner_count; ++i) {
+    EXPECT_LE(up.dot(features.corners[i]), heights[features.corner_count - 1]);
+  }
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <random>
 #include <vector>
@@ -250,6 +251,77 @@ TEST_F(FineMeshTest, InShortTimeACapsuleThatLiesIsHeld) {
     const Quat about(Eigen::AngleAxisd(3.0 * uniform(random), Vec3::UnitZ()));
     const Quat lies(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vec3::UnitX()));
     expect_floor(put(capsule, about * lies, -radius, 0.01), 0.01);
+  }
+}
+
+// The crossing was found, and lost where nothing nearer was.
+TEST_F(FineMeshTest, ACapsuleAcrossTheSurfaceHasAContactHoweverEarlyItsSearchEnds) {
+  const dGeomID solid = mesh_geom(sphere_shape(1.0, 60), space);
+  const dGeomID capsule = dCreateCapsule(space, 0.02, 1.2);
+  dGeomOddsMeshSetCarryMotion(solid, 0);
+  for (std::uint64_t units = 30; units < 600; units += 7) {
+    ASSERT_EQ(dGeomOddsMeshSetWorkBudget(solid, units), 1);
+    const Vec3 out = any_turn() * Vec3::UnitZ();
+    const Quat turn = Quat::FromTwoVectors(Vec3::UnitZ(), out);
+    const dQuaternion q = {turn.w(), turn.x(), turn.y(), turn.z()};
+    dGeomSetQuaternion(capsule, q);
+    dGeomSetPosition(capsule, out.x(), out.y(), out.z());  // one half is inside
+    const auto contacts = collide(capsule, solid);
+    ASSERT_FALSE(contacts.empty()) << units << " units";
+    EXPECT_GT(normal_of(contacts[0]).dot(out), 0.9);
+    EXPECT_NEAR(contacts[0].depth, 0.62, 0.02);
+  }
+}
+
+TEST_F(FineMeshTest, WhatAShortTimeEndedIsCounted) {
+  const dGeomID solid = mesh_geom(sphere_shape(1.0, 60), space);
+  dGeomOddsMeshSetCarryMotion(solid, 0);
+  const SlowLooks slow(700);
+  ASSERT_EQ(dGeomOddsMeshSetBudget(solid, 2.0), 1);
+  for (const dGeomID body : {dCreateBox(space, 0.1, 0.1, 0.1), dCreateCylinder(space, 0.05, 0.1),
+                             dCreateCapsule(space, 0.05, 0.1), dCreateSphere(space, 0.05)}) {
+    dGeomSetPosition(body, 0.05, 0.02, 0.03);  // all of the surface is nearly as far
+    oddsResetStats();
+    EXPECT_EQ(collide(body, solid).size() > 0, true) << "class " << dGeomGetClass(body);
+    EXPECT_EQ(stats().primitive_cut_off, 1u) << "class " << dGeomGetClass(body);
+  }
+}
+
+// Neighbours in the tree are often of one side: then the way through the plate's breadth seemed the shortest.
+TEST_F(FineMeshTest, APlateOfManyTrianglesIsLeftAtItsSide) {
+  const dGeomID plate = mesh_geom(box_shape(1.0, 1.0, 0.01, 60), space);
+  dGeomOddsMeshSetCarryMotion(plate, 0);
+  const dGeomID box = dCreateBox(space, 0.3, 0.3, 0.3);
+  const dGeomID cylinder = dCreateCylinder(space, 0.15, 0.3);
+  for (const dGeomID body : {box, cylinder}) {
+    for (int round = 0; round < 40; ++round) {
+      const double z = 0.1 * uniform(random);
+      dGeomSetPosition(body, 0.3 * uniform(random), 0.3 * uniform(random), z);
+      const auto contacts = collide(body, plate);
+      ASSERT_FALSE(contacts.empty());
+      EXPECT_GT(std::abs(contacts[0].normal[2]), 0.99) << "class " << dGeomGetClass(body) << ", z " << z;
+      EXPECT_LT(contacts[0].depth, 0.17);
+    }
+  }
+}
+
+// Of a shape with other bounding volumes a wide tree is built beside it.
+TEST_F(FineMeshTest, OtherBoundingVolumesGiveTheSameContacts) {
+  const auto mesh =
+      std::make_shared<const mesh::TriangleMesh>(make(mesh::made::Icosphere{.radius = 1.0, .frequency = 20}).value());
+  const dGeomID wide = mesh_geom(query::Shape::build(mesh).value(), space);
+  const dGeomID other = mesh_geom(query::Shape::build(mesh, {.volume = volume::Kind::obb}).value(), space);
+  for (const dGeomID body :
+       {dCreateBox(space, 0.3, 0.2, 0.1), dCreateCapsule(space, 0.1, 0.2), dCreateSphere(space, 0.2)}) {
+    for (int round = 0; round < 20; ++round) {
+      const Vec3 place = any_turn() * Vec3(0.0, 0.0, 1.02);
+      dGeomSetPosition(body, place.x(), place.y(), place.z());
+      const auto contacts = collide(body, wide);
+      const auto same = collide(body, other);
+      ASSERT_EQ(contacts.size(), same.size());
+      ASSERT_FALSE(contacts.empty());
+      for (std::size_t i = 0; i < same.size(); ++i) EXPECT_EQ(position_of(contacts[i]), position_of(same[i]));
+    }
   }
 }
 
