@@ -118,7 +118,7 @@ void add_of_many(const PreparedMesh& mesh, const Capsule& capsule, const query::
     }
   }
   if (nearest == query::no_feature) return;
-  if (places.count == CapsulePlaces::most) --places.count;
+  if (places.count == CapsulePlaces::most) --places.count;  // another of many
   places.all[places.count++] = place_of(mesh, capsule, nearest);
 }
 

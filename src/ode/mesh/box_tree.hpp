@@ -35,11 +35,6 @@ class BoxTree {
   [[nodiscard]] std::uint32_t greatest(const Value& value, const Bound& bound,
                                        std::uint64_t& nodes_left) const noexcept;
 
-  /// Calls `take(item)` for the items of all leaves whose boxes are `near(center, half_extents)`, until it says false.
-  /// Each visited node takes one from `nodes_left`. False if that or `take` ended it before all were seen.
-  template <class Near, class Take>
-  [[nodiscard]] bool all_near(const Near& near, const Take& take, std::uint64_t& nodes_left) const noexcept;
-
  private:
   struct Node {
     Vec3 center;
@@ -89,26 +84,6 @@ std::uint32_t BoxTree::greatest(const Value& value, const Bound& bound, std::uin
     if (near.first > best) stack[size++] = near;
   }
   return best_item;
-}
-
-template <class Near, class Take>
-bool BoxTree::all_near(const Near& near, const Take& take, std::uint64_t& nodes_left) const noexcept {
-  std::array<std::uint32_t, stack_size> stack;
-  std::size_t size = 0;
-  if (!nodes_.empty()) stack[size++] = 0;
-  while (size > 0) {
-    if (nodes_left == 0) return false;
-    --nodes_left;
-    const Node& node = nodes_[stack[--size]];
-    if (!near(node.center, node.half_extents)) continue;
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      if (!take(order_[i])) return false;
-    }
-    if (node.count > 0) continue;
-    stack[size++] = node.first + 1;
-    stack[size++] = node.first;
-  }
-  return true;
 }
 
 }  // namespace odds::ode
