@@ -55,15 +55,14 @@ class ConvexRegion {
     std::size_t size = 0;
     const wide::Searches& searches = *wide::searches_for(InstructionSet::best);
     wide::LanesWithin within;
-    const auto first_of = [way](unsigned lanes) {
-      return static_cast<unsigned>(way == Way::forwards ? std::countr_zero(lanes) : std::bit_width(lanes) - 1);
+    const auto end_of = [](unsigned lanes, bool lowest) {
+      return lowest ? static_cast<unsigned>(std::countr_zero(lanes))
+                    : static_cast<unsigned>(std::bit_width(lanes)) - 1U;
     };
-    const auto last_of = [way](unsigned lanes) {
-      return static_cast<unsigned>(way == Way::forwards ? std::bit_width(lanes) - 1 : std::countr_zero(lanes));
-    };
+    const bool forwards = way == Way::forwards;
     const auto push = [&](const tree::WideNode& opened) {
       for (unsigned lanes = within.lanes; lanes != 0;) {
-        const unsigned lane = last_of(lanes);  // what is pushed last is visited first
+        const unsigned lane = end_of(lanes, !forwards);  // what is pushed last is visited first
         lanes &= ~(1U << lane);
         const Vec3f center(opened.center[0][lane], opened.center[1][lane], opened.center[2][lane]);
         stack[size++] = {opened.child[lane], center, within.sides[lane]};
@@ -86,7 +85,7 @@ class ConvexRegion {
       const tree::WideLeaf& leaf = tree_.leaves()[top.child.index()];
       searches.triangles_within(leaf, top.child.count(), top.center, spaces_, top.sides, within);
       for (unsigned lanes = within.lanes; lanes != 0;) {
-        const unsigned lane = first_of(lanes);
+        const unsigned lane = end_of(lanes, forwards);
         lanes &= ~(1U << lane);
         if (!take(leaf.triangle[lane], within.sides[lane])) return false;
       }
