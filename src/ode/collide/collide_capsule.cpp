@@ -6,13 +6,12 @@
 #include <optional>
 #include <span>
 
-#include "odds/query/ray.hpp"
 #include "ode/collide/capsule_places.hpp"
 #include "ode/collide/contact_writer.hpp"
 #include "ode/collide/manifold.hpp"
+#include "ode/collide/nearest_in_time.hpp"
 #include "ode/geom/colliders.hpp"
 #include "ode/geom/geom_data.hpp"
-#include "ode/mesh/nearest_surface.hpp"
 #include "ode/mesh/triangle_corners.hpp"
 #include "ode/statistics.hpp"
 
@@ -109,7 +108,8 @@ std::optional<NearestSurface> way_out_sideways(const PreparedMesh& mesh, const C
     if (!(at[i] - at[i - 1] > 1e-6)) continue;
     const Vec3 middle = capsule.ends[0] + 0.5 * (at[i - 1] + at[i]) * axis;
     if (!in_bounds(mesh, middle)) continue;
-    const auto nearest = nearest_surface(mesh, middle, least, limit.units);
+    bool finished = false;  // a longer way than the shortest leads out, too
+    const auto nearest = nearest_in_time(mesh, middle, least, 1.0, limit, finished);
     if (!nearest || !nearest->inside || nearest->outward == Vec3::Zero()) continue;
     const double depth = depth_behind(capsule, nearest->point, nearest->outward);
     if (!(depth < least)) continue;
@@ -181,7 +181,8 @@ void add_minima(const PreparedMesh& mesh, const Capsule& capsule, const CapsuleP
 void add_end_balls(const PreparedMesh& mesh, const Capsule& capsule, Limit& limit, CapsuleContacts& contacts) noexcept {
   for (const Vec3& end : capsule.ends) {
     if (limit.time_is_up()) return;
-    const auto nearest = nearest_surface(mesh, end, capsule.radius, limit.units);
+    bool finished = false;  // what is not the nearest place of an end is a place all the same
+    const auto nearest = nearest_in_time(mesh, end, capsule.radius, 1.0, limit, finished);
     if (!nearest || nearest->inside || nearest->distance <= same_place * capsule.radius) continue;
     if (contacts.near(nearest->point, separate_end * capsule.radius)) continue;
     contacts.add({nearest->point, (end - nearest->point) / nearest->distance, capsule.radius - nearest->distance,
@@ -189,42 +190,30 @@ void add_end_balls(const PreparedMesh& mesh, const Capsule& capsule, Limit& limi
   }
 }
 
-struct SurfaceSeen {
-  Vec3 point;
-  Vec3 outward;
-  std::uint32_t triangle;
-};
-
-// The surface at the first place, as the axis has it before it. The nearest point of the surface to the axis is the
-// nearest to that point of the axis, too, and its pseudo-normal tells the side; of one that may not be the nearest,
-// what a ray to it meets first does.
-SurfaceSeen seen_from_axis(const PreparedMesh& mesh, const CapsulePlaces& places) noexcept {
-  constexpr std::uint64_t most_nodes = 256;
+// The surface at the first place, as it is seen from the axis. The nearest point of the surface to the axis is the
+// nearest to that point of the axis, too, and its pseudo-normal tells the side.
+NearestSurface seen_from_axis(const PreparedMesh& mesh, const CapsulePlaces& places) noexcept {
   const CapsulePlace& place = places.all[0];
-  if (places.nearest_is_sure) {
-    return {place.on_surface, outward_at(mesh, place.on_surface, place.triangle, place.on_axis), place.triangle};
-  }
-  const Vec3 direction = (place.on_surface - place.on_axis) / place.distance;
-  const auto hit = query::cast_ray(*mesh.shape, place.on_axis, direction, place.distance, most_nodes);
-  if (!hit) return {place.on_surface, unit_normal(mesh.corners(place.triangle)), place.triangle};
-  return {place.on_axis + hit->distance * direction, unit_normal(mesh.corners(hit->triangle)), hit->triangle};
+  if (!places.nearest_is_sure) return surface_towards(mesh, place.on_axis, place.on_surface, place.triangle);
+  const Vec3 outward = outward_at(mesh, place.on_surface, place.triangle, place.on_axis);
+  return {place.on_surface, place.distance, place.triangle, outward,
+          outward.dot(place.on_axis - place.on_surface) < 0.0};
 }
 
 // No triangle crosses the axis: outside the mesh, or all of it inside.
 void add_beside(const PreparedMesh& mesh, const Capsule& capsule, CapsulePlaces& places, Limit& limit,
                 CapsuleContacts& contacts) noexcept {
   if (mesh.closed && places.count > 0) {
-    const SurfaceSeen seen = seen_from_axis(mesh, places);
-    if (seen.outward.dot(places.all[0].on_axis - seen.point) < 0.0) {
+    const NearestSurface seen = seen_from_axis(mesh, places);
+    if (seen.inside) {
       add_ends_behind(capsule, seen.point, seen.outward, seen.triangle, contacts);
       return;
     }
   } else if (mesh.closed && in_bounds(mesh, capsule.middle())) {
-    const std::uint64_t nodes = limit.nodes_to_nearest(time_for_nearest);
-    std::uint64_t left = nodes;
-    const auto nearest = nearest_surface(mesh, capsule.middle(), std::numeric_limits<double>::infinity(), left);
-    limit.spend(nodes - left);
-    places.complete = places.complete && left > 0;
+    constexpr double anywhere = std::numeric_limits<double>::infinity();
+    bool finished = false;
+    const auto nearest = nearest_in_time(mesh, capsule.middle(), anywhere, time_for_nearest, limit, finished);
+    places.complete = places.complete && finished;
     if (!nearest) return;
     if (nearest->inside) {
       add_ends_behind(capsule, nearest->point, nearest->outward, nearest->triangle, contacts);

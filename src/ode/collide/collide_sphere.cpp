@@ -5,8 +5,8 @@
 
 #include "ode/collide/contact_writer.hpp"
 #include "ode/collide/limit.hpp"
+#include "ode/collide/nearest_in_time.hpp"
 #include "ode/geom/colliders.hpp"
-#include "ode/mesh/nearest_surface.hpp"
 #include "ode/mesh/triangle_corners.hpp"
 #include "ode/statistics.hpp"
 #include "query/shape/near_segment.hpp"
@@ -90,11 +90,8 @@ int collide_sphere(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, in
   const Vec3 center = pose->inverse() * world_center;
   const bool may_be_inside = mesh.closed && in_bounds(mesh, center);
   const double reach = may_be_inside ? std::numeric_limits<double>::infinity() : radius;
-  const std::uint64_t nodes = limit.nodes_to_nearest(time_for_nearest);
-  std::uint64_t left = nodes;
-  const std::optional<NearestSurface> nearest = nearest_surface(mesh, center, reach, left);
-  limit.spend(nodes - left);
-  bool complete = left > 0;
+  bool complete = false;
+  const auto nearest = nearest_in_time(mesh, center, reach, time_for_nearest, limit, complete);
 
   ContactWriter writer(o1, o2, room_for(flags, data.settings.max_contacts), contacts, skip);
   if (nearest && (nearest->inside || nearest->distance <= radius)) {

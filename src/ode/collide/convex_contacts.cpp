@@ -9,10 +9,10 @@
 #include "ode/collide/gather_pieces.hpp"
 #include "ode/collide/manifold.hpp"
 #include "ode/collide/manifold_points.hpp"
+#include "ode/collide/nearest_in_time.hpp"
 #include "ode/collide/points_over_features.hpp"
 #include "ode/collide/surface_above.hpp"
 #include "ode/geom/geom_data.hpp"
-#include "ode/mesh/nearest_surface.hpp"
 #include "ode/mesh/triangle_corners.hpp"
 #include "ode/statistics.hpp"
 
@@ -253,10 +253,8 @@ void leave_sideways(const PreparedMesh& mesh, const math::Pose& body_in_mesh, st
   }
   middle = body_in_mesh * Vec3(middle / area);
   if (!in_bounds(mesh, middle)) return;
-  const std::uint64_t given = limit.nodes_to_nearest(time_for_points);
-  std::uint64_t left = given;
-  const auto nearest = nearest_surface(mesh, middle, deepest, left);
-  limit.spend(given - left);
+  bool finished = false;  // a longer way than the shortest leads out, too
+  const auto nearest = nearest_in_time(mesh, middle, deepest, time_for_points, limit, finished);
   if (!nearest || !nearest->inside || nearest->outward == Vec3::Zero()) return;
   const Vec3 out = body_in_mesh.rotation.transpose() * nearest->outward;
   const double depth = out.dot(body_in_mesh.inverse() * nearest->point) + body.reach(-out);
@@ -269,15 +267,12 @@ void leave_sideways(const PreparedMesh& mesh, const math::Pose& body_in_mesh, st
 // two opposite ways the shorter at the surface nearest to its centre.
 void leave_by_the_near_side(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const ConvexBody& body,
                             Limit& limit, std::span<Patch> patches) noexcept {
-  constexpr std::uint64_t most_units = 96;  // some ten microseconds: the search does not look at the clock
   const auto is_long = [&](const Patch& p) { return p.exit.depth > body.box_half_extents().minCoeff(); };
   if (!mesh.closed || std::none_of(patches.begin(), patches.end(), is_long) || limit.time_is_up(time_for_exits)) return;
   const double size = body.box_half_extents().norm();
-  const std::uint64_t given = std::min(limit.nodes_to_nearest(time_for_exits), most_units);
-  std::uint64_t left = given;
-  const auto nearest = nearest_surface(mesh, body_in_mesh * body.center(), size, left);
-  limit.units -= given - left;
-  if (!nearest || left == 0 || nearest->outward == Vec3::Zero()) return;
+  bool finished = false;
+  const auto nearest = nearest_in_time(mesh, body_in_mesh * body.center(), size, time_for_exits, limit, finished);
+  if (!nearest || !finished || nearest->outward == Vec3::Zero()) return;
   const Vec3 out = body_in_mesh.rotation.transpose() * nearest->outward;
   const Vec3 place = body_in_mesh.inverse() * nearest->point;
   const double depth = out.dot(place) + body.reach(-out);
@@ -298,12 +293,9 @@ bool push_out(const PreparedMesh& mesh, const math::Pose& mesh_in_world, const m
   if (!may_be_inside && !late) return true;
   const double size = 2.0 * body.box_half_extents().norm();
   const double reach = may_be_inside ? std::numeric_limits<double>::infinity() : size;
-  const std::uint64_t given = limit.nodes_to_nearest(time_for_points);
-  std::uint64_t left = given;
-  const auto nearest = nearest_surface(mesh, center, reach, left);
-  limit.spend(given - left);
-  const bool is_sure = left > 0;
-  if (!nearest) return is_sure;
+  bool finished = false;
+  const auto nearest = nearest_in_time(mesh, center, reach, time_for_points, limit, finished);
+  if (!nearest) return finished;
   const Vec3 outward = body_in_mesh.rotation.transpose() * nearest->outward;
   const Vec3 into_mesh = -(mesh_in_world.rotation * nearest->outward);
   if (nearest->inside) {
@@ -314,11 +306,11 @@ bool push_out(const PreparedMesh& mesh, const math::Pose& mesh_in_world, const m
     const Vec3 lowest = body.farthest(-outward);
     const double most = body.way_through(lowest, outward);
     const auto above = surface_above(mesh, body_in_mesh, body, lowest, outward, most, limit);
-    if (!above) return is_sure;
+    if (!above) return finished;
     const Vec3 place = body_in_mesh * Vec3(lowest + above->way * outward);
     writer.add(mesh_in_world * place, into_mesh, above->way, above->triangle, query::no_feature);
   }
-  return is_sure;
+  return finished;
 }
 
 // What is kept of bodies that rest; false if the contacts must be made.
@@ -329,10 +321,8 @@ bool write_resting(const PreparedMesh& mesh, const math::Pose& mesh_in_world, co
   const auto meets = [&](std::uint32_t triangle) noexcept {
     if (limit.units == 0 || limit.time_is_up()) return false;
     --limit.units;
-    Corners corners = mesh.corners(triangle);
-    for (Vec3& corner : corners) corner = mesh_in_body * corner;
     Piece piece;
-    return cut_by_sides(corners, body, ~std::uint64_t{0}, piece);
+    return cut_triangle(mesh, triangle, mesh_in_body, body, all_sides, piece);
   };
   std::array<query::Contact, query::most_contacts> held;
   const std::size_t count = resting.write(question, body_in_mesh, motion, size, meets, held);

@@ -2,6 +2,7 @@
 #include "ode/collide/convex_patch.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -141,11 +142,14 @@ double depth_below_middle(const Vec3& mean, std::span<const Piece* const> patch,
 
 }  // namespace
 
-bool cut_by_sides(const std::array<Vec3, 3>& triangle, const ConvexBody& body, std::uint64_t sides,
-                  Piece& piece) noexcept {
+bool cut_triangle(const PreparedMesh& mesh, std::uint32_t triangle, const math::Pose& mesh_in_body,
+                  const ConvexBody& body, std::uint64_t sides, Piece& piece) noexcept {
+  Corners corners = mesh.corners(triangle);
+  for (Vec3& corner : corners) corner = mesh_in_body * corner;
+  piece.triangle = triangle;
   piece.count = 3;
   for (std::size_t i = 0; i < 3; ++i) {
-    piece.corners[i] = triangle[i];
+    piece.corners[i] = corners[i];
     piece.side[i] = Piece::own_edge;
   }
   if (has_many_sides(body)) {
@@ -158,7 +162,7 @@ bool cut_by_sides(const std::array<Vec3, 3>& triangle, const ConvexBody& body, s
     }
   }
   if (piece.count < 3) return false;
-  piece.normal = unit_normal(triangle);
+  piece.normal = unit_normal(corners);
   Vec3 twice_area = Vec3::Zero();
   for (std::size_t i = 1; i + 1 < piece.count; ++i) {
     twice_area += (piece.corners[i] - piece.corners[0]).cross(piece.corners[i + 1] - piece.corners[0]);

@@ -2,13 +2,14 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <span>
 
+#include "odds/math/pose.hpp"
 #include "ode/collide/limit.hpp"
 #include "ode/geom/convex_body.hpp"
+#include "ode/mesh/prepared_mesh.hpp"
 
 namespace odds::ode {
 
@@ -33,11 +34,14 @@ struct Ball {
   double radius = 0.0;
 };
 
-/// Cuts a triangle (body frame) by sides of the body: of the first ones those with a bit in `sides`, where no more than
-/// these may cut it; of a body with many sides all. False if nothing with an area is left, or what is left does not
-/// meet the body.
-[[nodiscard]] bool cut_by_sides(const std::array<Vec3, 3>& triangle, const ConvexBody& body, std::uint64_t sides,
-                                Piece& piece) noexcept;
+/// Any of the first sides of a body may cut.
+constexpr std::uint64_t all_sides = ~std::uint64_t{0};
+
+/// Cuts a triangle by sides of the body: of the first ones those with a bit in `sides`, where no more than these may
+/// cut it; of a body with many sides all. False if nothing with an area is left, or what is left does not meet the
+/// body.
+[[nodiscard]] bool cut_triangle(const PreparedMesh& mesh, std::uint32_t triangle, const math::Pose& mesh_in_body,
+                                const ConvexBody& body, std::uint64_t sides, Piece& piece) noexcept;
 
 /// Where a body goes to leave a patch of surface.
 struct Exit {

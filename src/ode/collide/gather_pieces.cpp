@@ -7,7 +7,6 @@
 #include "ode/collide/convex_patch.hpp"
 #include "ode/collide/sieve.hpp"
 #include "ode/collide/surface_above.hpp"
-#include "ode/mesh/triangle_corners.hpp"
 
 namespace odds::ode {
 namespace {
@@ -68,7 +67,9 @@ class Gathering {
     std::size_t about = 0;
     const auto node = [&](tree::ChildRef child, Sieve::Sides sides) {
       if (!child.is_leaf() && sides != 0) return Visit::open;
-      const std::size_t half = child.is_leaf() ? child.count() / 2 : child.height() == 1 ? below_leaves : Pieces::most;
+      const std::size_t half = child.is_leaf()       ? (child.count() + 1) / 2
+                               : child.height() == 1 ? below_leaves
+                                                     : Pieces::most;
       about += sides == 0 && child.is_leaf() ? child.count() : half;
       return about > Pieces::most ? Visit::end : Visit::pass_over;
     };
@@ -99,16 +100,13 @@ class Gathering {
     const auto take = [&](std::uint32_t triangle, Sieve::Sides sides) {
       if (has(triangle)) return true;
       if (is_late(2 * nodes_a_cut_)) return false;
-      Corners corners = mesh_.corners(triangle);
-      for (Vec3& corner : corners) corner = mesh_in_body_ * corner;
       Piece& piece = pieces_.all[pieces_.count];
-      if (!cut_by_sides(corners, body_, sieve_.of_body(sides), piece)) {
+      if (!cut_triangle(mesh_, triangle, mesh_in_body_, body_, sieve_.of_body(sides), piece)) {
         // Where nothing was found yet, what is cut in vain must not use up all work.
         left -= std::min(left, pieces_.count == 0 ? 1 : nodes_a_cut_);
         return true;
       }
       left -= std::min(left, nodes_a_cut_);
-      piece.triangle = triangle;
       if (octant != any_octant && octant_of(piece, body_.box_center()) != octant) {
         if (pieces_.count == 0 && !has_spare_) spare_ = piece;
         has_spare_ = has_spare_ || pieces_.count == 0;
@@ -184,12 +182,8 @@ bool add_piece_above(const PreparedMesh& mesh, const math::Pose& body_in_mesh, c
   const auto end = pieces.all.begin() + static_cast<std::ptrdiff_t>(pieces.count);
   const auto is_it = [&](const Piece& piece) { return piece.triangle == above->triangle; };
   if (std::any_of(pieces.all.begin(), end, is_it)) return false;
-  Corners corners = mesh.corners(above->triangle);
-  const math::Pose mesh_in_body = body_in_mesh.inverse();
-  for (Vec3& corner : corners) corner = mesh_in_body * corner;
   Piece& piece = pieces.all[pieces.count];
-  piece.triangle = above->triangle;
-  if (!cut_by_sides(corners, body, ~Sieve::Sides{0}, piece)) return false;
+  if (!cut_triangle(mesh, above->triangle, body_in_mesh.inverse(), body, all_sides, piece)) return false;
   ++pieces.count;
   return true;
 }

@@ -51,15 +51,14 @@ class Limit {
   [[nodiscard]] std::uint64_t nodes_left() const noexcept { return in_units_ ? units : most_units; }
 
   /// How many nodes a search may visit within that share that does not take them from `units` itself, nor look at the
-  /// clock, and visits so many in a microsecond: what is left of the units, and of that time, but always some.
-  [[nodiscard]] std::uint64_t nodes_in_time(double share, double per_us = with_leaves_per_us) const noexcept {
-    constexpr double least = 16.0;
+  /// clock: what is left of the units, and of that time, but always some.
+  [[nodiscard]] std::uint64_t nodes_in_time(double share) const noexcept {
+    constexpr double least = 20.0;  // from the root to a triangle and a few beside it
+    constexpr double per_us = 6.0;  // with the triangles of leaves
     if (!timed_) return units;
     const auto in_time = static_cast<double>(end_ns(share) - clock_()) * 1e-3 * per_us;
     return std::min(units, static_cast<std::uint64_t>(std::clamp(in_time, least, 1e15)));
   }
-  /// The same for searches of the nearest surface.
-  [[nodiscard]] std::uint64_t nodes_to_nearest(double share) const noexcept { return nodes_in_time(share, 6.0); }
 
   /// The collision's end: counts it if it was cut off, tells the frame. Gives `contacts` back.
   [[nodiscard]] int finish(bool complete, int contacts) const noexcept {
@@ -90,7 +89,6 @@ class Limit {
  private:
   // Searches in a tree do not read the clock at each node; a node takes 10 to 50 ns where the cache holds it.
   static constexpr double nodes_per_us = 30.0;
-  static constexpr double with_leaves_per_us = 12.0;
   // What choosing and writing contacts takes after the last look; of a short time no more than a share.
   static constexpr double ending_ns = 800.0;
   static constexpr double longest_ending = 0.2;

@@ -26,14 +26,12 @@ double way_out(const Corners& corners, const Vec3& from, const Vec3& along, doub
 
 std::optional<Above> surface_above(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const ConvexBody& body,
                                    const Vec3& point, const Vec3& up, double most, Limit& limit) noexcept {
-  constexpr std::uint64_t most_units = 128;  // some ten microseconds: the search does not look at the clock
-  constexpr std::uint64_t least_units = 32;  // from the root to a triangle and a few beside it
   const Vec3 from = body_in_mesh * point;
   const Vec3 along = body_in_mesh.rotation * up;
   const double tolerance = 1e-9 * body.box_half_extents().norm();
-  const std::uint64_t given =
-      std::min(limit.units, std::clamp(limit.nodes_in_time(time_for_exits), least_units, most_units));
-  std::uint64_t left = given;
+  constexpr std::uint64_t least_nodes = 32;  // a body without any piece has nothing else
+  const std::uint64_t nodes = std::min(limit.units, std::max(least_nodes, limit.nodes_in_time(time_for_exits)));
+  std::uint64_t left = nodes;
   std::optional<Above> nearest;
   const auto take = [&](std::uint32_t triangle) {
     const double way = way_out(mesh.corners(triangle), from, along, tolerance);
@@ -43,7 +41,7 @@ std::optional<Above> surface_above(const PreparedMesh& mesh, const math::Pose& b
   const query::NearSegment line(*mesh.wide_tree, from, from + most * along);
   static_cast<void>(line.all_within(
       tolerance, take, [] { return true; }, left));
-  limit.units -= std::min(limit.units, given - left);
+  limit.spend(nodes - left);
   return nearest;
 }
 

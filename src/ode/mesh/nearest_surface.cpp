@@ -52,19 +52,6 @@ Vec3 pseudo_normal(const PreparedMesh& mesh, const Vec3& point, std::uint32_t at
   return length > 0.0 ? Vec3(sum / length) : own_normal;
 }
 
-// Where a search was cut short there may be nearer triangles, and of one that is not the nearest the side tells
-// nothing: a ball in a cavity would be pushed out through its walls. What is met first on the way to it tells the side.
-std::optional<NearestSurface> first_towards(const PreparedMesh& mesh, const Vec3& point,
-                                            const NearestSurface& nearest) noexcept {
-  constexpr std::uint64_t most_nodes = 256;
-  const Vec3 direction = (nearest.point - point) / nearest.distance;
-  const auto hit = query::cast_ray(*mesh.shape, point, direction, nearest.distance * (1.0 + 1e-9), most_nodes);
-  if (!hit) return nearest.inside ? std::nullopt : std::optional(nearest);
-  const Vec3 normal = unit_normal(mesh.corners(hit->triangle));
-  return NearestSurface{point + hit->distance * direction, hit->distance, hit->triangle, normal,
-                        mesh.closed && normal.dot(direction) > 0.0};
-}
-
 }  // namespace
 
 Vec3 outward_at(const PreparedMesh& mesh, const Vec3& point, std::uint32_t triangle, const Vec3& seen_from) noexcept {
@@ -87,7 +74,25 @@ std::optional<NearestSurface> nearest_surface(const PreparedMesh& mesh, const Ve
   nearest.distance = (nearest.point - point).norm();
   nearest.outward = outward_at(mesh, nearest.point, triangle, point);
   nearest.inside = mesh.closed && nearest.outward.dot(point - nearest.point) < 0.0;
-  return finished || nearest.distance == 0.0 ? nearest : first_towards(mesh, point, nearest);
+  if (finished || nearest.distance == 0.0) return nearest;
+  // There may be nearer triangles, and of one that is not the nearest the side tells nothing: a ball in a cavity would
+  // be pushed out through its walls.
+  return surface_towards(mesh, point, nearest.point, triangle);
+}
+
+NearestSurface surface_towards(const PreparedMesh& mesh, const Vec3& point, const Vec3& place,
+                               std::uint32_t triangle) noexcept {
+  constexpr std::uint64_t most_nodes = 256;
+  const double distance = (place - point).norm();
+  const Vec3 direction = (place - point) / distance;
+  const auto hit = query::cast_ray(*mesh.shape, point, direction, distance * (1.0 + 1e-9), most_nodes);
+  NearestSurface met = {place, distance, triangle, unit_normal(mesh.corners(triangle)), false};
+  if (hit) {
+    const Vec3 normal = unit_normal(mesh.corners(hit->triangle));
+    met = {point + hit->distance * direction, hit->distance, hit->triangle, normal, false};
+  }
+  met.inside = mesh.closed && met.outward.dot(direction) > 0.0;
+  return met;
 }
 
 bool in_bounds(const PreparedMesh& mesh, const Vec3& point) noexcept {

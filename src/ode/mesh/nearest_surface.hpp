@@ -22,6 +22,10 @@ struct NearestSurface {
 [[nodiscard]] std::optional<NearestSurface> nearest_surface(const PreparedMesh& mesh, const Vec3& point, double reach,
                                                             std::uint64_t& units) noexcept;
 
+/// What a ray from `point` to a place of `triangle` meets first; its plane tells the side.
+[[nodiscard]] NearestSurface surface_towards(const PreparedMesh& mesh, const Vec3& point, const Vec3& place,
+                                             std::uint32_t triangle) noexcept;
+
 /// The pseudo-normal, as in NearestSurface, at a point of `triangle` that is nearest to `seen_from`.
 [[nodiscard]] Vec3 outward_at(const PreparedMesh& mesh, const Vec3& point, std::uint32_t triangle,
                               const Vec3& seen_from) noexcept;

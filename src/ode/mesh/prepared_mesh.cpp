@@ -5,6 +5,7 @@
 #include <array>
 #include <numeric>
 #include <span>
+#include <stdexcept>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -111,6 +112,8 @@ std::shared_ptr<const PreparedMesh> PreparedMesh::make(std::shared_ptr<const que
   prepared->wide_tree = std::get_if<tree::WideTree>(&prepared->shape->data().tree);
   if (prepared->wide_tree == nullptr) {
     prepared->own_tree = tree::WideTree::build(mesh, {.leaf_triangles = tree::wide_lanes});
+    if (prepared->own_tree->node_count() == 0)
+      throw std::length_error("mesh data: more triangles than a tree can hold");
     prepared->wide_tree = &*prepared->own_tree;
   }
   prepared->vertices = used_vertices(mesh);

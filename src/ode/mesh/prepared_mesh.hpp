@@ -40,7 +40,7 @@ struct PreparedMesh {
   PreparedMesh(const PreparedMesh&) = delete;  // it points into itself
   PreparedMesh& operator=(const PreparedMesh&) = delete;
 
-  /// Precondition: `shape` is not null. May throw std::bad_alloc.
+  /// Precondition: `shape` is not null. May throw std::bad_alloc, std::length_error.
   static std::shared_ptr<const PreparedMesh> make(std::shared_ptr<const query::Shape> shape);
 
   [[nodiscard]] const mesh::TriangleMesh& mesh() const noexcept { return shape->mesh(); }

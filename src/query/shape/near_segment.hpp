@@ -53,9 +53,8 @@ class NearSegment {
     return best;
   }
 
-  /// Calls `take(triangle)` for all that may be within `distance`, until it says false; the nearest of each node's
-  /// children first; nodes as above. False if that,
-  /// `may_go_on` or `nodes_left` ended it.
+  /// Calls `take(triangle)` for all that may be within `distance`, of each node's children those in the nearest first,
+  /// until it says false. False if that, `may_go_on` or `nodes_left` (as above) ended it.
   template <class Take, class MayGoOn>
   [[nodiscard]] bool all_within(double distance, const Take& take, const MayGoOn& may_go_on,
                                 std::uint64_t& nodes_left) const noexcept {
