@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "haptics/device_around.hpp"
 #include "haptics/on_floor.hpp"
 
 namespace odds::scene {
@@ -53,26 +54,16 @@ TEST(PassivityControl, QuietsAHandThatOnlyTurns) {
 }
 
 /// A hand that also walks, whatever pulls at it.
-class Walking final : public haptics::Device {
+class Walking final : public testing::DeviceAround {
  public:
-  Walking(std::unique_ptr<haptics::Device> hand, bool actuates_force) : hand_(std::move(hand)), spec_(hand_->spec()) {
-    spec_.actuates_force = actuates_force;
+  Walking(std::unique_ptr<haptics::Device> hand, bool actuates_force) : DeviceAround(std::move(hand)) {
+    change_spec().actuates_force = actuates_force;
   }
-  [[nodiscard]] std::optional<Error> open() override { return hand_->open(); }
-  void close() noexcept override { hand_->close(); }
-  [[nodiscard]] const haptics::DeviceSpec& spec() const noexcept override { return spec_; }
   [[nodiscard]] bool read(std::int64_t now_ns, haptics::DeviceState& state) noexcept override {
-    if (!hand_->read(now_ns, state)) return false;
+    if (!DeviceAround::read(now_ns, state)) return false;
     state.position_m = Vec3(1e-9 * static_cast<double>(now_ns), 0, 0);
     return true;
   }
-  bool write(const haptics::DeviceCommand& command) noexcept override { return hand_->write(command); }
-  bool enable_forces(bool on) noexcept override { return hand_->enable_forces(on); }
-  [[nodiscard]] std::string_view last_error() const noexcept override { return hand_->last_error(); }
-
- private:
-  std::unique_ptr<haptics::Device> hand_;
-  haptics::DeviceSpec spec_;
 };
 
 TEST(PassivityControl, CountsOnNoForceThatTheHandIsNotGiven) {

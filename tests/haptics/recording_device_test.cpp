@@ -9,6 +9,7 @@
 #include <cstring>
 #include <functional>
 
+#include "haptics/device_around.hpp"
 #include "odds/scene/simulation.hpp"
 #include "support/ball_on_terrain.hpp"
 #include "support/temporary_folder.hpp"
@@ -34,55 +35,39 @@ turn_rad = 0.4
 )";
 
 /// Measures in its own time, and says so: between two samples nothing is new, and some reads fail.
-class Hardware final : public haptics::Device {
+class Hardware final : public testing::DeviceAround {
  public:
   Hardware(std::unique_ptr<haptics::Device> hand, std::int64_t period_ns)
-      : hand_(std::move(hand)), period_(period_ns) {}
-  [[nodiscard]] std::optional<Error> open() override { return hand_->open(); }
-  void close() noexcept override { hand_->close(); }
-  [[nodiscard]] const haptics::DeviceSpec& spec() const noexcept override { return hand_->spec(); }
+      : DeviceAround(std::move(hand)), period_(period_ns) {}
   [[nodiscard]] bool read(std::int64_t now_ns, haptics::DeviceState& state) noexcept override {
     if (now_ns > 300 * ms && now_ns < 304 * ms) return false;
     const std::int64_t measured_ns = now_ns / period_ * period_;
-    if (!hand_->read(measured_ns, state)) return false;
+    if (!DeviceAround::read(measured_ns, state)) return false;
     state.fresh = measured_ns > last_ns_ || now_ns == 0;
     last_ns_ = measured_ns;
     return true;
   }
-  bool write(const haptics::DeviceCommand&) noexcept override { return true; }
-  bool enable_forces(bool) noexcept override { return true; }
-  [[nodiscard]] std::string_view last_error() const noexcept override { return "busy"; }
 
  private:
-  std::unique_ptr<haptics::Device> hand_;
   std::int64_t period_;
   std::int64_t last_ns_ = 0;
 };
 
 /// Senses only how it is turned; of its place it says something at the start, and then something else in each read.
-class Compass final : public haptics::Device {
+class Compass final : public testing::DeviceAround {
  public:
-  Compass(std::unique_ptr<haptics::Device> hand, double drift_m)
-      : hand_(std::move(hand)), spec_(hand_->spec()), drift_m_(drift_m) {
-    spec_.senses_position = false;
+  Compass(std::unique_ptr<haptics::Device> hand, double drift_m) : DeviceAround(std::move(hand)), drift_m_(drift_m) {
+    change_spec().senses_position = false;
   }
-  [[nodiscard]] std::optional<Error> open() override { return hand_->open(); }
-  void close() noexcept override { hand_->close(); }
-  [[nodiscard]] const haptics::DeviceSpec& spec() const noexcept override { return spec_; }
   [[nodiscard]] bool read(std::int64_t now_ns, haptics::DeviceState& state) noexcept override {
-    if (!hand_->read(now_ns, state)) return false;
+    if (!DeviceAround::read(now_ns, state)) return false;
     if (reads_++ == 0) return true;
     state.position_m = Vec3::Constant(drift_m_ * reads_);
     state.velocity_m_per_s = state.position_m;
     return true;
   }
-  bool write(const haptics::DeviceCommand&) noexcept override { return true; }
-  bool enable_forces(bool) noexcept override { return true; }
-  [[nodiscard]] std::string_view last_error() const noexcept override { return {}; }
 
  private:
-  std::unique_ptr<haptics::Device> hand_;
-  haptics::DeviceSpec spec_;
   double drift_m_;
   int reads_ = 0;
 };

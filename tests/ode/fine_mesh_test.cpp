@@ -7,75 +7,13 @@
 #include <random>
 #include <vector>
 
-#include "ode/budget_clock.hpp"
+#include "ode/convex_ball.hpp"
 #include "ode/ode_fixture.hpp"
 
 namespace odds::test {
 namespace {
 
 constexpr double radius = 0.3;
-
-// A ball of planar faces, as the arrays of dCreateConvex.
-struct Ball {
-  explicit Ball(unsigned around_axis = 16, unsigned down_axis = 8) : around(around_axis), down(down_axis) {
-    add(Vec3(0, 0, radius));
-    add(Vec3(0, 0, -radius));
-    for (unsigned i = 1; i < down; ++i) {
-      for (unsigned k = 0; k < around; ++k) {
-        const double a = std::numbers::pi * i / down;
-        const double b = 2.0 * std::numbers::pi * k / around;
-        add(radius * Vec3(std::sin(a) * std::cos(b), std::sin(a) * std::sin(b), std::cos(a)));
-      }
-    }
-    for (unsigned k = 0; k < around; ++k) {
-      face({0, at(1, k), at(1, k + 1)});
-      for (unsigned i = 1; i + 1 < down; ++i) face({at(i, k), at(i + 1, k), at(i + 1, k + 1), at(i, k + 1)});
-      face({1, at(down - 1, k + 1), at(down - 1, k)});
-    }
-  }
-  [[nodiscard]] double lowest(const Quat& turn) const {
-    double z = 0.0;
-    for (const Vec3& corner : corners) z = std::min(z, (turn * corner).z());
-    return z;
-  }
-
-  std::vector<Vec3> corners;
-  std::vector<dReal> points;
-  std::vector<dReal> planes;
-  std::vector<unsigned> polygons;
-  unsigned faces = 0;
-
- private:
-  [[nodiscard]] unsigned at(unsigned i, unsigned k) const { return 2 + (i - 1) * around + k % around; }
-  void add(const Vec3& corner) {
-    corners.push_back(corner);
-    points.insert(points.end(), corner.data(), corner.data() + 3);
-  }
-  void face(const std::vector<unsigned>& of) {
-    const Vec3 normal = (corners[of[1]] - corners[of[0]]).cross(corners[of[2]] - corners[of[0]]).normalized();
-    planes.insert(planes.end(), {normal.x(), normal.y(), normal.z(), normal.dot(corners[of[0]])});
-    polygons.push_back(static_cast<unsigned>(of.size()));
-    polygons.insert(polygons.end(), of.begin(), of.end());
-    ++faces;
-  }
-
-  unsigned around;
-  unsigned down;
-};
-
-// Registered, until the test's end.
-struct ConvexBall : Ball {
-  ConvexBall(dSpaceID space, unsigned around_axis, unsigned down_axis) : Ball(around_axis, down_axis) {
-    const auto count = static_cast<unsigned>(corners.size());
-    geom = dCreateConvex(space, planes.data(), faces, points.data(), count, polygons.data());
-    EXPECT_EQ(oddsRegisterConvex(geom, points.data(), count, polygons.data(), faces), 1) << oddsGetLastError();
-  }
-  ~ConvexBall() { oddsForgetGeom(geom); }
-  ConvexBall(const ConvexBall&) = delete;
-  ConvexBall& operator=(const ConvexBall&) = delete;
-
-  dGeomID geom;
-};
 
 class FineMeshTest : public OdeTest {
  protected:
@@ -125,7 +63,7 @@ TEST_F(FineMeshTest, ACylinderLiesAndStandsOnItsRim) {
 }
 
 TEST_F(FineMeshTest, AConvexBallRests) {
-  const ConvexBall ball(space, 16, 8);
+  const ConvexBall ball(space, radius, 16, 8);
   for (const double depth : {0.001, 0.01, 0.05}) {
     for (int round = 0; round < 20; ++round) {
       const Quat turn = any_turn();
@@ -136,7 +74,7 @@ TEST_F(FineMeshTest, AConvexBallRests) {
 
 // One cut by its 960 sides took longer than the budget, and what was cut was not in it: it fell.
 TEST_F(FineMeshTest, InShortTimeAConvexOfManySidesIsHeld) {
-  const ConvexBall ball(space, 60, 16);
+  const ConvexBall ball(space, radius, 60, 16);
   const SlowLooks slow(500);
   for (const double budget_us : {2.0, 5.0, 20.0, 50.0}) {
     ASSERT_EQ(dGeomOddsMeshSetBudget(floor, budget_us), 1);

@@ -4,11 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <memory>
-#include <numbers>
 #include <span>
 #include <string_view>
 #include <system_error>
@@ -20,6 +18,7 @@
 #include "odds/ode/odds_ode.h"
 #include "odds/query/shape.hpp"
 #include "odds/realtime/clock.hpp"
+#include "ode/convex_ball.hpp"
 
 namespace {
 
@@ -28,55 +27,6 @@ using odds::Vec3;
 struct Body {
   const char* name;
   dGeomID geom;
-};
-
-/// A ball of `around` times `down` faces, as ODE's convex; its arrays last as long as it.
-class ConvexBall {
- public:
-  static constexpr unsigned around = 20;
-  static constexpr unsigned down = 12;
-
-  explicit ConvexBall(double radius) {
-    add({0.0, 0.0, radius});
-    add({0.0, 0.0, -radius});
-    for (unsigned i = 1; i < down; ++i) {
-      for (unsigned k = 0; k < around; ++k) {
-        const double a = std::numbers::pi * i / down;
-        const double b = 2.0 * std::numbers::pi * k / around;
-        add(radius * Vec3(std::sin(a) * std::cos(b), std::sin(a) * std::sin(b), std::cos(a)));
-      }
-    }
-    for (unsigned k = 0; k < around; ++k) {
-      face({0, at(1, k), at(1, k + 1)});
-      for (unsigned i = 1; i + 1 < down; ++i) face({at(i, k), at(i + 1, k), at(i + 1, k + 1), at(i, k + 1)});
-      face({1, at(down - 1, k + 1), at(down - 1, k)});
-    }
-    const auto points = static_cast<unsigned>(corners_.size());
-    geom_ = dCreateConvex(nullptr, planes_.data(), faces_, coordinates_.data(), points, polygons_.data());
-    oddsRegisterConvex(geom_, coordinates_.data(), points, polygons_.data(), faces_);
-  }
-  [[nodiscard]] dGeomID geom() const { return geom_; }
-
- private:
-  [[nodiscard]] static unsigned at(unsigned i, unsigned k) { return 2 + (i - 1) * around + k % around; }
-  void add(const Vec3& corner) {
-    corners_.push_back(corner);
-    coordinates_.insert(coordinates_.end(), corner.data(), corner.data() + 3);
-  }
-  void face(const std::vector<unsigned>& of) {
-    const Vec3 normal = (corners_[of[1]] - corners_[of[0]]).cross(corners_[of[2]] - corners_[of[0]]).normalized();
-    planes_.insert(planes_.end(), {normal.x(), normal.y(), normal.z(), normal.dot(corners_[of[0]])});
-    polygons_.push_back(static_cast<unsigned>(of.size()));
-    polygons_.insert(polygons_.end(), of.begin(), of.end());
-    ++faces_;
-  }
-
-  std::vector<Vec3> corners_;
-  std::vector<dReal> coordinates_;
-  std::vector<dReal> planes_;
-  std::vector<unsigned> polygons_;
-  unsigned faces_ = 0;
-  dGeomID geom_ = nullptr;
 };
 
 struct Measured {
@@ -127,12 +77,12 @@ int run(std::string_view name, int poses, std::uint64_t seed) {
   std::printf("%s, %zu triangles, %d poses each; bodies of half its size\n", shared->name().c_str(),
               shared->triangles().size(), poses);
   std::printf("%-10s %10s %8s %8s %8s %8s %10s\n", "body", "budget us", "p50", "p90", "p99", "hits", "contacts");
-  const ConvexBall convex(0.5 * size);
+  const odds::test::ConvexBall convex(nullptr, 0.5 * size, 20, 12);
   const Body bodies[] = {{"box", dCreateBox(nullptr, size, size, size)},
                          {"cylinder", dCreateCylinder(nullptr, 0.5 * size, size)},
                          {"capsule", dCreateCapsule(nullptr, 0.25 * size, 0.5 * size)},
                          {"sphere", dCreateSphere(nullptr, 0.5 * size)},
-                         {"convex", convex.geom()}};
+                         {"convex", convex.geom}};
   for (const Body& body : bodies) {
     for (const double us : {5.0, 10.0, 20.0, 50.0, 100.0, std::numeric_limits<double>::infinity()}) {
       dGeomOddsMeshSetBudget(geom.id(), std::min(us, 1e12));
@@ -140,8 +90,7 @@ int run(std::string_view name, int poses, std::uint64_t seed) {
       std::printf("%-10s %10.0f %8.1f %8.1f %8.1f %8d %10d\n", body.name, us, m.at(0.5), m.at(0.9), m.at(0.99), m.hits,
                   m.contacts);
     }
-    oddsForgetGeom(body.geom);
-    dGeomDestroy(body.geom);
+    if (body.geom != convex.geom) dGeomDestroy(body.geom);
   }
   return 0;
 }

@@ -4,15 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <memory>
 #include <set>
-#include <variant>
 #include <vector>
 
 #include "odds/math/random.hpp"
-#include "query/shape_data.hpp"
 #include "support/instruction_sets.hpp"
-#include "support/shapes.hpp"
+#include "support/wavy_tree.hpp"
 
 namespace odds::query {
 namespace {
@@ -26,17 +23,6 @@ struct HalfSpace {
 
 class ConvexRegions : public ::testing::TestWithParam<double> {
  protected:
-  // A wavy sphere about `middle`.
-  void SetUp() override {
-    const auto sphere = testing::wavy_sphere(24);
-    std::vector<Vec3> vertices(sphere->vertices().begin(), sphere->vertices().end());
-    for (Vec3& vertex : vertices) vertex += middle;
-    std::vector<mesh::Triangle> triangles(sphere->triangles().begin(), sphere->triangles().end());
-    mesh = std::make_shared<const mesh::TriangleMesh>(
-        mesh::TriangleMesh::make(std::move(vertices), std::move(triangles)).value());
-    shape = Shape::build(mesh).value();
-    tree = &std::get<tree::WideTree>(shape->data().tree);
-  }
   std::vector<HalfSpace> any_half_spaces(math::Random& random, std::size_t count) {
     const Vec3 about = middle + random.uniform(0.0, 1.2) * random.direction();
     std::vector<HalfSpace> all(count);
@@ -55,9 +41,9 @@ class ConvexRegions : public ::testing::TestWithParam<double> {
   }
 
   Vec3 middle = Vec3::Constant(GetParam());
-  std::shared_ptr<const mesh::TriangleMesh> mesh;
-  std::shared_ptr<const Shape> shape;
-  const tree::WideTree* tree = nullptr;
+  testing::WavyTree sphere{middle};  // about it
+  const mesh::TriangleMesh* mesh = sphere.mesh.get();
+  const tree::WideTree* tree = sphere.tree;
 };
 
 TEST_P(ConvexRegions, HaveAllTrianglesThatAreNotBeyondASideAndWhatMayCutThem) {
@@ -128,8 +114,8 @@ TEST_P(ConvexRegions, ChangeAndEndWhereTheyAreTold) {
 INSTANTIATE_TEST_SUITE_P(About, ConvexRegions, ::testing::Values(0.0, 1e3, -1e6));
 
 TEST(HalfSpaceKernels, OfEachInstructionSetGiveTheSame) {
-  const auto shape = Shape::build(testing::wavy_sphere(24)).value();
-  const auto& tree = std::get<tree::WideTree>(shape->data().tree);
+  const testing::WavyTree sphere(Vec3::Zero());
+  const tree::WideTree& tree = *sphere.tree;
   const wide::Searches& portable = *wide::searches_for(InstructionSet::portable);
   math::Random random(6, 1);
   std::set<decltype(wide::Searches::children_within)> kernels;
@@ -171,7 +157,6 @@ TEST(HalfSpaceKernels, OfEachInstructionSetGiveTheSame) {
       }
     }
   }
-  EXPECT_GE(kernels.size(), 1u);
 }
 
 }  // namespace

@@ -5,32 +5,19 @@
 
 #include <algorithm>
 #include <limits>
-#include <memory>
-#include <variant>
+#include <set>
 #include <vector>
 
 #include "odds/math/random.hpp"
 #include "odds/primitive/triangle_distance.hpp"
-#include "query/shape_data.hpp"
 #include "support/instruction_sets.hpp"
-#include "support/shapes.hpp"
+#include "support/wavy_tree.hpp"
 
 namespace odds::query {
 namespace {
 
 class NearSegments : public ::testing::TestWithParam<double> {
  protected:
-  // A wavy sphere about `middle`.
-  void SetUp() override {
-    const auto sphere = testing::wavy_sphere(24);
-    std::vector<Vec3> vertices(sphere->vertices().begin(), sphere->vertices().end());
-    for (Vec3& vertex : vertices) vertex += middle;
-    std::vector<mesh::Triangle> triangles(sphere->triangles().begin(), sphere->triangles().end());
-    mesh = std::make_shared<const mesh::TriangleMesh>(
-        mesh::TriangleMesh::make(std::move(vertices), std::move(triangles)).value());
-    shape = Shape::build(mesh).value();
-    tree = &std::get<tree::WideTree>(shape->data().tree);
-  }
   [[nodiscard]] double distance(std::uint32_t triangle, const Vec3& begin, const Vec3& end) const {
     const mesh::Triangle& t = mesh->triangles()[triangle];
     const Vec3 corners[3] = {mesh->vertices()[t[0]], mesh->vertices()[t[1]], mesh->vertices()[t[2]]};
@@ -38,9 +25,9 @@ class NearSegments : public ::testing::TestWithParam<double> {
   }
 
   Vec3 middle = Vec3::Constant(GetParam());
-  std::shared_ptr<const mesh::TriangleMesh> mesh;
-  std::shared_ptr<const Shape> shape;
-  const tree::WideTree* tree = nullptr;
+  testing::WavyTree sphere{middle};  // about it
+  const mesh::TriangleMesh* mesh = sphere.mesh.get();
+  const tree::WideTree* tree = sphere.tree;
 };
 
 TEST_P(NearSegments, FindWhatLookingAtEachTriangleFinds) {
@@ -73,6 +60,13 @@ TEST_P(NearSegments, FindWhatLookingAtEachTriangleFinds) {
         EXPECT_EQ(distances[found], least);
       }
     }
+    std::uint64_t all = 1'000'000;
+    bool finished = false;
+    const auto at = [&](std::uint32_t t) { return distances[t]; };
+    const std::uint32_t about = near.nearest(
+        10.0, 0.05, at, [] { return true; }, all, finished);
+    ASSERT_NE(about, no_feature);
+    EXPECT_LE(distances[about], least + 0.05) << "no other is nearer by more";
     passed_over += 2 * distances.size() - asked;
     std::vector<int> times(distances.size(), 0);
     std::uint64_t nodes = 1'000'000;
@@ -119,13 +113,15 @@ TEST_P(NearSegments, EndWhereTheyAreTold) {
 INSTANTIATE_TEST_SUITE_P(About, NearSegments, ::testing::Values(0.0, 1e3, -1e6));
 
 TEST(NearSegmentKernels, OfEachInstructionSetGiveTheSame) {
-  const auto shape = Shape::build(testing::wavy_sphere(24)).value();
-  const auto& tree = std::get<tree::WideTree>(shape->data().tree);
+  const testing::WavyTree sphere(Vec3::Zero());
+  const tree::WideTree& tree = *sphere.tree;
   const wide::Searches& portable = *wide::searches_for(InstructionSet::portable);
   math::Random random(9, 1);
+  std::set<decltype(wide::Searches::children_near)> kernels;
   for (const InstructionSet set : testing::instruction_sets) {
     const wide::Searches* const searches = wide::searches_for(set);
     if (searches == nullptr) continue;  // not on this processor
+    EXPECT_TRUE(kernels.insert(searches->children_near).second);
     for (std::size_t n = 0; n < tree.node_count(); ++n) {
       wide::SegmentInTree segment;
       segment.middle = random.direction().cast<float>();
