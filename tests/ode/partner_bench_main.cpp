@@ -1,6 +1,6 @@
 // odds_bench_partners: how long boxes, cylinders, capsules, balls and convexes on a mesh take within budgets of
 // microseconds, and how many of them have contacts. Poses are about vertices of the mesh, turned anyhow, the same for
-// every budget.
+// every budget. Planes let the mesh sink in by up to 1 % of its size, rays go through its vertices.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -24,9 +24,38 @@ namespace {
 
 using odds::Vec3;
 
+/// Puts a body somewhere about a vertex of the mesh; `size`: of bodies, metres.
+using Put = void (*)(dGeomID body, const odds::mesh::TriangleMesh& mesh, const Vec3& vertex, double size,
+                     odds::math::Random& random);
+
+void put_turned(dGeomID body, const odds::mesh::TriangleMesh&, const Vec3& vertex, double size,
+                odds::math::Random& random) {
+  const Vec3 away = random.direction();
+  const Vec3 place = vertex + random.uniform(0.0, 0.5) * size * away;
+  const odds::Quat turn = random.rotation();
+  const dQuaternion q = {turn.w(), turn.x(), turn.y(), turn.z()};
+  dGeomSetPosition(body, place.x(), place.y(), place.z());
+  dGeomSetQuaternion(body, q);
+}
+
+void put_plane(dGeomID plane, const odds::mesh::TriangleMesh& mesh, const Vec3&, double, odds::math::Random& random) {
+  const Vec3 normal = random.direction();
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const Vec3& vertex : mesh.vertices()) lowest = std::min(lowest, normal.dot(vertex));
+  dGeomPlaneSetParams(plane, normal.x(), normal.y(), normal.z(), lowest + 0.01 * random.uniform() * mesh.size());
+}
+
+void put_ray(dGeomID ray, const odds::mesh::TriangleMesh&, const Vec3& vertex, double size,
+             odds::math::Random& random) {
+  const Vec3 direction = random.direction();
+  const Vec3 from = vertex - 2.0 * size * direction;
+  dGeomRaySet(ray, from.x(), from.y(), from.z(), direction.x(), direction.y(), direction.z());
+}
+
 struct Body {
   const char* name;
   dGeomID geom;
+  Put put;
 };
 
 struct Measured {
@@ -46,12 +75,7 @@ Measured measure(dGeomID mesh, const Body& body, const odds::mesh::TriangleMesh&
   for (int i = 0; i < poses; ++i) {
     odds::math::Random random(seed, static_cast<std::uint64_t>(i));
     const Vec3 vertex = shape.vertices()[random.below(shape.vertices().size())];
-    const Vec3 away = random.direction();
-    const Vec3 place = vertex + random.uniform(0.0, 0.5) * size * away;
-    const odds::Quat turn = random.rotation();
-    const dQuaternion q = {turn.w(), turn.x(), turn.y(), turn.z()};
-    dGeomSetPosition(body.geom, place.x(), place.y(), place.z());
-    dGeomSetQuaternion(body.geom, q);
+    body.put(body.geom, shape, vertex, size, random);
     std::array<dContactGeom, 8> contacts;
     const std::int64_t begin = clock();
     const int count = dCollide(mesh, body.geom, 8, contacts.data(), sizeof contacts[0]);
@@ -78,11 +102,13 @@ int run(std::string_view name, int poses, std::uint64_t seed) {
               shared->triangles().size(), poses);
   std::printf("%-10s %10s %8s %8s %8s %8s %10s\n", "body", "budget us", "p50", "p90", "p99", "hits", "contacts");
   const odds::test::ConvexBall convex(nullptr, 0.5 * size, 20, 12);
-  const Body bodies[] = {{"box", dCreateBox(nullptr, size, size, size)},
-                         {"cylinder", dCreateCylinder(nullptr, 0.5 * size, size)},
-                         {"capsule", dCreateCapsule(nullptr, 0.25 * size, 0.5 * size)},
-                         {"sphere", dCreateSphere(nullptr, 0.5 * size)},
-                         {"convex", convex.geom}};
+  const Body bodies[] = {{"box", dCreateBox(nullptr, size, size, size), put_turned},
+                         {"cylinder", dCreateCylinder(nullptr, 0.5 * size, size), put_turned},
+                         {"capsule", dCreateCapsule(nullptr, 0.25 * size, 0.5 * size), put_turned},
+                         {"sphere", dCreateSphere(nullptr, 0.5 * size), put_turned},
+                         {"convex", convex.geom, put_turned},
+                         {"plane", dCreatePlane(nullptr, 0, 0, 1, 0), put_plane},
+                         {"ray", dCreateRay(nullptr, 4.0 * size), put_ray}};
   for (const Body& body : bodies) {
     for (const double us : {5.0, 10.0, 20.0, 50.0, 100.0, std::numeric_limits<double>::infinity()}) {
       dGeomOddsMeshSetBudget(geom.id(), std::min(us, 1e12));

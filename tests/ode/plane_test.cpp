@@ -179,6 +179,57 @@ TEST_F(PlaneTest, VerticesThatNoTriangleUsesDoNotTouch) {
   EXPECT_TRUE(collide(geom, plane).empty());
 }
 
+// More vertices lie below than are gathered: each contact is searched for then.
+TEST_F(PlaneTest, AFineBodyDeepBelowIsHeldAroundItsOutline) {
+  const auto shape = sphere_shape(1, 60);
+  const dGeomID mesh = mesh_geom(shape, space);
+  ASSERT_EQ(dGeomOddsMeshSetBudget(mesh, 1e9), 1);
+  std::uniform_real_distribution<double> uniform(-0.8, 0.0);
+  for (int round = 0; round < 50; ++round) {
+    const Vec3 normal = random_direction(random);
+    const double offset = uniform(random);
+    const dGeomID plane = dCreatePlane(nullptr, normal.x(), normal.y(), normal.z(), offset);
+    rotate(mesh, random_direction(random), 3.0 * uniform(random));
+    const math::Pose pose = pose_of(mesh);
+    double deepest = -1.0;
+    for (const Vec3& vertex : shape->mesh().vertices()) deepest = std::max(deepest, offset - normal.dot(pose * vertex));
+    const auto contacts = collide(mesh, plane, 8);
+    ASSERT_EQ(contacts.size(), 8u);
+    EXPECT_NEAR(contacts[0].depth, deepest, 2e-6 * shape->mesh().size());
+    const double radius = std::sqrt(1.0 - offset * offset);
+    for (std::size_t i = 1; i < contacts.size(); ++i) {
+      const Vec3 place = position_of(contacts[i]);
+      EXPECT_NEAR(contacts[i].depth, offset - normal.dot(place), 1e-12);
+      const double out = (place - normal.dot(place) * normal).norm();
+      EXPECT_GT(out, radius - 0.1) << "on the outline, but for a triangle's length and what is rough of many";
+    }
+    dGeomDestroy(plane);
+  }
+}
+
+TEST_F(PlaneTest, AShortBudgetStillFindsOneNearlyAsDeepAsAny) {
+  const auto shape = sphere_shape(1, 60);
+  const dGeomID mesh = mesh_geom(shape, space);
+  std::uniform_real_distribution<double> uniform(-0.999, 0.5);
+  for (const unsigned long units : {100UL, 300UL}) {
+    ASSERT_EQ(dGeomOddsMeshSetWorkBudget(mesh, units), 1);
+    for (int round = 0; round < 100; ++round) {
+      const Vec3 normal = random_direction(random);
+      const double offset = uniform(random);
+      const dGeomID plane = dCreatePlane(nullptr, normal.x(), normal.y(), normal.z(), offset);
+      double deepest = -1.0;
+      for (const Vec3& vertex : shape->mesh().vertices()) deepest = std::max(deepest, offset - normal.dot(vertex));
+      const auto contacts = collide(mesh, plane);
+      dGeomDestroy(plane);
+      ASSERT_EQ(contacts.empty(), deepest < 0.0);
+      if (contacts.empty()) continue;
+      EXPECT_LE(contacts[0].depth, deepest + 1e-12);
+      EXPECT_GT(contacts[0].depth, deepest - 0.05) << "metres, of 1; units: " << units;
+    }
+  }
+  EXPECT_GT(stats().primitive_cut_off, 50u);
+}
+
 TEST_F(PlaneTest, AnExhaustedWorkBudgetIsCountedAndStillSound) {
   const dGeomID mesh = mesh_geom(sphere_shape(1, 20), space);
   const dGeomID plane = dCreatePlane(space, 0, 0, 1, 0);

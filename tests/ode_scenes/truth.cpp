@@ -20,9 +20,7 @@ double depth_of(const Vec3& point, const ode::PreparedMesh& in) {
 /// Of corners and middles of triangles of `of` in `in`: corners of teeth lie in the other gear's sides.
 double deepest_point(const ode::PreparedMesh& of, const ode::PreparedMesh& in, const math::Pose& pose) {
   double deepest = 0.0;
-  for (const ode::PreparedMesh::Vertex& vertex : of.vertices) {
-    deepest = std::max(deepest, depth_of(pose * vertex.position, in));
-  }
+  for (const Vec3& vertex : of.mesh().vertices()) deepest = std::max(deepest, depth_of(pose * vertex, in));
   for (std::uint32_t t = 0; t < of.mesh().triangles().size(); ++t) {
     const auto [p, q, r] = of.corners(t);
     deepest = std::max(deepest, depth_of(pose * Vec3((p + q + r) / 3.0), in));

@@ -29,7 +29,7 @@ class ChildRef {
     return ChildRef(leaf_bit | ((count - 1U) << 28U) | index);
   }
 
-  ChildRef() = default;
+  ChildRef() = default;  ///< not set: searches have stacks of them
   [[nodiscard]] bool is_nothing() const noexcept { return bits_ == 0; }
   [[nodiscard]] bool is_leaf() const noexcept { return (bits_ & leaf_bit) != 0; }
   /// Of a node: its index; the root's node is 1, for node 0 holds the root itself in its first lane.
@@ -44,7 +44,7 @@ class ChildRef {
  private:
   explicit ChildRef(std::uint32_t bits) noexcept : bits_(bits) {}
   static constexpr std::uint32_t leaf_bit = 1U << 31U;
-  std::uint32_t bits_ = 0;
+  std::uint32_t bits_;
 };
 
 /// Half extents and thickness of a lane without a child.

@@ -6,11 +6,12 @@
 #include <span>
 
 #include "odds/math/types.hpp"
-#include "ode/mesh/box_tree.hpp"
+#include "odds/query/answer.hpp"
 
 namespace odds::ode {
 
 constexpr std::size_t most_contacts = 8;
+constexpr std::uint32_t no_item = query::no_feature;
 /// So much, per metre of depth, a Source counts a deeper item for as if it were farther away: of two above each other
 /// the deeper is taken, and not whichever the last bit prefers.
 constexpr double deeper_at_one_place = 1e-9;

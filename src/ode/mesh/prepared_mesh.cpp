@@ -1,4 +1,4 @@
-// Preparing a shape for geoms: trees over vertices and triangles, and whether the surface closes.
+// Preparing a shape for geoms: a wide tree, whether the surface closes, and corners where many triangles meet.
 #include "ode/mesh/prepared_mesh.hpp"
 
 #include <algorithm>
@@ -67,7 +67,7 @@ std::vector<PreparedMesh::Fan> find_fans(const PreparedMesh& prepared, std::span
     for (const std::uint32_t v : triangle) ++users[representative[v]];
   }
   std::vector<PreparedMesh::Fan> fans;
-  std::vector<std::uint32_t> fan_of(users.size(), no_item);
+  std::vector<std::uint32_t> fan_of(users.size(), query::no_feature);
   for (std::size_t v = 0; v < users.size(); ++v) {
     if (users[v] <= PreparedMesh::most_touching) continue;
     fan_of[v] = static_cast<std::uint32_t>(fans.size());
@@ -77,7 +77,7 @@ std::vector<PreparedMesh::Fan> find_fans(const PreparedMesh& prepared, std::span
   for (std::uint32_t t = 0; t < mesh.triangles().size(); ++t) {
     for (const std::uint32_t v : mesh.triangles()[t]) {
       const std::uint32_t number = fan_of[representative[v]];
-      if (number == no_item) continue;
+      if (number == query::no_feature) continue;
       const Corners corners = prepared.corners(t);
       fans[number].normal += angle_at(corners, fans[number].tip, 0.0) * unit_normal(corners);
     }
@@ -86,20 +86,6 @@ std::vector<PreparedMesh::Fan> find_fans(const PreparedMesh& prepared, std::span
   for (PreparedMesh::Fan& fan : fans) fan.normal.normalize();
   std::sort(fans.begin(), fans.end(), [](const auto& a, const auto& b) { return a.tip.x() < b.tip.x(); });
   return fans;
-}
-
-std::vector<PreparedMesh::Vertex> used_vertices(const mesh::TriangleMesh& mesh) {
-  std::vector<std::uint32_t> user(mesh.vertices().size(), no_item);
-  for (std::uint32_t t = 0; t < mesh.triangles().size(); ++t) {
-    for (const std::uint32_t v : mesh.triangles()[t]) {
-      if (user[v] == no_item) user[v] = t;
-    }
-  }
-  std::vector<PreparedMesh::Vertex> used;
-  for (std::size_t v = 0; v < user.size(); ++v) {
-    if (user[v] != no_item) used.push_back({mesh.vertices()[v], user[v]});
-  }
-  return used;
 }
 
 }  // namespace
@@ -116,17 +102,6 @@ std::shared_ptr<const PreparedMesh> PreparedMesh::make(std::shared_ptr<const que
       throw std::length_error("mesh data: more triangles than a tree can hold");
     prepared->wide_tree = &*prepared->own_tree;
   }
-  prepared->vertices = used_vertices(mesh);
-  std::vector<BoxTree::Box> boxes;
-  boxes.reserve(std::max(prepared->vertices.size(), mesh.triangles().size()));
-  for (const Vertex& vertex : prepared->vertices) boxes.push_back({vertex.position, vertex.position});
-  prepared->vertex_tree = BoxTree(boxes);
-  boxes.clear();
-  for (std::uint32_t t = 0; t < mesh.triangles().size(); ++t) {
-    const std::array<Vec3, 3> c = prepared->corners(t);
-    boxes.push_back({c[0].cwiseMin(c[1]).cwiseMin(c[2]), c[0].cwiseMax(c[1]).cwiseMax(c[2])});
-  }
-  prepared->triangle_tree = BoxTree(boxes);
   const std::vector<std::uint32_t> representative = weld_equal_positions(mesh);
   // A sheet whose triangles are there twice, once for each side, closes, too, but has no inside to be pushed out of.
   // (As part of a mesh that encloses something it is not told apart.)

@@ -7,18 +7,14 @@
 #include <optional>
 #include <vector>
 
+#include "odds/query/answer.hpp"
 #include "odds/query/shape.hpp"
 #include "odds/tree/wide_tree.hpp"
-#include "ode/mesh/box_tree.hpp"
 
 namespace odds::ode {
 
 /// Immutable; shareable among geoms and threads.
 struct PreparedMesh {
-  struct Vertex {
-    Vec3 position;           ///< mesh frame, metres
-    std::uint32_t triangle;  ///< one triangle that uses it
-  };
   /// So many triangles that meet at a point are looked at in a collision.
   static constexpr std::size_t most_touching = 64;
   /// A corner at which more meet, as at the tip of a cone.
@@ -28,9 +24,6 @@ struct PreparedMesh {
   };
 
   std::shared_ptr<const query::Shape> shape;  ///< never null
-  std::vector<Vertex> vertices;               ///< those that triangles use
-  BoxTree vertex_tree;                        ///< over `vertices`
-  BoxTree triangle_tree;                      ///< over the mesh's triangles
   std::optional<tree::WideTree> own_tree;     ///< where the shape has other bounding volumes
   const tree::WideTree* wide_tree = nullptr;  ///< that, or the shape's; never null
   bool closed = false;    ///< every edge has its opposite, and something is enclosed: inside and outside are defined

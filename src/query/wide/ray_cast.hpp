@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <limits>
+#include <span>
 
 #include "odds/primitive/ray_triangle.hpp"
 #include "odds/tree/topology.hpp"
@@ -71,6 +72,8 @@ class RayCast {
   explicit RayCast(const RayTask& task) noexcept
       : task_(task), segment_(volume::RaySegment::make(task.origin, task.direction, task.length, task.tree.reach())) {
     *top_++ = Open(tree::WideTree::root, 0.0F);
+    constexpr double round_down = 1.0 - 1e-6;
+    begin_ = task.after > 0.0 ? static_cast<float>(task.after * round_down) : 0.0F;
     // The motion across a slab may be off by 2e-6 of the way, and the way is at most a millionth of 16 margins.
     margin_ = 4.0F * segment_.margin;
     for (int i = 0; i < 3; ++i) {
@@ -108,7 +111,7 @@ class RayCast {
 
   /// Lanes that the segment may meet, and where it enters each.
   ODDS_LANES_INLINE unsigned lanes_met(const tree::WideNode& node, float (&enter)[tree::wide_lanes]) const noexcept {
-    SlabCrossing<L> crossing{L::all(0.0F), L::all(segment_.length)};
+    SlabCrossing<L> crossing{L::all(begin_), L::all(segment_.length)};
     const F margin = L::all(margin_);
     F from[3];
     for (int i = 0; i < 3; ++i) {
@@ -182,17 +185,25 @@ class RayCast {
     return ~apart & 0xFFU;
   }
 
+  ODDS_LANES_INLINE double distance_to(const mesh::Triangle& triangle) const noexcept {
+    const std::span<const Vec3> vertices = task_.mesh.vertices();
+    if (task_.watertight != nullptr) {
+      const Vec3 corners[3] = {vertices[triangle[0]], vertices[triangle[1]], vertices[triangle[2]]};
+      return task_.watertight->crossing(corners);
+    }
+    const Vec3& origin = task_.tree.origin();
+    const Vec3 corners[3] = {vertices[triangle[0]] - origin, vertices[triangle[1]] - origin,
+                             vertices[triangle[2]] - origin};
+    return primitive::distance_along_ray(corners, task_.origin, task_.direction);
+  }
+
   void test_leaf(const Open& open, tree::ChildRef child) noexcept {
     const tree::WideLeaf& leaf = task_.tree.leaves()[child.index()];
     const unsigned used = (2U << (child.count() - 1U)) - 1U;
     for (unsigned lanes = triangles_met(open, leaf) & used; lanes != 0; lanes &= lanes - 1U) {
       const std::uint32_t index = leaf.triangle[std::countr_zero(lanes)];
-      const mesh::Triangle& triangle = task_.mesh.triangles()[index];
-      const Vec3 corners[3] = {task_.mesh.vertices()[triangle[0]] - task_.tree.origin(),
-                               task_.mesh.vertices()[triangle[1]] - task_.tree.origin(),
-                               task_.mesh.vertices()[triangle[2]] - task_.tree.origin()};
-      const double distance = primitive::distance_along_ray(corners, task_.origin, task_.direction);
-      if (!(distance >= 0.0 && distance <= task_.length)) continue;
+      const double distance = distance_to(task_.mesh.triangles()[index]);
+      if (!(distance >= 0.0 && distance > task_.after && distance <= task_.length)) continue;
       if (nearest_ && distance >= nearest_->distance) continue;
       nearest_ = RayHit{distance, index};
       segment_.length = static_cast<float>(distance * (1.0 + 1e-6));
@@ -202,6 +213,7 @@ class RayCast {
   const RayTask& task_;
   volume::RaySegment segment_;
   float margin_;
+  float begin_;  ///< nothing nearer counts
   float inverse_[3];
   float turned_[3];
   std::array<Open, (tree::wide_lanes - 1) * (tree::deepest_level + 2)> stack_;

@@ -9,10 +9,12 @@
 #include "odds/query/pair.hpp"
 #include "odds/query/ray.hpp"
 #include "odds/query/request.hpp"
+#include "primitive/watertight_ray.hpp"
 #include "query/counted_ray.hpp"
 #include "query/patch/eight.hpp"
 #include "query/search/search.hpp"
 #include "query/wide/encounter.hpp"
+#include "query/wide/extents.hpp"
 #include "query/wide/half_spaces.hpp"
 #include "query/wide/kinetic_front.hpp"
 #include "query/wide/known_faces.hpp"
@@ -55,7 +57,7 @@ struct NearestTask {
   TrianglePair triangles = {};
 };
 
-/// The first crossing of a ray with one tree.
+/// The first crossing of a ray with one tree, of those farther than `after`.
 struct RayTask {
   const mesh::TriangleMesh& mesh;
   const tree::WideTree& tree;
@@ -64,6 +66,10 @@ struct RayTask {
   double length;   ///< finite, metres
   std::uint64_t budget_nodes;
   RayEffort& effort;  ///< what it took
+  /// The same ray in the mesh's frame, where it is to slip through no edge; null: crossings are those of
+  /// primitive::distance_along_ray.
+  const primitive::WatertightRay* watertight = nullptr;
+  double after = -1.0;  ///< metres; as long as that is negative, also at 0
 };
 
 using RayHits = std::array<std::optional<RayHit>, 2>;
@@ -97,6 +103,10 @@ struct Searches {
                           LanesWithin& within) noexcept;
   void (*triangles_within)(const tree::WideLeaf& leaf, unsigned count, const Vec3f& center, const HalfSpaces& spaces,
                            HalfSpaces::Sides sides, LanesWithin& within) noexcept;
+  /// How far what is in a node, in a leaf, reaches along a direction.
+  void (*extents_of_children)(const tree::WideNode& node, const Vec3f& direction, Extents& extents) noexcept;
+  void (*extents_of_triangles)(const tree::WideLeaf& leaf, const Vec3f& center, const Vec3f& direction,
+                               Extents& extents) noexcept;
   /// How near what is in a node, in a leaf, may be to a segment.
   void (*children_near)(const tree::WideNode& node, const SegmentInTree& segment,
                         float (&least)[tree::wide_lanes]) noexcept;

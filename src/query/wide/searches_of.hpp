@@ -3,6 +3,7 @@
 
 #include "query/wide/beside_faces.hpp"
 #include "query/wide/exact.hpp"
+#include "query/wide/extents.hpp"
 #include "query/wide/half_spaces.hpp"
 #include "query/wide/incremental.hpp"
 #include "query/wide/near_segment.hpp"
@@ -27,6 +28,8 @@ constexpr Searches searches_of() noexcept {
           &WayDown<L>::run,
           &HalfSpaceKernel<L>::children,
           &HalfSpaceKernel<L>::triangles,
+          &ExtentsKernel<L>::children,
+          &ExtentsKernel<L>::triangles,
           &NearSegmentKernel<L>::children,
           &NearSegmentKernel<L>::triangles,
           PatchKernel<L>::table()};

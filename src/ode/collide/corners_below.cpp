@@ -1,0 +1,257 @@
+#include "ode/collide/corners_below.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "query/shape/convex_region.hpp"
+#include "query/wide/searches.hpp"
+
+namespace odds::ode {
+namespace {
+
+constexpr double nothing = -std::numeric_limits<double>::infinity();
+// Relative to the mesh's size: vertices this close count as equally deep. Far above rounding, far below what a contact
+// can feel; without it the deepest corner of a flat face would jump about with the last bit.
+constexpr double same_depth = 1e-6;
+// What is kept of the time when gathering is ended by it, microseconds: for the deepest of all, and for choosing, which
+// looks at each some fifteen times.
+constexpr double time_for_deepest = 1.5;
+constexpr double time_for_each = 0.045;
+// One unit of work in so many is kept likewise.
+constexpr std::uint64_t work_share_for_rest = 3;
+// Of the search for the deepest, each eight nodes: it is to come to a leaf, or a body would sink in unnoticed.
+constexpr int sure_looks = 5;
+// Where many have been gathered and there is no time to search, one in so many has to do.
+constexpr std::size_t sample = 8;
+// Of the size of what has been gathered: by so much one of many corners may be less far out than another.
+constexpr double rough_share = 0.03;
+
+using OfLanes = query::CornerSearch::OfLanes;
+using query::wide::Extents;
+
+const query::wide::Searches& kernels() noexcept { return *query::wide::searches_for(query::InstructionSet::best); }
+
+// Of direction . x.
+class BoundAlong {
+ public:
+  BoundAlong(const query::CornerSearch& search, const Vec3& direction) noexcept
+      : direction_(direction.cast<float>()), margin_(search.margin() * direction_.norm()) {}
+
+  void of(const tree::WideNode& node, OfLanes& most) const noexcept {
+    Extents extents;
+    kernels().extents_of_children(node, direction_, extents);
+    for (std::size_t k = 0; k < tree::wide_lanes; ++k) most[k] = extents.greatest[k] + margin_;
+  }
+  void of(const tree::WideLeaf& leaf, const Vec3f& center, OfLanes& most) const noexcept {
+    Extents extents;
+    kernels().extents_of_triangles(leaf, center, direction_, extents);
+    for (std::size_t k = 0; k < tree::wide_lanes; ++k) most[k] = extents.greatest[k] + margin_;
+  }
+
+ private:
+  Vec3f direction_;
+  float margin_;
+};
+
+// Of the distance from a point, across a unit direction, squared, of what comes with the height along it. In units, so
+// that squares of floats neither vanish nor overflow.
+class BoundAcross {
+ public:
+  BoundAcross(const query::CornerSearch& search, const Vec3& from, const Vec3& along, double per_unit) noexcept
+      : scale_(static_cast<float>(per_unit)),
+        from_((per_unit * from).cast<float>()),
+        along_(along.cast<float>()),
+        margin_(scale_ * search.margin() + 16.0F * 0x1p-24F * (1.0F + from_.norm())),
+        for_height_(static_cast<float>(deeper_at_one_place) * (2.0F + from_.norm())) {}
+
+  void of(const tree::WideNode& node, OfLanes& most) const noexcept {
+    for (std::size_t k = 0; k < tree::wide_lanes; ++k) {
+      const float x = scale_ * node.half[0][k];
+      const float y = scale_ * node.half[1][k];
+      const float z = scale_ * node.half[2][k];
+      most[k] = bound(node.center[0][k], node.center[1][k], node.center[2][k], std::sqrt(x * x + y * y + z * z));
+    }
+  }
+  void of(const tree::WideLeaf& leaf, const Vec3f& center, OfLanes& most) const noexcept {
+    for (std::size_t k = 0; k < tree::wide_lanes; ++k) {
+      most[k] = 0.0F;
+      for (std::size_t c = 0; c < 3; ++c) {
+        most[k] = std::max(most[k], bound(center[0] + leaf.corner[c][0][k], center[1] + leaf.corner[c][1][k],
+                                          center[2] + leaf.corner[c][2][k], 0.0F));
+      }
+    }
+  }
+
+ private:
+  // Of what is within `reach` units of a point.
+  [[nodiscard]] float bound(float px, float py, float pz, float reach) const noexcept {
+    const float x = scale_ * px - from_[0];
+    const float y = scale_ * py - from_[1];
+    const float z = scale_ * pz - from_[2];
+    const float height = x * along_[0] + y * along_[1] + z * along_[2];
+    const float farthest = std::sqrt(std::max(x * x + y * y + z * z - height * height, 0.0F)) + reach + margin_;
+    return farthest * farthest + for_height_;
+  }
+
+  float scale_;
+  Vec3f from_;
+  Vec3f along_;
+  float margin_;
+  float for_height_;
+};
+
+// The same as another bound, of what is not wholly above a plane {x : normal . x = highest}.
+template <class Bound>
+class BoundBelow {
+ public:
+  BoundBelow(const Bound& bound, const query::CornerSearch& search, const Vec3& normal, double highest) noexcept
+      : bound_(bound), normal_(normal.cast<float>()), highest_(static_cast<float>(highest) + search.margin()) {}
+
+  void of(const tree::WideNode& node, OfLanes& most) const noexcept {
+    Extents heights;
+    bound_.of(node, most);
+    kernels().extents_of_children(node, normal_, heights);
+    leave_out_above(heights, most);
+  }
+  void of(const tree::WideLeaf& leaf, const Vec3f& center, OfLanes& most) const noexcept {
+    Extents heights;
+    bound_.of(leaf, center, most);
+    kernels().extents_of_triangles(leaf, center, normal_, heights);
+    leave_out_above(heights, most);
+  }
+
+ private:
+  void leave_out_above(const Extents& heights, OfLanes& most) const noexcept {
+    for (std::size_t k = 0; k < tree::wide_lanes; ++k) {
+      most[k] = heights.least[k] <= highest_ ? most[k] : -std::numeric_limits<float>::infinity();
+    }
+  }
+
+  const Bound& bound_;
+  Vec3f normal_;
+  float highest_;
+};
+
+}  // namespace
+
+CornersBelow::CornersBelow(const PreparedMesh& mesh, const Vec3& normal, double offset, Limit& limit) noexcept
+    : tree_(*mesh.wide_tree),
+      size_(mesh.mesh().size()),
+      search_(mesh.mesh(), tree_),
+      normal_(normal),
+      offset_(offset - normal.dot(tree_.origin())),
+      rounding_(4e-15 * (std::abs(offset) + tree_.origin().norm())),
+      limit_(limit) {
+  is_gathered_ = gather();
+  const auto value = [this](const Vec3& x) { return -normal_.dot(x); };
+  if (!is_gathered_) {
+    int looks = 0;
+    deepest_ = search(0.0, 0.0, value, BoundAlong(search_, -normal_),
+                      [&] { return ++looks <= sure_looks || has_time_to_search(); });
+    if (deepest_ != no_item) add(deepest_);  // one more than there is room for
+  }
+  deepest_ = best_gathered(0.0, 1, value);
+  if (are_many_) rough_ = rough_share * gathered_.size();
+}
+
+bool CornersBelow::gather() noexcept {
+  using Region = query::ConvexRegion;
+  Region below(tree_, rounding_);
+  below.add(normal_, offset_ + normal_.dot(tree_.origin()));
+  const std::uint64_t nodes = limit_.nodes_left() - limit_.nodes_left() / work_share_for_rest;
+  std::uint64_t left = nodes;
+  const bool gathered_all = below.search(
+      [this](tree::ChildRef, Region::Sides) {
+        return limit_.has_time_left(time_for_deepest + time_to_choose()) ? Region::Visit::open : Region::Visit::end;
+      },
+      [this](std::uint32_t triangle, Region::Sides) {
+        for (std::uint32_t corner = 3 * triangle; corner < 3 * triangle + 3; ++corner) {
+          if (!(depth(corner) >= 0.0)) continue;
+          are_many_ = gathered_.is_full();
+          if (are_many_) return false;
+          add(corner);
+        }
+        return true;
+      },
+      left);
+  limit_.spend(nodes - left);
+  return gathered_all;
+}
+
+std::uint32_t CornersBelow::first() const noexcept {
+  if (deepest_ == no_item) return no_item;
+  const double least_depth = std::max(0.0, depth(deepest_) - same_depth * size_);
+  const std::uint32_t outermost = farthest_below(Vec3::Zero(), least_depth);
+  return outermost != no_item ? outermost : deepest_;
+}
+
+std::uint32_t CornersBelow::extreme(const Vec3& direction) const noexcept {
+  const Vec3 downwards = direction - deeper_at_one_place * direction.norm() * normal_;
+  return best(
+      0.0, rough_ * direction.norm(), [&](const Vec3& x) { return downwards.dot(x); }, BoundAlong(search_, downwards));
+}
+
+std::uint32_t CornersBelow::farthest_below(const Vec3& from, double least_depth) const noexcept {
+  // In sizes of the mesh, so that squares of floats neither vanish nor overflow.
+  const double unit = 1.0 / size_;
+  const auto value = [&](const Vec3& x) {
+    const Vec3 d = unit * (x - from);
+    const double height = d.dot(normal_);
+    return (d - height * normal_).squaredNorm() - deeper_at_one_place * height;
+  };
+  return best(least_depth, 0.0, value, BoundAcross(search_, from, normal_, unit));
+}
+
+double CornersBelow::time_to_choose() const noexcept {
+  const std::size_t of_many = are_many_ ? sample : 1;
+  return time_for_each * static_cast<double>(gathered_.all().size() / of_many);
+}
+
+bool CornersBelow::has_time_to_search() const noexcept { return limit_.has_time_left(time_to_choose()); }
+
+double GatheredVertices::size() const noexcept {
+  double square = 0.0;
+  for (const Vertex& vertex : all()) square = std::max(square, (vertex.position - all()[0].position).squaredNorm());
+  return std::sqrt(square);
+}
+
+template <class Value, class Bounds>
+std::uint32_t CornersBelow::best(double least_depth, double not_greater, const Value& value,
+                                 const Bounds& bounds) const noexcept {
+  const auto may_go_on = [this] { return has_time_to_search(); };
+  if (are_many_ && has_some_left()) return search(least_depth, not_greater, value, bounds, may_go_on);
+  return best_gathered(least_depth, are_many_ ? sample : 1, value);
+}
+
+template <class Value>
+std::uint32_t CornersBelow::best_gathered(double least_depth, std::size_t step, const Value& value) const noexcept {
+  const double highest = offset_ - least_depth;
+  double most = nothing;
+  std::uint32_t found = no_item;
+  const std::span<const GatheredVertices::Vertex> all = gathered_.all();
+  for (std::size_t i = 0; i < all.size(); i += step) {
+    const GatheredVertices::Vertex& vertex = all[i];
+    if (!(normal_.dot(vertex.position) <= highest)) continue;
+    const double v = value(vertex.position);
+    if (!(v > most)) continue;
+    most = v;
+    found = vertex.corner;
+  }
+  return found;
+}
+
+template <class Value, class Bounds, class MayGoOn>
+std::uint32_t CornersBelow::search(double least_depth, double not_greater, const Value& value, const Bounds& bounds,
+                                   const MayGoOn& may_go_on) const noexcept {
+  const double highest = offset_ - least_depth;
+  const std::uint64_t nodes = limit_.nodes_left();
+  std::uint64_t left = nodes;
+  const std::uint32_t found = search_.greatest(
+      not_greater, [&](const Vec3& x) { return normal_.dot(x) <= highest ? value(x) : nothing; },
+      BoundBelow(bounds, search_, normal_, highest + rounding_), may_go_on, left);
+  limit_.spend(nodes - left);
+  return found;
+}
+
+}  // namespace odds::ode

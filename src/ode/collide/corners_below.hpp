@@ -1,0 +1,107 @@
+// The corners of a mesh below a plane, as a source for select_manifold.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "ode/collide/limit.hpp"
+#include "ode/collide/manifold.hpp"
+#include "ode/mesh/prepared_mesh.hpp"
+#include "query/shape/corner_search.hpp"
+
+namespace odds::ode {
+
+/// Vertices, each once.
+class GatheredVertices {
+ public:
+  static constexpr std::size_t most = 512;
+
+  struct Vertex {
+    Vec3 position;
+    std::uint32_t corner;
+  };
+
+  GatheredVertices() noexcept { places_.fill(nobody); }
+  [[nodiscard]] bool is_full() const noexcept { return count_ >= most; }
+  [[nodiscard]] std::span<const Vertex> all() const noexcept { return {vertices_.data(), count_}; }
+  /// How far one of them is from the first, at most, metres.
+  [[nodiscard]] double size() const noexcept;
+
+  /// Precondition: not full, but for one that may be added afterwards.
+  void add(std::uint32_t number, std::uint32_t corner, const Vec3& position) noexcept {
+    std::size_t place = (number * hash_factor) >> (32 - bits);
+    for (; places_[place] != nobody; place = (place + 1) % places_.size()) {
+      if (numbers_[places_[place]] == number) return;
+    }
+    places_[place] = static_cast<std::uint16_t>(count_);
+    numbers_[count_] = number;
+    vertices_[count_++] = {position, corner};
+  }
+
+ private:
+  static constexpr int bits = 10;  // half of the places remain free
+  static constexpr std::uint32_t hash_factor = 2654435769U;
+  static constexpr std::uint16_t nobody = 0xFFFF;
+
+  std::array<Vertex, most + 1> vertices_;
+  std::array<std::uint32_t, most + 1> numbers_;
+  std::array<std::uint16_t, std::size_t{1} << bits> places_;
+  std::size_t count_ = 0;
+};
+
+/// Of {x: normal . x <= offset}; places are in the wide tree's frame, metres. They are gathered, and where they are too
+/// many, each that is asked for is searched for. Where there is no time for either, the deepest of all and those that
+/// were gathered have to do. No allocation.
+class CornersBelow {
+ public:
+  /// Normal, unit, and offset in the mesh's frame. Mesh and limit must outlive it.
+  CornersBelow(const PreparedMesh& mesh, const Vec3& normal, double offset, Limit& limit) noexcept;
+
+  /// Whether nothing was left out for want of work or time.
+  [[nodiscard]] bool is_complete() const noexcept { return is_gathered_ || (are_many_ && has_some_left()); }
+  [[nodiscard]] Vec3 position(std::uint32_t corner) const noexcept { return search_.place(corner); }
+  [[nodiscard]] double depth(std::uint32_t corner) const noexcept { return offset_ - normal_.dot(position(corner)); }
+
+  /// Of the deepest vertices the outermost: stable where a whole face lies on the plane.
+  [[nodiscard]] std::uint32_t first() const noexcept;
+  [[nodiscard]] std::uint32_t farthest(const Vec3& from) const noexcept { return farthest_below(from, 0.0); }
+  /// Of many corners one may be given that is a little less far out than another.
+  [[nodiscard]] std::uint32_t extreme(const Vec3& direction) const noexcept;
+
+ private:
+  /// Of those that were gathered, microseconds.
+  [[nodiscard]] double time_to_choose() const noexcept;
+  [[nodiscard]] bool has_time_to_search() const noexcept;
+  [[nodiscard]] bool has_some_left() const noexcept { return limit_.nodes_left() > 0 && has_time_to_search(); }
+  /// False if they are too many, or it was ended.
+  [[nodiscard]] bool gather() noexcept;
+  void add(std::uint32_t corner) noexcept { gathered_.add(search_.vertex_of(corner), corner, position(corner)); }
+  [[nodiscard]] std::uint32_t farthest_below(const Vec3& from, double least_depth) const noexcept;
+  /// The corner of greatest value of those below by that depth, or one that is less by no more than `not_greater`.
+  template <class Value, class Bounds>
+  [[nodiscard]] std::uint32_t best(double least_depth, double not_greater, const Value& value,
+                                   const Bounds& bounds) const noexcept;
+  /// Of one in `step` of those that were gathered.
+  template <class Value>
+  [[nodiscard]] std::uint32_t best_gathered(double least_depth, std::size_t step, const Value& value) const noexcept;
+  template <class Value, class Bounds, class MayGoOn>
+  [[nodiscard]] std::uint32_t search(double least_depth, double not_greater, const Value& value, const Bounds& bounds,
+                                     const MayGoOn& may_go_on) const noexcept;
+
+  const tree::WideTree& tree_;
+  const double size_;  ///< of the mesh, metres
+  const query::CornerSearch search_;
+  const Vec3 normal_;
+  const double offset_;
+  const double rounding_;  ///< of the offset, metres
+  Limit& limit_;
+  std::uint32_t deepest_ = no_item;
+  bool is_gathered_ = false;
+  bool are_many_ = false;
+  double rough_ = 0.0;  ///< of many, one so much less far out will do, metres
+  GatheredVertices gathered_;
+};
+
+}  // namespace odds::ode
