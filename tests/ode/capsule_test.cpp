@@ -274,5 +274,22 @@ TEST_F(CapsuleTest, MovedWithItsMeshItHasTheSameContacts) {
   }
 }
 
+// More triangles are near than there is room for; the axis goes through two of them, and one is the shorter way out.
+TEST_F(CapsuleTest, ThroughAFinePlateItTakesTheShorterWayOut) {
+  const dGeomID plate = mesh_geom(box_shape(2, 2, 0.1, 40), space);
+  ASSERT_EQ(dGeomOddsMeshSetBudget(plate, 1e9), 1);
+  const dGeomID capsule = dCreateCapsule(space, 0.3, 1.0);
+  for (int round = 0; round < 300; ++round) {
+    const double tilt = 0.15 + 0.15 * uniform(random);
+    const double height = (round % 2 == 0 ? 1.0 : -1.0) * (0.2 + 0.1 * uniform(random));
+    rotate(capsule, Vec3(uniform(random), uniform(random), 0), tilt);
+    dGeomSetPosition(capsule, 0.5 * uniform(random), 0.5 * uniform(random), height);
+    const auto contacts = collide(plate, capsule);
+    expect_sound(contacts, plate, capsule);
+    ASSERT_FALSE(contacts.empty()) << round;
+    EXPECT_NEAR(contacts[0].depth, 0.05 + 0.5 * std::cos(tilt) + 0.3 - std::abs(height), 1e-9) << round;
+  }
+}
+
 }  // namespace
 }  // namespace odds::test

@@ -6,13 +6,14 @@
 #include <limits>
 
 #include "ode/mesh/triangle_corners.hpp"
+#include "query/ray/crossings.hpp"
 #include "query/shape/near_segment.hpp"
 
 namespace odds::ode {
 namespace {
 
-// Where more triangles are near than there is room for, each part of the axis gets its share.
-constexpr int slices = 8;
+// Where more triangles are near than there is room for, so many that the axis goes through are enough.
+constexpr std::size_t most_crossings = CapsulePlaces::most / 2;
 // The share of the time after which places are no longer looked for.
 constexpr double time_for_places = 0.6;
 
@@ -23,32 +24,6 @@ CapsulePlace place_of(const PreparedMesh& mesh, const Capsule& capsule, std::uin
   double square = 0.0;
   for (const Vec3& corner : corners) square = std::max(square, (corner - closest.on_b).squaredNorm());
   return {closest.on_a, closest.on_b, std::sqrt(closest.squared_distance), std::sqrt(square), triangle};
-}
-
-using Triangles = std::array<std::uint32_t, CapsulePlaces::most>;
-
-// The triangles in the box around one part of the axis, as many as there is room for; `complete`: all.
-std::size_t triangles_about(const PreparedMesh& mesh, const Capsule& capsule, const Vec3& center, double half_length,
-                            Limit& limit, std::span<std::uint32_t> room, bool& complete) noexcept {
-  std::uint64_t visited = 0;
-  const std::size_t found =
-      query::triangles_in_box(*mesh.shape, center, capsule.axes, Vec3(capsule.radius, capsule.radius, half_length),
-                              room, limit.units, &complete, &visited);
-  limit.spend(visited);
-  return found;
-}
-
-void add(const PreparedMesh& mesh, const Capsule& capsule, std::span<const std::uint32_t> triangles, Limit& limit,
-         CapsulePlaces& places) noexcept {
-  for (const std::uint32_t triangle : triangles) {
-    if (places.count == CapsulePlaces::most) return;
-    if (limit.time_is_up()) {
-      places.complete = false;
-      return;
-    }
-    const CapsulePlace place = place_of(mesh, capsule, triangle);
-    if (place.distance < capsule.radius) places.all[places.count++] = place;
-  }
 }
 
 // The nearest triangle, of those that are nearer than `within`; if the limit is reached first, the nearest of those
@@ -89,10 +64,33 @@ bool add_all_within(const PreparedMesh& mesh, const Capsule& capsule, const quer
   return all;
 }
 
+// Keeps those places that the axis goes through, and adds the others of the kind, from its first end on.
+void keep_crossings(const PreparedMesh& mesh, const Capsule& capsule, Limit& limit, CapsulePlaces& places) noexcept {
+  const auto begin = places.all.begin();
+  const auto end = begin + static_cast<std::ptrdiff_t>(places.count);
+  const auto kept = std::partition(
+      begin, end, [&](const CapsulePlace& place) { return place.distance <= Capsule::same_place * capsule.radius; });
+  places.count = std::min(static_cast<std::size_t>(kept - begin), most_crossings);
+  const Vec3 axis = capsule.ends[1] - capsule.ends[0];
+  const double length = axis.norm();
+  if (!(length > 0.0)) return;
+  query::Crossings crossings(mesh.mesh(), *mesh.wide_tree, capsule.ends[0], axis / length, length, false);
+  while (places.count < most_crossings && !limit.time_is_up()) {
+    query::RayEffort effort;
+    const auto hit = crossings.next(limit.nodes_in_time(1.0), effort);
+    limit.spend(effort.nodes);
+    if (!hit) return;
+    const auto is_it = [&](const CapsulePlace& place) { return place.triangle == hit->triangle; };
+    if (std::none_of(begin, begin + static_cast<std::ptrdiff_t>(places.count), is_it)) {
+      places.all[places.count++] = place_of(mesh, capsule, hit->triangle);
+    }
+  }
+}
+
 // Not all triangles were seen, or there was no room for them. The nearest of those that there was time for is among the
 // places: it holds the capsule.
-void add_of_many(const PreparedMesh& mesh, const Capsule& capsule, const query::NearSegment& axis, double half_length,
-                 Limit& limit, CapsulePlaces& places) noexcept {
+void add_of_many(const PreparedMesh& mesh, const Capsule& capsule, const query::NearSegment& axis, Limit& limit,
+                 CapsulePlaces& places) noexcept {
   double least = capsule.radius;
   for (const CapsulePlace& place : places.span()) least = std::min(least, place.distance);
   const std::uint32_t nearest = find_nearest(mesh, capsule, axis, least, limit, places.nearest_is_sure);
@@ -100,23 +98,7 @@ void add_of_many(const PreparedMesh& mesh, const Capsule& capsule, const query::
   const bool crosses =
       std::min(least, nearest == query::no_feature ? least : place_of(mesh, capsule, nearest).distance) <=
       Capsule::same_place * capsule.radius;
-  if (crosses && !limit.time_is_up()) {
-    // What crosses stays; the rest would take the room.
-    const auto end = places.all.begin() + static_cast<std::ptrdiff_t>(places.count);
-    const auto kept = std::partition(places.all.begin(), end, [&](const CapsulePlace& place) {
-      return place.distance <= Capsule::same_place * capsule.radius;
-    });
-    places.count = std::min(static_cast<std::size_t>(kept - places.all.begin()), CapsulePlaces::most / 2);
-    Triangles near;
-    for (int i = 0; i < slices; ++i) {
-      const double along = (2.0 * i + 1.0) / slices - 1.0;
-      const Vec3 center = capsule.middle() + along * half_length * capsule.axes.col(2);
-      const std::span<std::uint32_t> room = std::span(near).first(CapsulePlaces::most / slices);
-      bool complete = true;
-      const std::size_t found = triangles_about(mesh, capsule, center, half_length / slices, limit, room, complete);
-      add(mesh, capsule, room.first(found), limit, places);
-    }
-  }
+  if (crosses && !limit.time_is_up()) keep_crossings(mesh, capsule, limit, places);
   if (nearest == query::no_feature) return;
   if (places.count == CapsulePlaces::most) --places.count;  // another of many
   places.all[places.count++] = place_of(mesh, capsule, nearest);
@@ -125,10 +107,9 @@ void add_of_many(const PreparedMesh& mesh, const Capsule& capsule, const query::
 }  // namespace
 
 void find_places(const PreparedMesh& mesh, const Capsule& capsule, Limit& limit, CapsulePlaces& places) noexcept {
-  const double half_length = 0.5 * (capsule.ends[1] - capsule.ends[0]).norm() + capsule.radius;
   const query::NearSegment axis(*mesh.wide_tree, capsule.ends[0], capsule.ends[1]);
   places.complete = add_all_within(mesh, capsule, axis, limit, places);
-  if (!places.complete) add_of_many(mesh, capsule, axis, half_length, limit, places);
+  if (!places.complete) add_of_many(mesh, capsule, axis, limit, places);
   std::sort(places.all.begin(), places.all.begin() + places.count, [](const CapsulePlace& a, const CapsulePlace& b) {
     return a.distance != b.distance ? a.distance < b.distance : a.triangle < b.triangle;
   });
