@@ -27,24 +27,24 @@ Vec3 careful_cross(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) n
   return {component(1, 2), component(2, 0), component(0, 1)};
 }
 
-/// A polygon with what every comparison with it needs.
+/// A polygon of so many corners with what every comparison with it needs.
+template <int corners>
 struct Side {
+  static constexpr int count = corners;
+  static constexpr int edges = corners == 3 ? 3 : corners - 1;
   const Vec3* corner;
-  int count;
-  int edges;
   Vec3 edge[3];
   double length2[3];
   Vec3 normal = Vec3::Zero();
   double normal2 = 0.0;
   bool is_sliver = false;  ///< at its first corner
 
-  explicit Side(CornerSpan polygon) noexcept
-      : corner(polygon.corner), count(polygon.count), edges(count == 3 ? 3 : count - 1) {
+  explicit Side(const Vec3* polygon) noexcept : corner(polygon) {
     for (int i = 0; i < edges; ++i) {
       edge[i] = corner[(i + 1) % count] - corner[i];
       length2[i] = edge[i].squaredNorm();
     }
-    if (count == 3) {
+    if constexpr (count == 3) {
       normal = edge[0].cross(corner[2] - corner[0]);
       normal2 = normal.squaredNorm();
       is_sliver = normal2 < careful_sine * careful_sine * (length2[0] * length2[2]);
@@ -69,12 +69,12 @@ struct Foot {
   double along_v = 0.0;
 
   /// Of the point first corner + w.
-  [[nodiscard]] static Foot of(const Vec3& w, const Side& side, const Vec3& normal, double normal2) noexcept {
+  [[nodiscard]] static Foot of(const Vec3& w, const Side<3>& side, const Vec3& normal, double normal2) noexcept {
     return {w.cross(-side.edge[2]).dot(normal) / normal2, side.edge[0].cross(w).dot(normal) / normal2};
   }
   // Whatever rounding does to a sliver's normal, the point offered is one of the triangle's.
   template <class Offer>
-  void offer_if_within(const Side& side, const Offer& offer) const noexcept {
+  void offer_if_within(const Side<3>& side, const Offer& offer) const noexcept {
     if (along_u >= 0.0 && along_v >= 0.0 && along_u + along_v <= 1.0) {
       offer(side.corner[0] + along_u * side.edge[0] + along_v * -side.edge[2]);
     }
@@ -82,9 +82,9 @@ struct Foot {
 };
 
 // A corner against all edges and the face of a polygon; calls offer(point of polygon).
-template <class Offer>
-void corner_to_polygon(const Vec3& x, const Side& side, const Closest& closest, const Offer& offer) noexcept {
-  if (side.count == 1) return offer(side.corner[0]);
+template <int corners, class Offer>
+void corner_to_polygon(const Vec3& x, const Side<corners>& side, const Closest& closest, const Offer& offer) noexcept {
+  if constexpr (corners == 1) return offer(side.corner[0]);
   for (int i = 0; i < side.edges; ++i) {
     const Vec3& from = side.corner[i];
     const double along = side.edge[i].dot(x - from);
@@ -92,20 +92,23 @@ void corner_to_polygon(const Vec3& x, const Side& side, const Closest& closest, 
       offer(from);
     } else if (along < side.length2[i]) {
       offer(from + (along / side.length2[i]) * side.edge[i]);
-    } else if (side.count == 2) {  // a triangle's next edge begins there
+    } else if (corners == 2) {  // a triangle's next edge begins there
       offer(side.corner[1]);
     }
   }
-  if (!(side.normal2 > 0.0)) return;
-  const Vec3 w = x - side.corner[0];
-  const double height = side.normal.dot(w);
-  if (height * height >= closest.best.squared_distance * side.normal2) return;
-  Foot::of(w, side, side.normal, side.normal2).offer_if_within(side, offer);
+  if constexpr (corners == 3) {
+    if (!(side.normal2 > 0.0)) return;
+    const Vec3 w = x - side.corner[0];
+    const double height = side.normal.dot(w);
+    if (height * height >= closest.best.squared_distance * side.normal2) return;
+    Foot::of(w, side, side.normal, side.normal2).offer_if_within(side, offer);
+  }
 }
 
 // The pair of points inside both segments at which they pass; corners are left to corner_to_polygon. Dividing by the
 // squared cross product keeps near-parallel segments accurate, where the usual a c - b^2 cancels.
-void edge_to_edge(const Side& a, int i, const Side& b, int j, Closest& closest) noexcept {
+template <int corners_a, int corners_b>
+void edge_to_edge(const Side<corners_a>& a, int i, const Side<corners_b>& b, int j, Closest& closest) noexcept {
   const Vec3& u = a.edge[i];
   const Vec3& v = b.edge[j];
   const Vec3 normal = u.cross(v);
@@ -126,7 +129,7 @@ void edge_to_edge(const Side& a, int i, const Side& b, int j, Closest& closest) 
 
 // Of x above the face of a sliver.
 template <class Offer>
-void corner_to_sliver(const Vec3& x, const Side& side, const Offer& offer) noexcept {
+void corner_to_sliver(const Vec3& x, const Side<3>& side, const Offer& offer) noexcept {
   const Vec3 normal = careful_cross(side.corner[0], side.corner[1], side.corner[0], side.corner[2]);
   const double normal2 = normal.squaredNorm();
   if (!(normal2 > 0.0)) return;
@@ -141,7 +144,8 @@ void corner_to_sliver(const Vec3& x, const Side& side, const Offer& offer) noexc
 }
 
 // Of edges, if they are nearly parallel.
-void edge_along_edge(const Side& a, int i, const Side& b, int j, Closest& closest) noexcept {
+template <int corners_a, int corners_b>
+void edge_along_edge(const Side<corners_a>& a, int i, const Side<corners_b>& b, int j, Closest& closest) noexcept {
   const Vec3& u = a.edge[i];
   const Vec3& v = b.edge[j];
   const Vec3 rounded = u.cross(v);
@@ -168,21 +172,27 @@ void edge_along_edge(const Side& a, int i, const Side& b, int j, Closest& closes
 }
 
 // What rounding may have hidden: above the faces of slivers, and along edges that are nearly parallel.
-[[gnu::noinline]] void look_carefully(const Side& a, const Side& b, Closest& closest) noexcept {
-  for (int i = 0; i < a.count && b.is_sliver; ++i) {
-    corner_to_sliver(a.corner[i], b, [&](const Vec3& on_b) { closest.offer(a.corner[i], on_b); });
+template <int corners_a, int corners_b>
+[[gnu::noinline]] void look_carefully(const Side<corners_a>& a, const Side<corners_b>& b, Closest& closest) noexcept {
+  if constexpr (corners_b == 3) {
+    for (int i = 0; i < a.count && b.is_sliver; ++i) {
+      corner_to_sliver(a.corner[i], b, [&](const Vec3& on_b) { closest.offer(a.corner[i], on_b); });
+    }
   }
-  for (int j = 0; j < b.count && a.is_sliver; ++j) {
-    corner_to_sliver(b.corner[j], a, [&](const Vec3& on_a) { closest.offer(on_a, b.corner[j]); });
+  if constexpr (corners_a == 3) {
+    for (int j = 0; j < b.count && a.is_sliver; ++j) {
+      corner_to_sliver(b.corner[j], a, [&](const Vec3& on_a) { closest.offer(on_a, b.corner[j]); });
+    }
   }
   for (int i = 0; i < a.edges; ++i) {
     for (int j = 0; j < b.edges; ++j) edge_along_edge(a, i, b, j, closest);
   }
 }
 
-ClosestPoints all_pairs(CornerSpan polygon_a, CornerSpan polygon_b) noexcept {
-  const Side a(polygon_a);
-  const Side b(polygon_b);
+template <int corners_a, int corners_b>
+ClosestPoints all_pairs(const Vec3* polygon_a, const Vec3* polygon_b) noexcept {
+  const Side<corners_a> a(polygon_a);
+  const Side<corners_b> b(polygon_b);
   Closest closest;
   for (int i = 0; i < a.count; ++i) {
     corner_to_polygon(a.corner[i], b, closest, [&](const Vec3& on_b) { closest.offer(a.corner[i], on_b); });
@@ -200,25 +210,26 @@ ClosestPoints all_pairs(CornerSpan polygon_a, CornerSpan polygon_b) noexcept {
 
 }  // namespace
 
-ClosestPoints closest_features(CornerSpan a, CornerSpan b) noexcept {
+template <int corners_a, int corners_b>
+ClosestPoints closest_features(const Vec3* a, const Vec3* b) noexcept {
   // Relative to a corner, far-away pairs lose nothing; scaled by a power of two, no fourth power leaves the doubles.
-  const Vec3 origin = a.corner[0];
-  Vec3 a_local[3];
-  Vec3 b_local[3];
+  const Vec3 origin = a[0];
+  Vec3 a_local[corners_a];
+  Vec3 b_local[corners_b];
   double largest = 0.0;
-  for (int i = 0; i < a.count; ++i) a_local[i] = a.corner[i] - origin;
-  for (int i = 0; i < b.count; ++i) b_local[i] = b.corner[i] - origin;
-  for (int i = 0; i < a.count; ++i) largest = std::max(largest, a_local[i].cwiseAbs().maxCoeff());
-  for (int i = 0; i < b.count; ++i) largest = std::max(largest, b_local[i].cwiseAbs().maxCoeff());
+  for (int i = 0; i < corners_a; ++i) a_local[i] = a[i] - origin;
+  for (int i = 0; i < corners_b; ++i) b_local[i] = b[i] - origin;
+  for (int i = 0; i < corners_a; ++i) largest = std::max(largest, a_local[i].cwiseAbs().maxCoeff());
+  for (int i = 0; i < corners_b; ++i) largest = std::max(largest, b_local[i].cwiseAbs().maxCoeff());
   const bool scaled = largest > 0.0 && !(largest > 0x1p-150 && largest < 0x1p150);
   const int exponent = scaled ? std::ilogb(largest) : 0;
   if (scaled) {
-    for (int i = 0; i < a.count; ++i)
+    for (int i = 0; i < corners_a; ++i)
       a_local[i] = a_local[i].unaryExpr([=](double x) { return std::ldexp(x, -exponent); });
-    for (int i = 0; i < b.count; ++i)
+    for (int i = 0; i < corners_b; ++i)
       b_local[i] = b_local[i].unaryExpr([=](double x) { return std::ldexp(x, -exponent); });
   }
-  ClosestPoints closest = all_pairs({a_local, a.count}, {b_local, b.count});
+  ClosestPoints closest = all_pairs<corners_a, corners_b>(a_local, b_local);
   if (scaled) {
     const auto back = [=](double x) { return std::ldexp(x, exponent); };
     closest.on_a = closest.on_a.unaryExpr(back);
@@ -229,5 +240,9 @@ ClosestPoints closest_features(CornerSpan a, CornerSpan b) noexcept {
   closest.on_b += origin;
   return closest;
 }
+
+template ClosestPoints closest_features<1, 3>(const Vec3*, const Vec3*) noexcept;
+template ClosestPoints closest_features<2, 3>(const Vec3*, const Vec3*) noexcept;
+template ClosestPoints closest_features<3, 3>(const Vec3*, const Vec3*) noexcept;
 
 }  // namespace odds::primitive::detail

@@ -5,15 +5,12 @@
 
 namespace odds::primitive::detail {
 
-/// Up to three corners; a segment has two, a point one. Degenerate ones are welcome.
-struct CornerSpan {
-  const Vec3* corner;
-  int count;
-};
-
 /// The closest pair among corners, edges and faces, those inside the other excepted: right for primitives that do not
 /// meet, and for those that meet in a corner or an edge right up to rounding. May say 0 for primitives that are apart
 /// by less than rounding.
-[[nodiscard]] ClosestPoints closest_features(CornerSpan a, CornerSpan b) noexcept;
+///
+/// Of polygons with so many corners: a point or segment, and a triangle; two triangles.
+template <int corners_a, int corners_b>
+[[nodiscard]] ClosestPoints closest_features(const Vec3* a, const Vec3* b) noexcept;
 
 }  // namespace odds::primitive::detail

@@ -86,7 +86,7 @@ IntersectionSegment flat_overlap(const Vec3 a[3], const Vec3 b[3]) noexcept {
   Vec3 point;
   if (crossing(simple_a, simple_b, point) || crossing(simple_b, simple_a, point)) return {point, point};
   // They touch within rounding, or both lie in one plane and one has no area: the closest features are what they share.
-  const ClosestPoints closest = closest_features({a, 3}, {b, 3});
+  const ClosestPoints closest = closest_features<3, 3>(a, b);
   const Vec3 middle = 0.5 * closest.on_a + 0.5 * closest.on_b;
   return {middle, middle};
 }

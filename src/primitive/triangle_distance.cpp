@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "odds/primitive/predicates.hpp"
 #include "odds/primitive/triangle_triangle.hpp"
 #include "primitive/closest_features.hpp"
 #include "primitive/simplex.hpp"
@@ -19,23 +20,39 @@ ClosestPoints apart(ClosestPoints closest) noexcept {
   return closest;
 }
 
+/// False if the segment is on one side of the triangle's plane, or crosses it outside of the triangle. Exact, and soon
+/// known of most: a segment taken for a triangle without an area would have each sign told by exact arithmetic.
+bool may_meet(const Vec3& begin, const Vec3& end, const Vec3 triangle[3]) noexcept {
+  const int side_begin = orient3d(triangle[0], triangle[1], triangle[2], begin);
+  const int side_end = orient3d(triangle[0], triangle[1], triangle[2], end);
+  if (side_begin * side_end > 0) return false;
+  if (side_begin == 0 && side_end == 0) return true;  // in one plane, or the triangle has none
+  const int first = orient3d(begin, end, triangle[0], triangle[1]);
+  const int second = orient3d(begin, end, triangle[1], triangle[2]);
+  if (first * second < 0) return false;
+  const int third = orient3d(begin, end, triangle[2], triangle[0]);
+  return !(first * third < 0 || second * third < 0);
+}
+
 }  // namespace
 
 Vec3 closest_point_on_triangle(const Vec3& point, const Vec3 triangle[3]) noexcept {
-  return detail::closest_features({&point, 1}, {triangle, 3}).on_b;
+  return detail::closest_features<1, 3>(&point, triangle).on_b;
 }
 
 ClosestPoints closest_points_segment_triangle(const Vec3& begin, const Vec3& end, const Vec3 triangle[3]) noexcept {
   const Vec3 flat[3] = {begin, end, end};
   IntersectionSegment common;
-  if (intersection_segment(flat, triangle, common)) return met_at(0.5 * common.begin + 0.5 * common.end);
-  return apart(detail::closest_features({flat, 2}, {triangle, 3}));
+  if (may_meet(begin, end, triangle) && intersection_segment(flat, triangle, common)) {
+    return met_at(0.5 * common.begin + 0.5 * common.end);
+  }
+  return apart(detail::closest_features<2, 3>(flat, triangle));
 }
 
 ClosestPoints closest_points(const Vec3 a[3], const Vec3 b[3]) noexcept {
   IntersectionSegment common;
   if (intersection_segment(a, b, common)) return met_at(0.5 * common.begin + 0.5 * common.end);
-  return apart(detail::closest_features({a, 3}, {b, 3}));
+  return apart(detail::closest_features<3, 3>(a, b));
 }
 
 }  // namespace odds::primitive
