@@ -1,6 +1,7 @@
 // Our class against ODE's sphere: the places of the surface that are locally nearest to the centre.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "ode/collide/contact_writer.hpp"
@@ -23,6 +24,7 @@ constexpr double same_place = 1e-6;
 struct Place {
   Vec3 point;
   double distance;
+  double extent;  // no point of the triangle is farther from `point`
   std::uint32_t triangle;
 };
 
@@ -36,11 +38,14 @@ struct Places {
 bool add_place(const PreparedMesh& mesh, const Vec3& center, double radius, std::uint32_t triangle, const Limit& limit,
                Places& places) noexcept {
   if (limit.time_is_up()) return false;
-  const Vec3 point = closest_point(mesh.corners(triangle), center);
+  const Corners corners = mesh.corners(triangle);
+  const Vec3 point = closest_point(corners, center);
   const double distance = (point - center).norm();
   if (distance > radius) return true;
   if (places.count == places.all.size()) return false;
-  places.all[places.count++] = {point, distance, triangle};
+  double square = 0.0;
+  for (const Vec3& corner : corners) square = std::max(square, (corner - point).squaredNorm());
+  places.all[places.count++] = {point, distance, std::sqrt(square), triangle};
   return true;
 }
 
@@ -64,9 +69,9 @@ bool is_local_minimum(const PreparedMesh& mesh, const Places& places, std::size_
   const Place& place = places.all[index];
   for (std::size_t i = 0; i < index; ++i) {
     const Place& closer = places.all[i];
-    const bool same = (closer.point - place.point).norm() <= tolerance;
-    if (same) return false;
-    if (closer.distance >= place.distance) continue;
+    const double apart = (closer.point - place.point).norm();
+    if (apart <= tolerance) return false;
+    if (closer.distance >= place.distance || apart > closer.extent + tolerance) continue;
     if ((closest_point(mesh.corners(closer.triangle), place.point) - place.point).norm() <= tolerance) return false;
   }
   return true;
