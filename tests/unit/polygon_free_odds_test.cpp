@@ -109,5 +109,38 @@ TEST(PolygonFreePairs, AreProvedApartWhereNoLeavesOverlap) {
   EXPECT_EQ(same.basis, Basis::estimated);
 }
 
+/// With the book's tau of 1 no cell of a smooth surface is well filled, so that two leaves that overlap meet with a
+/// probability of 0: that is an estimate, and no proof.
+TEST_P(PolygonFree, AreNotProvedApartWhereLeavesOverlapThatAreThoughtNotToMeet) {
+  ShapeOptions options;
+  options.volume = GetParam();
+  options.tau = 1.0;
+  const auto triangle = [](double side) {
+    std::vector<Vec3> corners = {{0, 0, 0}, {side, 0, 0}, {side, side, 0}};
+    return std::make_shared<const mesh::TriangleMesh>(
+        mesh::TriangleMesh::make(std::move(corners), {{0, 1, 2}}).value());
+  };
+  const math::Pose across{Eigen::AngleAxisd(0.7, Vec3(1, 0.3, 0.2).normalized()).toRotationMatrix(), {0.1, 0.05, 0}};
+  for (const auto& mesh : {testing::wavy_sphere(24), triangle(1.0)}) {
+    const auto shape = Shape::build(mesh, options).value();
+    Pair pair = Pair::make(shape, shape).value();
+    Request request;
+    request.method = Method::incremental;
+    ASSERT_EQ(pair.run(across, request).verdict, Verdict::hit);
+    request.polygon_free = true;
+    for (const EstimatorKind estimator : {EstimatorKind::cells, EstimatorKind::kinematic}) {
+      request.estimator = estimator;
+      const Answer& met = pair.run(across, request);
+      EXPECT_EQ(met.basis, Basis::estimated);
+      EXPECT_GT(met.probability, 0.0);
+      EXPECT_TRUE(met.has_cell_pair);
+      if (GetParam() == volume::Kind::sphere) continue;
+      // Within the balls about both, but not within the boxes.
+      const math::Pose beside{Mat3::Identity(), {0.0, 1.3 * (mesh->upper() - mesh->lower()).y(), 0.0}};
+      EXPECT_EQ(pair.run(beside, request).basis, Basis::proved);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace odds::query

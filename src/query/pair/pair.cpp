@@ -223,12 +223,13 @@ Apart known_apart(const tree::Hierarchy<V>&, const tree::Hierarchy<V>&, const Po
 
 Apart known_apart(const tree::WideTree& a, const tree::WideTree& b, const PosedMeshes& meshes, const Request& request,
                   const Pair::Implementation& pair) noexcept {
-  if (request.polygon_free) return Apart::unknown;
   if (wide::Encounter::are_far_apart(a, b, meshes.pose())) return Apart::far;
   if (order_of(request) == Method::incremental && pair.front.is_apart(meshes.pose(), {a.reach(), b.reach()})) {
     return Apart::still;
   }
-  if (pair.has_witness) return Apart::unknown;  // what met in the run before mostly meets now
+  // What met in the run before mostly meets now. Without polygons it is not asked, and of roots that are leaves nothing
+  // else tells that they are apart.
+  if (pair.has_witness && !request.polygon_free) return Apart::unknown;
   return wide::Encounter::are_roots_apart(a, b, meshes.pose()) ? Apart::far : Apart::unknown;
 }
 

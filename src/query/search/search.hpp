@@ -15,8 +15,8 @@ inline constexpr std::size_t stack_capacity = 2 * tree::deepest_level + 2;
 struct JudgedLeaves {
   static constexpr float enough = 0.5F;  ///< a pair of leaves as likely as this ends a search (footnote 6)
   NodePair likeliest;
-  float greatest = 0.0F;  ///< its probability; 0: no pair was judged
-  float sum = 0.0F;       ///< of all their probabilities
+  float greatest = -1.0F;  ///< its probability, which may be 0; less: no pair was judged
+  float sum = 0.0F;        ///< of all their probabilities
 
   /// Whether that is enough.
   bool note(const NodePair& pair, float probability) noexcept {
@@ -41,7 +41,7 @@ struct SearchResult {
 
   /// Whether a polygon-free search ended by what it made of pairs of leaves: by one that was enough, or by all of them.
   [[nodiscard]] bool is_judged() const noexcept {
-    return judged.greatest > 0.0F && ended != Progressed::spent && !estimated_hit;
+    return judged.greatest >= 0.0F && ended != Progressed::spent && !estimated_hit;
   }
 };
 
