@@ -110,6 +110,32 @@ TEST_P(PairOfSpheres, OnlyProofsAreCertain) {
   }
 }
 
+// Otherwise the lower the threshold, the fewer hits: the first pairs that a search meets are the least likely.
+TEST_P(PairOfSpheres, WhatPassesALowThresholdIsAHit) {
+  int passed = 0;
+  request_.max_contacts = 0;
+  for (const EstimatorKind estimator : {EstimatorKind::cells, EstimatorKind::kinematic}) {
+    request_.estimator = estimator;
+    for (const double p_min : {0.05, 0.3}) {
+      request_.p_min = p_min;
+      for (const std::uint32_t k_min : {1U, 10U}) {
+        request_.k_min = k_min;
+        for (const double x : {1.0, 1.5, 1.9}) {
+          const Answer& answer = at(x);
+          if (answer.basis != Basis::estimated) continue;
+          ++passed;
+          EXPECT_EQ(answer.verdict, Verdict::hit) << p_min << " " << k_min << " " << x;
+          EXPECT_GE(answer.probability, 0.5);
+          EXPECT_LT(answer.probability, 1.0);
+        }
+      }
+    }
+  }
+  if (request_.method != Method::exact) {
+    EXPECT_GT(passed, 6);
+  }
+}
+
 TEST_P(PairOfSpheres, RefusesAPoseThatIsNotRigid) {
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1.01}) {
     math::Pose pose;

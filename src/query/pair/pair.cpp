@@ -155,7 +155,8 @@ void judge(const SearchResult& result, double undecided_probability, bool any_hi
     answer.probability = 1.0;
   } else if (result.estimated_hit) {
     answer.basis = Basis::estimated;
-    answer.probability = static_cast<double>(result.estimate);
+    // Below one half, the caller's threshold has it that they meet.
+    answer.probability = std::max(static_cast<double>(result.estimate), 0.5);
   } else if (result.ended == Progressed::spent || !result.shortlist.empty()) {
     answer.basis = result.ended == Progressed::spent ? Basis::budget : Basis::estimated;
     answer.probability = undecided_probability;
