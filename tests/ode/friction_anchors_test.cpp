@@ -1,9 +1,12 @@
 // Friction that holds places: what rests stays, and what slides, rolls or is carried does so as without.
 #include "odds/ode/odds_friction.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "ode/ode_fixture.hpp"
@@ -316,6 +319,48 @@ TEST_F(FrictionAnchors, PullNoContactBackByMoreThanTheSlip) {
       }
     }
   }
+}
+
+/// As a sweep-and-prune space gives them, whose order follows the boxes, or any space once a body was moved.
+TEST_F(FrictionAnchors, DoNotMindInWhichOrderTheGeomsCome) {
+  const Touching touching;
+  const Anchors anchors = make_anchors();
+  const Anchors others = make_anchors();
+  const auto hold = [&](oddsFrictionAnchorsID held, bool swapped) {
+    std::array<dContact, 4> contacts;
+    for (int k = 0; k < 4; ++k) {
+      dContact& contact = contacts[static_cast<std::size_t>(k)] = touching.contact;
+      contact.geom.pos[0] = 0.1 * (k % 2) - 0.05;
+      contact.geom.pos[1] = 0.1 * (k / 2) - 0.05;
+      contact.surface.mode = dContactFDir1;
+      contact.fdir1[0] = 1.0;
+      if (!swapped) continue;
+      std::swap(contact.geom.g1, contact.geom.g2);
+      contact.geom.normal[2] = -1.0;
+    }
+    const dBodyID body = touching.body;
+    oddsFrictionAnchorsNextStep(held);
+    EXPECT_EQ(
+        oddsFrictionAnchorsHold(held, swapped ? nullptr : body, swapped ? body : nullptr, contacts.data(), 4, step_s),
+        1);
+    return contacts;
+  };
+  // ODE wants the same of the body's motion whichever comes first, where the other is the world.
+  double most = 0.0;
+  for (int i = 0; i < 40; ++i) {
+    const double angle = 1e-4 * std::min(i, 20);  // turns by more than what its contacts hold, then stands still
+    dMatrix3 turned;
+    dRFromAxisAndAngle(turned, 0.0, 0.0, 1.0, angle);
+    dBodySetRotation(touching.body, turned);
+    const auto expected = hold(anchors.get(), false);
+    const auto given = hold(others.get(), i % 3 == 0);
+    for (std::size_t k = 0; k < 4; ++k) {
+      EXPECT_NEAR(given[k].surface.motion1, expected[k].surface.motion1, 1e-9) << i;
+      EXPECT_NEAR(given[k].surface.motion2, expected[k].surface.motion2, 1e-9) << i;
+      most = std::max(most, std::abs(double{expected[k].surface.motion1}));
+    }
+  }
+  EXPECT_GT(most, 1e-3);
 }
 
 TEST_F(FrictionAnchors, ForgetWhatOverflowed) {

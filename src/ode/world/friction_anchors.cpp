@@ -106,15 +106,17 @@ int refuse(const char* rule) noexcept {
 /// The middle of all contacts.
 struct oddsFrictionAnchors::Middle {
   Vec3 place = Vec3::Zero();
-  Vec3 normal = Vec3::Zero();      ///< unit; zero where contacts push against each other
+  Vec3 normal = Vec3::Zero();      ///< unit, into the pair's first body; zero where contacts push against each other
   Vec3 asked = Vec3::Zero();       ///< mean velocity of b1 against b2 that they ask for, m/s
   Vec3 asked_spin = Vec3::Zero();  ///< the same of the spin about the normal, rad/s: of a turntable
 
-  Middle(const dContact* contacts, int count, bool b1_is_world) noexcept {
+  /// `sign`: 1 where b1 is the pair's first body, else -1. What a pair has turned is kept from step to step, and a
+  /// space may give its geoms in another order in the next.
+  Middle(const dContact* contacts, int count, bool b1_is_world, double sign) noexcept {
     constexpr double one_way = 0.1;  // of the sum of normals: less, and they hold from both sides
     for (int i = 0; i < count; ++i) {
       place += vector_of(contacts[i].geom.pos) / count;
-      normal += vector_of(contacts[i].geom.normal) / count;
+      normal += sign * vector_of(contacts[i].geom.normal) / count;
       asked += asked_of(contacts[i], b1_is_world) / count;
     }
     normal = normal.norm() > one_way ? Vec3(normal.normalized()) : Vec3(Vec3::Zero());
@@ -215,7 +217,7 @@ bool oddsFrictionAnchors::hold(dBodyID b1, dBodyID b2, dContact* contacts, int c
   Anchor* const anchor = find(pair);
   if (anchor == nullptr) return false;
   const double sign = in_order ? 1.0 : -1.0;
-  const Slid slid = follow(*anchor, Middle(contacts, count, b1 == nullptr), sign, step_s);
+  const Slid slid = follow(*anchor, Middle(contacts, count, b1 == nullptr, sign), sign, step_s);
   anchor->step = step_;
   for (int i = 0; i < count; ++i) {
     Vec3 here = slid.by + slid.turn.cross(vector_of(contacts[i].geom.pos) - slid.place);
