@@ -129,6 +129,38 @@ TEST_F(StandIn, AMeshThatWasDeformedIsFoundOutAndCanBePreparedAgain) {
   EXPECT_EQ(stats().changed_partners, 1u);
 }
 
+// A mesh whose vertices move has to be read again: it had no budget from then on, and eight contacts.
+TEST_F(StandIn, AMeshThatIsReadAgainKeepsItsSettings) {
+  const auto shape = box_shape(1, 1, 1, 1);
+  const dGeomID mesh = mesh_geom(shape, space);
+  TriMesh trimesh(shape->mesh(), space);
+  const auto expect_kept = [&](const char* after) {
+    EXPECT_EQ(dGeomOddsMeshGetBudget(trimesh.geom), 20) << after;
+    EXPECT_EQ(dGeomOddsMeshGetMaxContacts(trimesh.geom), 4) << after;
+    EXPECT_EQ(dGeomOddsMeshGetLateContacts(trimesh.geom), 0) << after;
+  };
+  ASSERT_EQ(oddsPreparePair(mesh, trimesh.geom), 1) << oddsGetLastError();
+  dGeomOddsMeshSetBudget(trimesh.geom, 20);
+  dGeomOddsMeshSetMaxContacts(trimesh.geom, 4);
+  dGeomOddsMeshSetLateContacts(trimesh.geom, 0);
+  trimesh.vertices[0] -= 0.5;
+  ASSERT_EQ(oddsPrepareTriMesh(trimesh.geom, nullptr), 1) << oddsGetLastError();
+  expect_kept("oddsPrepareTriMesh");
+  trimesh.vertices[0] -= 0.5;
+  for (int i = 0; i < 12; ++i) static_cast<void>(collide(mesh, trimesh.geom));  // finds the corner
+  ASSERT_GT(stats().changed_partners, 0u);
+  ASSERT_EQ(oddsPreparePair(mesh, trimesh.geom), 1) << oddsGetLastError();
+  expect_kept("oddsPreparePair");
+  const oddsMeshDataID data = oddsMeshDataCreate();
+  ASSERT_EQ(oddsMeshDataBuildFromTriMesh(data, trimesh.geom, nullptr), 1) << oddsGetLastError();
+  ASSERT_EQ(oddsSetStandIn(trimesh.geom, data, 1), 1) << oddsGetLastError();
+  expect_kept("oddsSetStandIn");
+  oddsMeshDataDestroy(data);
+  ASSERT_EQ(oddsForgetGeom(trimesh.geom), 1);
+  ASSERT_EQ(oddsPrepareTriMesh(trimesh.geom, nullptr), 1) << oddsGetLastError();
+  EXPECT_EQ(dGeomOddsMeshGetBudget(trimesh.geom), dInfinity) << "what was forgotten has none";
+}
+
 TEST_F(StandIn, OurOwnDoublesMayStandInForATriMesh) {
   const auto shape = sphere_shape(0.3, 4);  // not exact in single precision
   const TriMesh trimesh(shape->mesh(), space);

@@ -31,6 +31,8 @@ struct Settings {
   query::EstimatorKind estimator = query::EstimatorKind::kinematic;
   int undecided_policy = ODDS_UNDECIDED_HIT;
   double undecided_probability = 0.5;
+
+  [[nodiscard]] bool operator==(const Settings&) const noexcept = default;
 };
 
 /// The more careful of both settings in every respect; symmetric.

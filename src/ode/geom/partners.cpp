@@ -74,6 +74,11 @@ Partner* PartnerTable::insert(std::unique_ptr<Partner> partner) {
 Partner* PartnerTable::put(std::unique_ptr<Partner> partner) {
   const std::lock_guard lock(writers_);
   partners_.reserve(key_of(partner->geom));  // what is known stays if there is no memory
+  const Partner* const known = find(partner->geom);
+  if (known != nullptr && known->mesh != nullptr && partner->mesh != nullptr &&
+      known->mesh->settings != known->first_settings) {
+    partner->mesh->settings = known->mesh->settings;
+  }
   remove(partner->geom);
   return insert(std::move(partner));
 }
@@ -146,7 +151,7 @@ std::unique_ptr<Partner> make_partner(dGeomID geom, std::shared_ptr<const Prepar
   auto partner = std::make_unique<Partner>(geom);
   partner->mesh = std::make_unique<GeomData>();
   partner->mesh->mesh = std::move(mesh);
-  partner->mesh->settings = partner_settings();
+  partner->mesh->settings = partner->first_settings = partner_settings();
   partner->mesh->number = next_geom_number();
   return partner;
 }

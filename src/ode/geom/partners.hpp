@@ -17,6 +17,7 @@ struct Partner {
 
   dGeomID geom;
   std::unique_ptr<GeomData> mesh;             ///< stands in for the geom
+  Settings first_settings;                    ///< what `mesh` had when it was made: its own may be set since
   std::shared_ptr<const ConvexShape> convex;  ///< null for a mesh; of a dTriMesh that cannot be read both are
   dTriMeshDataID trimesh_data = nullptr;      ///< of a dTriMesh, when `mesh` was read from it or set to stand in for it
   dHeightfieldDataID heightfield_data = nullptr;  ///< likewise of a heightfield
@@ -36,7 +37,8 @@ class PartnerTable {
   [[nodiscard]] Partner* find(dGeomID geom) const noexcept;
   /// Whether something is known about a geom of another class that was at the address of this one, and not forgotten.
   [[nodiscard]] bool knows_another(dGeomID geom) const noexcept;
-  /// Takes the place of what is known about that geom, whose pair workspaces are freed. May throw.
+  /// Takes the place of what is known about that geom, whose pair workspaces are freed; settings that the client has
+  /// made of it stay. May throw.
   Partner* put(std::unique_ptr<Partner> partner);
   /// As put, but leaves what is known about that geom and returns it; null if it is another's. May throw.
   Partner* put_new(std::unique_ptr<Partner> partner);
