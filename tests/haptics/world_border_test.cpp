@@ -73,6 +73,39 @@ TEST(WorldBorder, KeepsItsContactWhereAnotherIsOutOfRange) {
 }
 
 // ODE ended the program, in most runs of this.
+// Gravity that is not a number ended the program, in ODE; such a damping held all bodies where they were, and one below
+// zero drove them through the floor.
+TEST(WorldBorder, KeepsItsGravityAndDampingWhereOthersAreOutOfRange) {
+  const double nan = std::nan("");
+  const double infinity = std::numeric_limits<double>::infinity();
+  WorldOptions options;
+  options.gravity_m_per_s2 = Vec3(0, 0, -9.81);
+  World world = make(options);
+  ASSERT_TRUE(world.add_fixed(cube(), at(0, 0, -0.1), "floor").ok());
+  const BodyId body = world.add_dynamic(cube(), at(0, 0, 0.001), {.mass_kg = 1.0}, "cube").value();
+  ASSERT_FALSE(world.prepare());
+  for (const double bad : {nan, infinity, -infinity}) {
+    world.set_gravity(Vec3(0, 0, bad));
+    world.set_damping({.linear_per_s = bad});
+    world.set_damping({.angular_per_s = bad});
+  }
+  world.set_damping({.linear_per_s = -5000.0});
+  world.set_damping({.angular_per_s = -5000.0});
+  for (int i = 0; i < 500; ++i) EXPECT_EQ(world.step().bodies_recovered, 0u);
+  EXPECT_LT(world.state(body).pose.translation.z(), 0.0);
+  EXPECT_GT(world.state(body).pose.translation.z(), -0.01);
+  const auto is_made = [](const auto& change) {
+    WorldOptions changed;
+    change(changed);
+    return World::make(changed).ok();
+  };
+  EXPECT_FALSE(is_made([&](WorldOptions& o) { o.damping.linear_per_s = nan; }));
+  EXPECT_FALSE(is_made([&](WorldOptions& o) { o.damping.angular_per_s = -1.0; }));
+  EXPECT_FALSE(is_made([&](WorldOptions& o) { o.max_speed_m_per_s = nan; }));
+  EXPECT_FALSE(is_made([&](WorldOptions& o) { o.max_spin_rad_per_s = 0.0; }));
+  EXPECT_TRUE(is_made([&](WorldOptions& o) { o.max_speed_m_per_s = infinity; }));
+}
+
 TEST(WorldBorder, StepsBesideAnotherOneInAnotherThread) {
   std::atomic<int> ready{0};
   const auto hang = [&ready](double& height) {

@@ -43,7 +43,7 @@ struct ContactModel {
   double max_correcting_velocity_m_per_s = 1.0;
 };
 
-/// How fast bodies lose speed, as rates of exponential decay. 0: not at all.
+/// How fast bodies lose speed, as rates of exponential decay, >= 0, finite. 0: not at all.
 struct Damping {
   double linear_per_s = 0.0;
   double angular_per_s = 0.0;
@@ -80,11 +80,11 @@ struct WorldOptions {
   /// frame.
   std::uint32_t parts = 1;
   std::uint32_t max_contacts_per_step = 64;  ///< of the whole world, 1 .. 1024; further ones are left out and counted
-  double max_speed_m_per_s = 20.0;           ///< bodies are held to it, and to its way in a step: no tool flies away
-  double max_spin_rad_per_s = 200.0;
-  bool contact_velocity = false;  ///< whether ContactPoint::velocity_m_per_s is wanted; friction computes it anyway
-  bool angular_friction = false;  ///< whether to take memory for rows of rolling and spinning friction
-  bool contact_work = false;      ///< whether StepSummary::contact_work_j and World::contact_impulse are wanted
+  double max_speed_m_per_s = 20.0;    ///< bodies are held to it, and to its way in a step: no tool flies away; > 0
+  double max_spin_rad_per_s = 200.0;  ///< > 0
+  bool contact_velocity = false;      ///< whether ContactPoint::velocity_m_per_s is wanted; friction computes it anyway
+  bool angular_friction = false;      ///< whether to take memory for rows of rolling and spinning friction
+  bool contact_work = false;          ///< whether StepSummary::contact_work_j and World::contact_impulse are wanted
   /// Of StepSummary::collision_us and step_us; null: realtime::fastest_clock(). Queries and frames, their budgets and
   /// times, always go by that one.
   realtime::Clock clock = {};
@@ -234,7 +234,8 @@ class World {
   /// Whom to call for each meeting of a step.
   void set_meeting_hook(const MeetingHook& hook) noexcept;
 
-  /// May be changed between steps. Ignored where a number is out of the range that ContactModel states.
+  /// May be changed between steps. Ignored where a number is out of the range that ContactModel or Damping states, or
+  /// where gravity is not finite.
   void set_contact(const ContactModel& contact) noexcept;
   void set_gravity(const Vec3& gravity_m_per_s2) noexcept;
   void set_damping(const Damping& damping) noexcept;

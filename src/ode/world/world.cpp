@@ -472,11 +472,13 @@ void World::set_contact(const ContactModel& contact) noexcept {
 }
 
 void World::set_gravity(const Vec3& g) noexcept {
+  if (!g.allFinite()) return;  // ODE would end the program
   implementation_->options.gravity_m_per_s2 = g;
   dWorldSetGravity(implementation_->world, g.x(), g.y(), g.z());
 }
 
 void World::set_damping(const Damping& damping) noexcept {
+  if (!is_in_range(damping)) return;
   implementation_->options.damping = damping;
   implementation_->apply_damping();
 }

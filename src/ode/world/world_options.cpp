@@ -28,12 +28,21 @@ std::optional<Fault> fault_of(const ContactModel& c) noexcept {
   return std::nullopt;
 }
 
+bool is_in_range(const Damping& damping) noexcept {
+  return damping.linear_per_s >= 0.0 && damping.angular_per_s >= 0.0 &&
+         std::isfinite(damping.linear_per_s + damping.angular_per_s);
+}
+
 std::optional<Error> check(const WorldOptions& o) {
   const auto bad = [](const char* what, const char* remedy) { return Error{"world", "", what, remedy}; };
   if (!(o.step_s > 0.0) || !std::isfinite(o.step_s))
     return bad("the step is not a positive time", "give seconds above zero");
   if (!o.gravity_m_per_s2.allFinite()) return bad("gravity is not finite", "give three finite numbers");
   if (const auto fault = fault_of(o.contact)) return bad(fault->what, fault->remedy);
+  if (!is_in_range(o.damping)) return bad("the damping is out of range", "give at least zero, finite");
+  if (!(o.max_speed_m_per_s > 0.0) || !(o.max_spin_rad_per_s > 0.0)) {
+    return bad("the greatest speed or spin is not positive", "give numbers above zero");
+  }
   if (o.query.max_contacts < 0 || o.query.max_contacts > most_contacts_per_pair) {
     return bad("the contacts of a pair are out of range", "give 0 to 8");
   }

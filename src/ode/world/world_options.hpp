@@ -21,6 +21,8 @@ struct Fault {
 /// What is wrong with a model of contact; nothing if all is well.
 [[nodiscard]] std::optional<Fault> fault_of(const ContactModel& contact) noexcept;
 
+[[nodiscard]] bool is_in_range(const Damping& damping) noexcept;
+
 /// What is wrong with the options; nothing if all is well.
 [[nodiscard]] std::optional<Error> check(const WorldOptions& options);
 
