@@ -127,6 +127,29 @@ TEST_F(Takeover, WhatItCannotAnswerIsLeftToOde) {
   EXPECT_EQ(stats().taken_over, 0u);
 }
 
+// It was read for the wide engine, so that the first collision had no contacts, and all others were ODE's.
+TEST_F(Takeover, AMeshThatNobodyPreparedIsReadWithTheVolumeOfTheOneThatItMeets) {
+  const auto shape = box_shape(1, 1, 1, 2);
+  const TriMesh known(shape->mesh(), space);
+  const TriMesh second(shape->mesh(), space);
+  const TriMesh third(shape->mesh(), space);
+  const TriMesh wide(shape->mesh(), space);
+  dGeomSetPosition(known.geom, 0.1, 0.2, 0.9);
+  take_over();
+  oddsBuildParams params;
+  oddsBuildParamsInit(&params);
+  params.volume = ODDS_VOLUME_OBB;
+  ASSERT_EQ(oddsPrepareTriMesh(known.geom, &params), 1) << oddsGetLastError();
+  EXPECT_FALSE(collide(known.geom, second.geom).empty());
+  EXPECT_FALSE(collide(third.geom, known.geom).empty());
+  EXPECT_EQ(stats().fallbacks, 0u);
+  EXPECT_EQ(stats().taken_over, 2u);
+  ASSERT_EQ(oddsPrepareTriMesh(wide.geom, nullptr), 1) << oddsGetLastError();
+  EXPECT_FALSE(collide(known.geom, wide.geom).empty()) << "ODE's own, from the first collision on";
+  EXPECT_EQ(stats().fallbacks, 1u);
+  EXPECT_EQ(stats().failed_pairs, 0u);
+}
+
 TEST_F(Takeover, AMeshWithAMovedCornerIsLeftToOdeUntilItIsReadAgain) {
   const auto shape = box_shape(1, 1, 1, 4);
   const TriMesh first(shape->mesh(), space);

@@ -26,20 +26,22 @@ bool has_callbacks(dGeomID trimesh) noexcept {
          dGeomTriMeshGetRayCallback(trimesh) != nullptr || dGeomTriMeshGetTriMergeCallback(trimesh) != nullptr;
 }
 
-// The mesh of a dTriMesh that we may answer for, or null.
-GeomData* ours(dGeomID trimesh) noexcept {
-  return has_callbacks(trimesh) ? nullptr : mesh_of_partner(trimesh, volume::Kind::wide);
+// The mesh of a dTriMesh that we may answer for, or null; one that is not known yet is read for what it meets.
+GeomData* ours(dGeomID trimesh, dGeomID other) noexcept {
+  if (has_callbacks(trimesh)) return nullptr;
+  const GeomData* met = known_data(other);
+  return mesh_of_partner(trimesh, met != nullptr ? met->mesh->shape->volume() : volume::Kind::wide);
 }
 
 bool can_answer(dGeomID o1, dGeomID o2) noexcept {
-  const GeomData* first = ours(o1);
+  const GeomData* first = ours(o1, o2);
   if (first == nullptr) return false;
   const int other = dGeomGetClass(o2);
   if (other == dTriMeshClass) {
-    const GeomData* second = ours(o2);
-    if (second == nullptr) return false;
+    const GeomData* second = ours(o2, o1);
+    if (second == nullptr || first->mesh->shape->volume() != second->mesh->shape->volume()) return false;
     const PairEntry* entry = pair_table().find(*first, *second);
-    return entry == nullptr || entry->pair.has_value();  // else: unlike volumes, or no memory
+    return entry == nullptr || entry->pair.has_value();  // else: no memory
   }
   if (other != dConvexClass) return true;
   Partner* const convex = partner_table().find(o2);
