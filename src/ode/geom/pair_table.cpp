@@ -165,6 +165,15 @@ int oddsPreparePair(dGeomID g1, dGeomID g2) noexcept {
   GeomData* second = first != nullptr || !is_mesh(g1) ? prepared_data(g2, g1) : nullptr;
   const bool failed = (is_mesh(g1) && first == nullptr) || (is_mesh(g2) && second == nullptr);
   if (failed) return 0;
+  const auto is_unanswered = [our_class](dGeomID geom, const GeomData* data, dGeomID other) {
+    return data == nullptr && dGeomGetClass(geom) == dHeightfieldClass && dGeomGetClass(other) == our_class;
+  };
+  if (is_unanswered(g1, first, g2) || is_unanswered(g2, second, g1)) {
+    set_last_error(
+        "oddsPreparePair: no mesh stands in for the heightfield, or not for the data that it has now; call "
+        "oddsSetStandIn");
+    return 0;
+  }
   if (first == nullptr || second == nullptr) return 1;
   const PairTable::Made made = pair_table().prepare(*first, *second, true);
   return made.entry != nullptr && made.entry->pair ? 1 : 0;
