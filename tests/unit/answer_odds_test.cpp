@@ -199,5 +199,25 @@ TEST(Recalibration, HasNothingToLearnFromWithoutPolygons) {
   EXPECT_TRUE(Pair::make(shape, shape, options).ok());
 }
 
+// The wide engine's roots had a rank of their own where a threshold was set, whatever their overlap.
+TEST(AnswerOdds, OfTheRootsAloneAreTheSameWithAndWithoutAThreshold) {
+  for (const volume::Kind kind : {volume::Kind::wide, volume::Kind::aabb}) {
+    ShapeOptions options;
+    options.volume = kind;
+    const auto shape = Shape::build(testing::wavy_sphere(24), options).value();
+    Pair pair = Pair::make(shape, shape).value();
+    for (const double x : {0.3, 1.0, 1.6, 1.9}) {
+      const math::Pose pose{Eigen::AngleAxisd(x, Vec3::UnitZ()).toRotationMatrix(), {x, 0.1, 0.2}};
+      Request request;
+      request.max_contacts = 0;
+      request.budget = Budget::work(kind == volume::Kind::wide ? 7 : 2);  // opens nothing
+      const Answer without = pair.run(pose, request);
+      ASSERT_EQ(without.basis, Basis::budget);
+      request.p_min = 0.9999999;
+      EXPECT_EQ(pair.run(pose, request).probability, without.probability) << x;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace odds::query

@@ -24,7 +24,7 @@ class TimeCritical {
 
   void run() noexcept {
     task_.queue->clear();
-    task_.queue->push(0, {tree::WideTree::root, tree::WideTree::root, 0.0F});
+    task_.queue->push(0, {tree::WideTree::root, tree::WideTree::root, unranked});
     if (!task_.spending.may_go_on()) finish(Progressed::spent);
     while (!task_.queue->empty() && !finished_) {
       if (!task_.spending.may_go_on_after(units_between_polls)) {
