@@ -272,6 +272,33 @@ TEST_F(BoxTest, ASheetOfOneLayerIsLeftAtItsFront) {
   }
 }
 
+// The first triangles may be those of a wall only: along its normal the box would go all of the length of what it
+// stands on. It was pushed by up to 1.4 m, out of a cube of 1 m in which it lay by 1 cm.
+TEST_F(BoxTest, AWallThatIsAllThatIsKnownPushesItNoFartherThanOutOfTheMesh) {
+  const dGeomID mesh = mesh_geom(box_shape(1, 1, 1, 1), space);
+  const dGeomID box = dCreateBox(space, 1, 1, 1);
+  dGeomOddsMeshSetBudget(mesh, dInfinity);
+  dGeomOddsMeshSetCarryMotion(mesh, 0);
+  int cut_off = 0;
+  for (int round = 0; round < 200; ++round) {
+    rotate(box, Vec3(0.01 * uniform(random), 0.01 * uniform(random), 1.0), 3.0 * uniform(random));
+    dGeomSetPosition(box, 0.5 * uniform(random), 0.5 * uniform(random), 0.99 + 0.005 * uniform(random));
+    for (unsigned long units = 1; units < 8; ++units) {
+      dGeomOddsMeshSetWorkBudget(mesh, 0);
+      const auto all = collide(box, mesh);
+      ASSERT_FALSE(all.empty());
+      oddsResetStats();
+      dGeomOddsMeshSetWorkBudget(mesh, units);
+      const auto contacts = collide(box, mesh);
+      if (stats().primitive_cut_off == 0) continue;
+      cut_off += contacts.empty() ? 0 : 1;
+      for (const dContactGeom& contact : contacts)
+        EXPECT_LE(contact.depth, all[0].depth + 1e-4) << round << " " << units;
+    }
+  }
+  EXPECT_GT(cut_off, 100);
+}
+
 // What the time leaves of many pieces of surface is from opposite sides: on those of one a body would tip over.
 TEST_F(BoxTest, InShortTimeItIsHeldOnOppositeSides) {
   const dGeomID floor = mesh_geom(box_shape(1.0, 1.0, 0.1, 40), space);

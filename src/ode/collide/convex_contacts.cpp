@@ -283,6 +283,25 @@ void leave_by_the_near_side(const PreparedMesh& mesh, const math::Pose& body_in_
   }
 }
 
+// A collision that its limit ended may know nothing but a wall of what the body stands on, and along that wall's normal
+// the body would go all of the solid's length. No way out is longer than that out of the box about the solid.
+void leave_by_the_box(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const ConvexBody& body,
+                      std::span<Patch> patches) noexcept {
+  const Vec3 center = body_in_mesh * body.box_center();
+  const Vec3 half = body_in_mesh.rotation.cwiseAbs() * body.box_half_extents();
+  const Vec3 up = mesh.mesh().upper() - (center - half);
+  const Vec3 down = center + half - mesh.mesh().lower();
+  Eigen::Index axis = 0;
+  up.cwiseMin(down).minCoeff(&axis);
+  const double sign = up[axis] <= down[axis] ? 1.0 : -1.0;
+  const double side = sign > 0.0 ? mesh.mesh().upper()[axis] : -mesh.mesh().lower()[axis];
+  const Vec3 out = sign * body_in_mesh.rotation.row(axis).transpose();
+  const double depth = side - sign * body_in_mesh.translation[axis] + body.reach(-out);
+  for (Patch& patch : patches) {
+    if (depth > 0.0 && depth < patch.exit.depth) patch.exit = {out, depth};
+  }
+}
+
 // No surface inside the body: it may still be swallowed by a closed mesh, and is pushed to the nearest surface. `late`:
 // none was found in time. Then the surface over the body's lowest point is asked for, seen along the nearest one's
 // normal: this takes no cutting. False if the limit ended the search for the nearest surface.
@@ -385,6 +404,9 @@ Seen write_convex_contacts(const PreparedMesh& mesh, const math::Pose& mesh_in_w
     if (!pieces.complete) {
       leave_by_the_near_side(mesh, body_in_mesh, body, limit, std::span(patches).first(count));
       add_deepest(mesh, body_in_mesh, body, limit, pieces, std::span(patches).first(count));
+    }
+    if (mesh.closed && (pieces.cut_off || limit.time_is_up(time_for_exits))) {
+      leave_by_the_box(mesh, body_in_mesh, body, std::span(patches).first(count));
     }
     write_manifolds(mesh, body_in_mesh, std::span(patches).first(count), body, body_in_world, limit, writer, room);
   }
