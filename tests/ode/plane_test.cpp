@@ -207,6 +207,35 @@ TEST_F(PlaneTest, AFineBodyDeepBelowIsHeldAroundItsOutline) {
   }
 }
 
+// As STL files have it: no vertex is common to two triangles.
+TEST_F(PlaneTest, AMeshThatRepeatsItsVerticesHasTheSameContacts) {
+  const auto shape = sphere_shape(1, 12);
+  std::vector<Vec3> vertices;
+  std::vector<mesh::Triangle> triangles;
+  for (const mesh::Triangle& t : shape->mesh().triangles()) {
+    const auto first = static_cast<std::uint32_t>(vertices.size());
+    for (const std::uint32_t v : t) vertices.push_back(shape->mesh().vertices()[v]);
+    triangles.push_back({first, first + 1, first + 2});
+  }
+  auto repeated = mesh::TriangleMesh::make(vertices, triangles);
+  const dGeomID mesh = mesh_geom(shape, space);
+  const dGeomID other = mesh_geom(
+      query::Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(repeated).value())).value(), space);
+  for (const dGeomID geom : {mesh, other}) ASSERT_EQ(dGeomOddsMeshSetBudget(geom, 1e9), 1);
+  std::uniform_real_distribution<double> uniform(-0.95, -0.5);
+  for (int round = 0; round < 100; ++round) {
+    const Vec3 normal = random_direction(random);
+    const dGeomID plane = dCreatePlane(nullptr, normal.x(), normal.y(), normal.z(), uniform(random));
+    const auto contacts = collide(mesh, plane);
+    const auto of_other = collide(other, plane);
+    ASSERT_EQ(contacts.size(), of_other.size());
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      EXPECT_LT((position_of(contacts[i]) - position_of(of_other[i])).norm(), 1e-12) << round;
+    }
+    dGeomDestroy(plane);
+  }
+}
+
 TEST_F(PlaneTest, AShortBudgetStillFindsOneNearlyAsDeepAsAny) {
   const auto shape = sphere_shape(1, 60);
   const dGeomID mesh = mesh_geom(shape, space);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -13,7 +14,7 @@
 
 namespace odds::ode {
 
-/// Vertices, each once.
+/// Places of corners, each once: a mesh without common vertices, as STL files have it, repeats them.
 class GatheredVertices {
  public:
   static constexpr std::size_t most = 512;
@@ -30,23 +31,25 @@ class GatheredVertices {
   [[nodiscard]] double size() const noexcept;
 
   /// Precondition: not full, but for one that may be added afterwards.
-  void add(std::uint32_t number, std::uint32_t corner, const Vec3& position) noexcept {
-    std::size_t place = (number * hash_factor) >> (32 - bits);
+  void add(std::uint32_t corner, const Vec3& position) noexcept {
+    std::uint64_t hash = 0;
+    for (const double x : {position.x(), position.y(), position.z()}) {
+      hash = (hash ^ std::bit_cast<std::uint64_t>(x + 0.0)) * hash_factor;  // no -0, for it equals 0
+    }
+    std::size_t place = hash >> (64 - bits);
     for (; places_[place] != nobody; place = (place + 1) % places_.size()) {
-      if (numbers_[places_[place]] == number) return;
+      if (vertices_[places_[place]].position == position) return;
     }
     places_[place] = static_cast<std::uint16_t>(count_);
-    numbers_[count_] = number;
     vertices_[count_++] = {position, corner};
   }
 
  private:
   static constexpr int bits = 10;  // half of the places remain free
-  static constexpr std::uint32_t hash_factor = 2654435769U;
+  static constexpr std::uint64_t hash_factor = 0x9E3779B97F4A7C15U;
   static constexpr std::uint16_t nobody = 0xFFFF;
 
   std::array<Vertex, most + 1> vertices_;
-  std::array<std::uint32_t, most + 1> numbers_;
   std::array<std::uint16_t, std::size_t{1} << bits> places_;
   std::size_t count_ = 0;
 };
@@ -77,7 +80,7 @@ class CornersBelow {
   [[nodiscard]] bool has_some_left() const noexcept { return limit_.nodes_left() > 0 && has_time_to_search(); }
   /// False if they are too many, or it was ended.
   [[nodiscard]] bool gather() noexcept;
-  void add(std::uint32_t corner) noexcept { gathered_.add(search_.vertex_of(corner), corner, position(corner)); }
+  void add(std::uint32_t corner) noexcept { gathered_.add(corner, position(corner)); }
   [[nodiscard]] std::uint32_t farthest_below(const Vec3& from, double least_depth) const noexcept;
   /// The corner of greatest value of those below by that depth, or one that is less by no more than `not_greater`.
   template <class Value, class Bounds>
