@@ -47,7 +47,8 @@ MeshBuilder::MeshBuilder(Input& input, const ReadOptions& options, std::uint64_t
 
 std::uint64_t MeshBuilder::held_bytes() const noexcept {
   return vertices_.capacity() * sizeof(Vec3) + triangles_.capacity() * sizeof(Triangle) +
-         table_.capacity() * sizeof(std::uint32_t);
+         table_.capacity() * sizeof(std::uint32_t) + late_polygons_.capacity() * sizeof(LatePolygon) +
+         ring_.capacity() * sizeof(RingCorner);
 }
 
 template <class T>
@@ -135,11 +136,29 @@ void MeshBuilder::grow_table() {
   table_ = std::move(larger);
 }
 
-void MeshBuilder::end_polygon() const {
-  if (corners_ >= 3) return;
-  input_.refuse(
-      "a face has " + std::to_string(corners_) + (corners_ == 1 ? " corner" : " corners") + ", not at least 3",
-      "remove the face or give it its missing corners");
+void MeshBuilder::end_polygon() {
+  if (corners_ < 3) {
+    input_.refuse(
+        "a face has " + std::to_string(corners_) + (corners_ == 1 ? " corner" : " corners") + ", not at least 3",
+        "remove the face or give it its missing corners");
+  }
+  if (corners_ == 3) return;
+  const std::uint32_t triangles = corners_ - 2;
+  const std::uint64_t first = triangles_.size() - triangles;
+  if (greatest_ < vertices_.size()) {
+    unfold(first, triangles);
+  } else {
+    grow(late_polygons_, late_polygons_.size() + 1, max_triangles_);
+    late_polygons_.push_back({static_cast<std::uint32_t>(first), triangles});
+  }
+}
+
+void MeshBuilder::unfold(std::uint64_t first_triangle, std::uint64_t triangles) {
+  const std::span<Triangle> fan =
+      std::span(triangles_).subspan(static_cast<std::size_t>(first_triangle), static_cast<std::size_t>(triangles));
+  if (!fan_folds(vertices_, fan)) return;
+  grow(ring_, triangles + 2, max_triangles_ + 2);
+  cut_ears(vertices_, fan, ring_);
 }
 
 TriangleMesh MeshBuilder::finish(const std::string& hint) && {
@@ -148,6 +167,9 @@ TriangleMesh MeshBuilder::finish(const std::string& hint) && {
                   "give a file with at least one triangle or polygon");
   }
   table_ = {};
+  for (const LatePolygon& polygon : late_polygons_) unfold(polygon.first_triangle, polygon.triangles);
+  late_polygons_ = {};
+  ring_ = {};
   // What growth left unused would be held for the life of the mesh; giving it back briefly needs both blocks.
   if (held_bytes() + vertices_.size() * sizeof(Vec3) <= max_bytes_) vertices_.shrink_to_fit();
   if (held_bytes() + triangles_.size() * sizeof(Triangle) <= max_bytes_) triangles_.shrink_to_fit();

@@ -1,11 +1,13 @@
-// Collects vertices and fanned polygons within the limits of ReadOptions and the bound on memory.
+// Collects vertices and polygons cut into triangles within the limits of ReadOptions and the bound on memory.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "mesh/input.hpp"
+#include "mesh/polygon.hpp"
 #include "odds/mesh/read.hpp"
 
 namespace odds::mesh {
@@ -23,17 +25,21 @@ class MeshBuilder {
   /// The index of the vertex at exactly this position, appended if there is none yet (-0 equals 0).
   std::uint32_t weld_vertex(double x, double y, double z);
 
-  void begin_polygon() noexcept { corners_ = 0; }
+  void begin_polygon() noexcept {
+    corners_ = 0;
+    greatest_ = 0;
+  }
   /// The next corner; from the third on each adds a triangle to the fan around the first. `vertex` < 2^32 may refer to
   /// a vertex that is still to come; the caller checks it.
   void add_corner(std::uint32_t vertex) {
     if (corners_ == 0) first_ = vertex;
     if (corners_ >= 2) add_triangle({first_, previous_, vertex});
     previous_ = vertex;
+    greatest_ = std::max(greatest_, vertex);
     ++corners_;
   }
-  /// Refuses a polygon of fewer than three corners.
-  void end_polygon() const;
+  /// Cuts the polygon otherwise where its fan would cover more than it. Refuses one of fewer than three corners.
+  void end_polygon();
   void add_triangle(const Triangle& triangle) {
     if (triangles_.size() == triangles_.capacity()) grow_triangles();
     triangles_.push_back(triangle);
@@ -54,6 +60,8 @@ class MeshBuilder {
   void grow_triangles();
   void grow_vertices();
   void grow_table();
+  /// Mends a polygon's fan if it folds; its vertices are there.
+  void unfold(std::uint64_t first_triangle, std::uint64_t triangles);
   [[nodiscard]] Vec3 checked(double x, double y, double z) const;
   [[nodiscard]] std::uint64_t held_bytes() const noexcept;
   [[noreturn]] void refuse_vertex_limit() const;
@@ -67,7 +75,14 @@ class MeshBuilder {
   std::vector<Vec3> vertices_;
   std::vector<Triangle> triangles_;
   std::vector<std::uint32_t> table_;  // open addressing; vertex index + 1, 0 where empty; a power of two long
+  struct LatePolygon {
+    std::uint32_t first_triangle;
+    std::uint32_t triangles;
+  };
+  std::vector<LatePolygon> late_polygons_;  // some of whose vertices were still to come
+  std::vector<RingCorner> ring_;
   std::uint32_t corners_ = 0;
+  std::uint32_t greatest_ = 0;  // index of the polygon's corners
   std::uint32_t first_ = 0;
   std::uint32_t previous_ = 0;
 };
