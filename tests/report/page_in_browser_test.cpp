@@ -109,6 +109,25 @@ TEST_F(PageInBrowser, draws_the_replay) {
   EXPECT_GT(root_number(dom, "data-replay-drawn"), 5'000) << root_of(dom);
 }
 
+TEST(ReplayMesh, VerticesOfNoTriangleAreNotShown) {
+  // Far off, they would have the eye stand where nothing is seen, and draw the cell in which they end out of place.
+  const auto torus = mesh::made::make_shape("made:torus");
+  ASSERT_TRUE(torus.ok());
+  std::vector<Vec3> vertices = {Vec3::Constant(-1e3)};
+  std::vector<mesh::Triangle> triangles;
+  for (const Vec3& v : torus.value().vertices()) vertices.push_back(v);
+  for (const mesh::Triangle& t : torus.value().triangles()) triangles.push_back({t[0] + 1, t[1] + 1, t[2] + 1});
+  vertices.push_back(Vec3::Constant(1e3));
+  const auto mesh = mesh::TriangleMesh::make(std::move(vertices), std::move(triangles));
+  ASSERT_TRUE(mesh.ok());
+  for (const std::size_t most : {torus.value().triangles().size(), torus.value().triangles().size() / 5}) {
+    const ReplayMesh expected = simplified(torus.value(), most);
+    const ReplayMesh shown = simplified(mesh.value(), most);
+    EXPECT_EQ(shown.vertices, expected.vertices);
+    EXPECT_EQ(shown.triangles, expected.triangles);
+  }
+}
+
 TEST(ReplayMesh, IsSimplifiedToTheNumberAskedForAndKeepsItsPlace) {
   const auto torus = mesh::made::make_shape("made:torus_knot");
   ASSERT_TRUE(torus.ok());
