@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "mesh/adjacency.hpp"
+#include "mesh/caps.hpp"
 #include "mesh/surrounds.hpp"
 
 namespace odds::mesh {
@@ -31,6 +32,7 @@ class Bench {
   }
 
   void drop_degenerate() {
+    log_.flipped_degenerate = flip_caps(vertices_, triangles_);
     log_.dropped_degenerate = std::erase_if(triangles_, [&](const Triangle& t) {
       return has_zero_area(vertices_[t[0]], vertices_[t[1]], vertices_[t[2]]);
     });
@@ -244,6 +246,7 @@ std::vector<std::string> RepairLog::lines() const {
     if (count > 0) text.push_back(std::to_string(count) + " " + what);
   };
   add(welded_vertices, "vertices welded to an earlier one at exactly the same position");
+  add(flipped_degenerate, "degenerate triangles became part of the one beyond their long side, lest a gap open");
   add(dropped_degenerate, "degenerate triangles dropped");
   add(dropped_duplicates, "duplicate triangles dropped");
   add(turned_triangles, "triangles turned over to agree with their neighbours or to face outwards");

@@ -261,6 +261,63 @@ TEST(Repair, KeepsACavityWhereverItLiesInABox) {
   }
 }
 
+/// The mesh with `count` corners more on a side of every fourth triangle: that triangle is cut there, its neighbour is
+/// not, and triangles without area close the gap, as programs write it.
+TriangleMesh with_caps(const TriangleMesh& mesh, std::uint32_t count) {
+  std::vector<Vec3> vertices(mesh.vertices().begin(), mesh.vertices().end());
+  std::vector<Triangle> triangles;
+  for (std::size_t i = 0; i < mesh.triangles().size(); ++i) {
+    const auto [a, b, c] = mesh.triangles()[i];
+    if (i % 4 != 0) {
+      triangles.push_back({a, b, c});
+      continue;
+    }
+    std::uint32_t last = a;
+    for (std::uint32_t k = 1; k <= count; ++k) {
+      const double share = static_cast<double>(k) / 4.0;  // exact along the axes of a box of whole cells
+      const auto next = static_cast<std::uint32_t>(vertices.size());
+      vertices.push_back((1.0 - share) * mesh.vertices()[a] + share * mesh.vertices()[b]);
+      triangles.push_back({last, next, c});
+      triangles.push_back({a, k < count ? next + 1 : b, next});
+      last = next;
+    }
+    triangles.push_back({last, b, c});
+  }
+  return mesh_of(vertices, triangles);
+}
+
+TEST(Repair, WhatWasClosedByTrianglesWithoutAreaStaysClosedWithoutThem) {
+  const TriangleMesh box = made::make(made::Box{.x = 2, .y = 4, .z = 8, .cells = 4}).value();
+  for (const std::uint32_t count : {1U, 2U, 3U}) {
+    const TriangleMesh whole = with_caps(box, count);
+    for (const TriangleMesh& mesh : {whole, soup_of(whole)}) {
+      const Faults before = find_faults(mesh);
+      ASSERT_TRUE(before.closed && before.consistent());
+      const auto repaired = repair(mesh).value();
+      const Faults after = find_faults(repaired.mesh);
+      EXPECT_TRUE(after.clean());
+      EXPECT_TRUE(after.closed);
+      EXPECT_EQ(after.degenerate.count, 0U);
+      EXPECT_EQ(after.volume.value_or(0.0), 64.0);
+      EXPECT_EQ(after.area, before.area);
+      EXPECT_EQ(repaired.mesh.triangles().size(), mesh.triangles().size());
+      EXPECT_EQ(repaired.log.flipped_degenerate, before.degenerate.count);
+      EXPECT_EQ(repaired.log.dropped_degenerate, 0U);
+    }
+  }
+}
+
+TEST(Repair, DropsATriangleWithoutAreaThatClosesNothing) {
+  auto faces = tetrahedron_faces;
+  faces.push_back({0, 1, 4});
+  auto corners = tetrahedron;
+  corners.push_back({0.5, 0, 0});
+  const auto repaired = repair(mesh_of(corners, faces)).value();
+  EXPECT_EQ(repaired.log.dropped_degenerate, 1U);
+  EXPECT_EQ(repaired.log.flipped_degenerate, 0U);
+  EXPECT_TRUE(find_faults(repaired.mesh).clean());
+}
+
 TEST(Repair, SaysSoWhenThereIsNothingToDo) {
   const auto repaired = repair(made::make_shape("gear").value()).value();
   EXPECT_FALSE(repaired.log.changed());
