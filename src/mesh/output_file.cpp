@@ -28,12 +28,16 @@ std::filesystem::path behind_links(std::filesystem::path path) {
 }  // namespace
 
 OutputFile::OutputFile(std::filesystem::path target, std::filesystem::path temporary, std::FILE* stream)
-    : target_(std::move(target)), temporary_(std::move(temporary)), stream_(stream) {}
+    : target_(std::move(target)),
+      temporary_(std::move(temporary)),
+      stream_(stream),
+      unfinished_(temporary_.empty() ? UnfinishedFile() : UnfinishedFile(temporary_.string())) {}
 
 OutputFile::OutputFile(OutputFile&& other) noexcept
     : target_(std::move(other.target_)),
       temporary_(std::move(other.temporary_)),
       stream_(std::exchange(other.stream_, nullptr)),
+      unfinished_(std::move(other.unfinished_)),
       failure_(other.failure_) {
   other.temporary_.clear();
 }

@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 
+#include "mesh/unfinished_file.hpp"
 #include "odds/math/error.hpp"
 
 namespace odds::mesh {
@@ -40,6 +41,7 @@ class OutputFile {
   std::filesystem::path target_;  ///< empty for standard output
   std::filesystem::path temporary_;
   std::FILE* stream_;
+  UnfinishedFile unfinished_;
   int failure_ = 0;  ///< the first errno of a write
 };
 

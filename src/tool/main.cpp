@@ -6,6 +6,7 @@
 #include <string>
 
 #include "tool/command.hpp"
+#include "tool/ending.hpp"
 #include "tool/one_line.hpp"
 #include "tool/standard_streams.hpp"
 #include "tool/usage_error.hpp"
@@ -31,6 +32,7 @@ int with_output_written(int status) {
 int main(int argc, char** argv) {
   odds::tool::occupy_closed_streams();
   odds::tool::survive_size_limits();
+  odds::tool::leave_no_unfinished_files();
   CLI::App app{"odds: mesh collision inside a hard microsecond budget, with a probability where proof did not fit"};
   app.require_subcommand(1);
   app.set_version_flag("--version", std::string("odds ") + ODDS_VERSION, "Print the version and exit");

@@ -11,6 +11,7 @@
 #include <functional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "support/run_tool.hpp"
 
@@ -45,16 +46,19 @@ double seconds_of_a_processor(pid_t program) {
   return stat ? std::stod(field) / static_cast<double>(sysconf(_SC_CLK_TCK)) : 0.0;
 }
 
-/// Status of `odds run scene.toml` that gets SIGINT as soon as `now(its number)`; 128 and more: the signal that ended
-/// it.
-int interrupted(const TemporaryFolder& folder, const char* seconds, const std::function<bool(pid_t)>& now) {
+/// Status of `odds` with these words that gets the signal as soon as `now(its number)`; 128 and more: the signal that
+/// ended it.
+int ended_by(int signal, const TemporaryFolder& folder, std::vector<std::string> words,
+             const std::function<bool(pid_t)>& now) {
+  words.insert(words.begin(), "odds");
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
   const pid_t program = fork();
   if (program == 0) {
     const int nothing = open("/dev/null", O_RDWR);
     for (int stream = 0; stream < 3; ++stream) dup2(nothing, stream);
-    if (chdir(folder.path().c_str()) == 0) {
-      execl(ODDS_TOOL, "odds", "run", "scene.toml", "--seconds", seconds, "--out", "out", static_cast<char*>(nullptr));
-    }
+    if (chdir(folder.path().c_str()) == 0) execv(ODDS_TOOL, arguments.data());
     _exit(127);
   }
   constexpr std::chrono::milliseconds pause{5};
@@ -62,13 +66,34 @@ int interrupted(const TemporaryFolder& folder, const char* seconds, const std::f
   for (int i = 0; i < 60'000 && !now(program) && waitpid(program, &status, WNOHANG) == 0; ++i) {
     std::this_thread::sleep_for(pause);
   }
-  kill(program, SIGINT);
+  kill(program, signal);
   for (int i = 0; i < 24'000 && waitpid(program, &status, WNOHANG) == 0; ++i) std::this_thread::sleep_for(pause);
   if (waitpid(program, &status, WNOHANG) == 0) {
     kill(program, SIGKILL);
     waitpid(program, &status, 0);
   }
   return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+}
+
+/// The same of `odds run scene.toml`, by Ctrl-C.
+int interrupted(const TemporaryFolder& folder, const std::string& seconds, const std::function<bool(pid_t)>& now) {
+  return ended_by(SIGINT, folder, {"run", "scene.toml", "--seconds", seconds, "--out", "out"}, now);
+}
+
+TEST(Interrupt, LeavesNoUnfinishedFile) {
+  const TemporaryFolder folder;
+  folder.write("poses.csv", "x,y,z,qw,qx,qy,qz\n0.3,0.1,0,1,0,0,0\n");
+  const auto files = [&] {
+    return std::distance(std::filesystem::directory_iterator(folder.path()), std::filesystem::directory_iterator());
+  };
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    const std::string shape = "made:torus_knot:along=2000,across=100";  // with these volumes it takes seconds
+    const int status = ended_by(signal, folder,
+                                {"query", shape, shape, "--bv", "hull", "--poses", "poses.csv", "--out", "answers.csv"},
+                                [&](pid_t program) { return files() > 1 && seconds_of_a_processor(program) > 0.1; });
+    EXPECT_EQ(status, 128 + signal);
+    EXPECT_EQ(files(), 1) << "but poses.csv";
+  }
 }
 
 TEST(Interrupt, EndsTheProgramWhileMeshesLoad) {
