@@ -60,6 +60,9 @@ std::optional<Error> read_query(const Settings& settings, Scene& scene) {
   if (reader.has("k_min") && !reader.has("p_min")) {
     reader.reject("k_min", "without 'p_min' no query ends on probability", "add 'p_min', or remove this key");
   }
+  if (request.method == query::Method::exact && request.p_min < 1.0) {
+    reader.reject("p_min", "the method 'exact' never ends on probability", "take another 'method', or remove this key");
+  }
   reader.number("frame_us", Range::positive(), scene.frame.microseconds);
   if (reader.integer("frame_work_units", 1, largest_integer, number)) {
     scene.frame.work_units = static_cast<std::uint64_t>(number);

@@ -77,6 +77,11 @@ int run(const QueryOptions& options) {
     return fail({options.run.pair.mesh_a, "", "the wide engine has no test of leaves to leave out",
                  "choose another volume by --bv, or leave out --no-leaf-test"});
   }
+  const bool has_polygons = !options.request.polygon_free && pair.a().has_polygons() && pair.b().has_polygons();
+  if (options.request.method == query::Method::exact && options.request.p_min < 1.0 && has_polygons) {
+    return fail(
+        {"", "", "the exact method never ends on a probability", "leave out --p-min, or take another --method"});
+  }
   query::Request request = options.request;
   request.budget = options.run.limited(request.budget);
   std::vector<AnswerRecord> records;

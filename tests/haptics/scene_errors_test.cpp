@@ -116,6 +116,7 @@ INSTANTIATE_TEST_SUITE_P(
         Malformed{"TooManyContacts", 8, "max_contacts = 9", "8:16", "0 to 8"},
         Malformed{"ContactWithoutPoints", 8, "max_contacts = 0", "29:1", "max_contacts"},
         Malformed{"PMinAboveOne", 8, "p_min = 1.5", "8:9", "at most 1"},
+        Malformed{"PMinOfTheExactMethod", 7, "method = \"exact\"\np_min = 0.5", "8:1", "never ends on probability"},
         Malformed{"KMinWithoutPMin", 8, "k_min = 20", "8:1", "p_min"},
         Malformed{"CarryMotionAboveOne", 8, "carry_motion = 2", "8:16", "at most 1"},
         Malformed{"MeshWithoutFile", 11, "", "9:1", "'file'"},

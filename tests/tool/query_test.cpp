@@ -248,6 +248,18 @@ TEST(Query, CountsOfPairsAreRefusedWhereNoProbabilityCounts) {
   }
 }
 
+TEST(Query, TheExactMethodTakesNoThreshold) {
+  const TemporaryFolder folder;
+  folder.write("poses.csv", header + "5,0,0,1,0,0,0\n");
+  const std::string command = "query made:box made:box --poses poses.csv --out answers.csv --method exact --p-min ";
+  const Ran ran = run_tool(folder, command + "0.9");
+  EXPECT_EQ(ran.status, 1);
+  EXPECT_NE(ran.errors.find("the exact method never ends on a probability"), std::string::npos) << ran.errors;
+  EXPECT_FALSE(std::filesystem::exists(folder / "answers.csv"));
+  EXPECT_EQ(run_tool(folder, command + "1").status, 0);
+  EXPECT_EQ(run_tool(folder, command + "0.9 --polygon-free").status, 0) << "without polygons every method is one";
+}
+
 TEST(Query, WrongUsageIsStatusTwo) {
   const TemporaryFolder folder;
   folder.write("poses.csv", header + "0,0,0,1,0,0,0\n");
