@@ -205,6 +205,9 @@ class World {
   /// Collides, solves and moves all bodies by step_s; or does the next part of that (WorldOptions::parts). Does not
   /// call the solver if no body is dynamic.
   StepSummary step() noexcept;
+  /// Whether the last step met these bodies' boxes and its frame had no time to ask whether the bodies meet. In
+  /// proportion to the pairs of the frame.
+  [[nodiscard]] bool had_no_turn(BodyId a, BodyId b) const noexcept;
   /// The next call of step() is a step's first part; contacts of one that was under way are dropped.
   void abandon_step() noexcept;
 

@@ -50,8 +50,10 @@ class Events final : public Effect {
   }
   std::uint32_t after_step(const TickView& tick) noexcept override {
     std::size_t kept = 0;
+    // Of a pair for which the frame had no time nothing new is known.
+    const bool some_wait = tick.step->pairs_left_out > 0;
     for (const Touch& touch : now_.touching) {
-      if (touch.seen) {
+      if (touch.seen || (some_wait && tick.world->had_no_turn(touch.a, touch.b))) {
         now_.touching[kept++] = {touch.a, touch.b, false};
       } else {
         note({tick.now_ns, touch.a, touch.b, false, 0.0});

@@ -247,6 +247,12 @@ void oddsFrameBudget::summarize() noexcept {
   summary_.work = static_cast<unsigned long>(spent_units_);
 }
 
+bool oddsFrameBudget::waits(dGeomID a, dGeomID b) const noexcept {
+  return std::any_of(candidates_.begin(), candidates_.end(), [&](const Candidate& candidate) {
+    return !candidate.called && ((candidate.a == a && candidate.b == b) || (candidate.a == b && candidate.b == a));
+  });
+}
+
 void oddsFrameBudget::find_pairs(dSpaceID space) noexcept {
   summary_ = {};
   candidates_.clear();

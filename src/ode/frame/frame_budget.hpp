@@ -77,6 +77,8 @@ struct oddsFrameBudget {
 
   /// A frame, or its next part.
   void run(dSpaceID space, void* data, dNearCallback* callback) noexcept;
+  /// Whether the last run met this pair, in either order, and has not called for it.
+  [[nodiscard]] bool waits(dGeomID a, dGeomID b) const noexcept;
   /// The next run begins a frame.
   void begin_anew() noexcept { part_ = 0; }
 

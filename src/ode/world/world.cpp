@@ -403,6 +403,11 @@ StepSummary World::step() noexcept {
   return self.summary;
 }
 
+bool World::had_no_turn(BodyId a, BodyId b) const noexcept {
+  const Implementation& self = *implementation_;
+  return self.frame && ode::had_no_turn(*self.frame, self.bodies[a.index]->geom.id(), self.bodies[b.index]->geom.id());
+}
+
 void World::abandon_step() noexcept {
   Implementation& self = *implementation_;
   if (self.part == 0) return;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "odds/ode/odds_ode.h"
+#include "ode/frame/frame_budget.hpp"
 #include "ode/geom/broad_phase.hpp"
 
 namespace odds::ode {
@@ -48,5 +49,7 @@ void collide_frame(dSpaceID space, void* data, dNearCallback* callback, oddsFram
   if (is_last_part) summary.pairs_left_out += static_cast<std::uint32_t>(frame.pairs - frame.served);
   summary.frame_overshoot_us = std::max(summary.frame_overshoot_us, frame.overshoot_us);
 }
+
+bool had_no_turn(const oddsFrameBudget& budget, dGeomID a, dGeomID b) noexcept { return budget.waits(a, b); }
 
 }  // namespace odds::ode

@@ -29,4 +29,7 @@ using FrameBudget = std::unique_ptr<oddsFrameBudget, FrameBudgetDeleter>;
 void collide_frame(dSpaceID space, void* data, dNearCallback* callback, oddsFrameBudget* budget, dGeomID attention,
                    bool is_last_part, std::uint64_t number, StepSummary& summary) noexcept;
 
+/// Whether the frame that was collided last had no time for this pair.
+[[nodiscard]] bool had_no_turn(const oddsFrameBudget& budget, dGeomID a, dGeomID b) noexcept;
+
 }  // namespace odds::ode
