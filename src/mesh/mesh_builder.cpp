@@ -158,7 +158,7 @@ void MeshBuilder::unfold(std::uint64_t first_triangle, std::uint64_t triangles) 
       std::span(triangles_).subspan(static_cast<std::size_t>(first_triangle), static_cast<std::size_t>(triangles));
   if (!fan_folds(vertices_, fan)) return;
   grow(ring_, triangles + 2, max_triangles_ + 2);
-  cut_ears(vertices_, fan, ring_);
+  cut_ears(vertices_, fan, ring_, looks_left_);
 }
 
 TriangleMesh MeshBuilder::finish(const std::string& hint) && {

@@ -81,6 +81,8 @@ class MeshBuilder {
   };
   std::vector<LatePolygon> late_polygons_;  // some of whose vertices were still to come
   std::vector<RingCorner> ring_;
+  // For all polygons of the file: one of 20,000 corners needs most of them. Half a second, whoever made the file.
+  std::uint64_t looks_left_ = std::uint64_t{1} << 28;
   std::uint32_t corners_ = 0;
   std::uint32_t greatest_ = 0;  // index of the polygon's corners
   std::uint32_t first_ = 0;

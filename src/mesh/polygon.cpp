@@ -27,6 +27,11 @@ class View {
   [[nodiscard]] int turn(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
     return side_ * math::orient2d(x(a), y(a), x(b), y(b), x(c), y(c));
   }
+  /// Whether d lies beside the box of a, b and c: quickly, most do.
+  [[nodiscard]] bool beside(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) const {
+    return x(d) < std::min({x(a), x(b), x(c)}) || x(d) > std::max({x(a), x(b), x(c)}) ||
+           y(d) < std::min({y(a), y(b), y(c)}) || y(d) > std::max({y(a), y(b), y(c)});
+  }
   [[nodiscard]] bool same_place(std::uint32_t a, std::uint32_t b) const { return x(a) == x(b) && y(a) == y(b); }
   /// Whether d lies in the triangle a b c, which turns as the polygon does, or on a side of it.
   [[nodiscard]] bool holds(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) const {
@@ -49,8 +54,9 @@ bool folds(const View& view, std::span<const Triangle> fan) {
 
 class Cutter {
  public:
-  Cutter(std::span<const Vec3> vertices, std::span<Triangle> fan, std::vector<RingCorner>& ring)
-      : view_(vertices, fan), fan_(fan), ring_(ring) {
+  Cutter(std::span<const Vec3> vertices, std::span<Triangle> fan, std::vector<RingCorner>& ring,
+         std::uint64_t& looks_left)
+      : view_(vertices, fan), fan_(fan), ring_(ring), looks_left_(looks_left) {
     ring_.clear();
     const auto add = [this](std::uint32_t vertex) {
       ring_.push_back({vertex, static_cast<std::uint32_t>(ring_.size() + 1)});
@@ -62,8 +68,6 @@ class Cutter {
   }
 
   void run() {
-    constexpr std::uint64_t looks_each = 4096;
-    looks_left_ = looks_each * ring_.size();
     std::size_t refused = 0;
     std::size_t left = ring_.size();
     std::uint32_t before = 0;  // the corner in front of the one that is judged
@@ -105,6 +109,7 @@ class Cutter {
       if (looks_left_ == 0) return false;
       --looks_left_;
       const std::uint32_t d = ring_[other].vertex;
+      if (view_.beside(a, b, c, d)) continue;
       // A slit to a hole passes its corners twice.
       if (view_.same_place(d, a) || view_.same_place(d, b) || view_.same_place(d, c)) continue;
       if (view_.holds(a, b, c, d)) return false;
@@ -116,7 +121,7 @@ class Cutter {
   std::span<Triangle> fan_;
   std::vector<RingCorner>& ring_;
   std::size_t done_ = 0;
-  std::uint64_t looks_left_ = 0;
+  std::uint64_t& looks_left_;
 };
 
 }  // namespace
@@ -126,8 +131,9 @@ bool fan_folds(std::span<const Vec3> vertices, std::span<const Triangle> fan) {
   return !view.faces_nowhere() && folds(view, fan);
 }
 
-void cut_ears(std::span<const Vec3> vertices, std::span<Triangle> fan, std::vector<RingCorner>& ring) {
-  Cutter(vertices, fan, ring).run();
+void cut_ears(std::span<const Vec3> vertices, std::span<Triangle> fan, std::vector<RingCorner>& ring,
+              std::uint64_t& looks_left) {
+  Cutter(vertices, fan, ring, looks_left).run();
 }
 
 }  // namespace odds::mesh

@@ -20,9 +20,10 @@ struct RingCorner {
 [[nodiscard]] bool fan_folds(std::span<const Vec3> vertices, std::span<const Triangle> fan);
 
 /// Replaces the fan by as many triangles that cover the polygon: ears are cut off, each a corner that turns as the
-/// polygon does and whose triangle holds no other (Meisters 1975). A polygon that crosses itself keeps its fan, and so
-/// does one with thousands of corners that resist: time is at most in proportion to the number of corners.
-/// `ring` needs a capacity of fan.size() + 2.
-void cut_ears(std::span<const Vec3> vertices, std::span<Triangle> fan, std::vector<RingCorner>& ring);
+/// polygon does and whose triangle holds no other (Meisters 1975). That looks at each pair of corners; looks come out
+/// of `looks_left`, some 2 ns each. A polygon that crosses itself keeps its fan, and so does one for which too few are
+/// left. `ring` needs a capacity of fan.size() + 2.
+void cut_ears(std::span<const Vec3> vertices, std::span<Triangle> fan, std::vector<RingCorner>& ring,
+              std::uint64_t& looks_left);
 
 }  // namespace odds::mesh

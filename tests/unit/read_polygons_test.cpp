@@ -133,17 +133,28 @@ TEST(ReadPolygons, ManyCornersInAnyPlane) {
   }
 }
 
-TEST(ReadPolygons, AStairOfManyCornersTakesLittleTime) {
-  // Each step has a reflex corner; cutting must not take the square of their number.
-  std::string text;
-  const int steps = 20'000;
+/// Each step has a corner that turns inwards.
+std::vector<Vec3> stair(int steps) {
+  std::vector<Vec3> corners;
   for (int i = 0; i < steps; ++i) {
-    text += "v " + std::to_string(i) + " " + std::to_string(i) + " 0\n";
-    text += "v " + std::to_string(i + 1) + " " + std::to_string(i) + " 0\n";
+    corners.push_back({1.0 * i, 1.0 * i, 0});
+    corners.push_back({1.0 * i + 1.0, 1.0 * i, 0});
   }
-  text += "v 0 " + std::to_string(steps) + " 0\n";
-  const TriangleMesh mesh = read(text + face_line(2 * steps + 1), "m.obj");
-  EXPECT_EQ(mesh.triangles().size(), static_cast<std::size_t>(2 * steps - 1));
+  corners.push_back({0, 1.0 * steps, 0});
+  return corners;
+}
+
+TEST(ReadPolygons, AStairOfThousandsOfCornersIsCovered) {
+  const std::vector<Vec3> corners = stair(3000);
+  expect_covered(read(vertex_lines(corners) + face_line(corners.size()), "m.obj"), corners);
+}
+
+TEST(ReadPolygons, WhatNoTimeIsLeftForKeepsItsFan) {
+  // Cutting takes the square of the number of corners: a file could ask for hours.
+  const std::vector<Vec3> corners = stair(50'000);
+  const TriangleMesh mesh = read(vertex_lines(corners) + face_line(corners.size(), 1) + "f 1 2 4 3\n", "m.obj");
+  ASSERT_EQ(mesh.triangles().size(), corners.size());
+  EXPECT_EQ(mesh.triangles()[7], (Triangle{1, 9, 10}));
 }
 
 TEST(ReadPolygons, AConvexOneStaysAFan) {

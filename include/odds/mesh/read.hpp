@@ -36,7 +36,8 @@ struct ReadOptions {
 /// - OFF: also COFF, NOFF, STOFF and combinations.
 ///
 /// Polygons are fanned from their first corner; where that fan folds, as of many that are not convex, they are cut so
-/// that their triangles cover them and nothing else. Nothing is repaired or dropped: non-finite or huge coordinates,
+/// that their triangles cover them and nothing else, for half a second of a file at most (tens of thousands of corners
+/// in one). Nothing is repaired or dropped: non-finite or huge coordinates,
 /// indices out of range, polygons with fewer than three corners, missing or surplus data are errors that name the line
 /// (text) or byte (binary). Numbers are rounded correctly and do not depend on the locale.
 ///
