@@ -37,9 +37,9 @@ struct ReadOptions {
 ///
 /// Polygons are fanned from their first corner; where that fan folds, as of many that are not convex, they are cut so
 /// that their triangles cover them and nothing else, for half a second of a file at most (tens of thousands of corners
-/// in one). Nothing is repaired or dropped: non-finite or huge coordinates,
-/// indices out of range, polygons with fewer than three corners, missing or surplus data are errors that name the line
-/// (text) or byte (binary). Numbers are rounded correctly and do not depend on the locale.
+/// in one). Nothing is repaired or dropped: non-finite or huge coordinates, indices out of range, polygons with fewer
+/// than three corners, missing or surplus data are errors that name the line (text) or byte (binary). Numbers are
+/// rounded correctly and do not depend on the locale.
 ///
 /// Memory never exceeds 10 times the size of the file as stored (packed, if it is) + 64 MiB; a file that would need
 /// more is refused. Counts that a header claims are compared with the bytes that follow before anything is allocated.
