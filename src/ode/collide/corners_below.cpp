@@ -16,12 +16,12 @@ constexpr double nothing = -std::numeric_limits<double>::infinity();
 constexpr double same_depth = 1e-6;
 // What is kept of the time when gathering is ended by it, microseconds: for the deepest of all, and for choosing, which
 // looks at each some fifteen times.
-constexpr double time_for_deepest = 1.5;
+constexpr double time_for_deepest = 2.0;
 constexpr double time_for_each = 0.045;
 // One unit of work in so many is kept likewise.
 constexpr std::uint64_t work_share_for_rest = 3;
 // Of the search for the deepest, each eight nodes: it is to come to a leaf, or a body would sink in unnoticed.
-constexpr int sure_looks = 5;
+constexpr int sure_looks = 4;
 // Where many have been gathered and there is no time to search, one in so many has to do.
 constexpr std::size_t sample = 8;
 // Of the size of what has been gathered: by so much one of many corners may be less far out than another.

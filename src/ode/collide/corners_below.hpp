@@ -24,18 +24,24 @@ class GatheredVertices {
     std::uint32_t corner;
   };
 
-  GatheredVertices() noexcept { places_.fill(nobody); }
+  GatheredVertices() noexcept {
+    places_.fill(nobody);
+    seen_.fill(query::no_feature);
+  }
   [[nodiscard]] bool is_full() const noexcept { return count_ >= most; }
   [[nodiscard]] std::span<const Vertex> all() const noexcept { return {vertices_.data(), count_}; }
   /// How far one of them is from the first, at most, metres.
   [[nodiscard]] double size() const noexcept;
 
   /// Precondition: not full, but for one that may be added afterwards.
-  void add(std::uint32_t corner, const Vec3& position) noexcept {
-    std::uint64_t hash = 0;
-    for (const double x : {position.x(), position.y(), position.z()}) {
-      hash = (hash ^ std::bit_cast<std::uint64_t>(x + 0.0)) * hash_factor;  // no -0, for it equals 0
-    }
+  /// `number`: of the mesh's vertex.
+  void add(std::uint32_t number, std::uint32_t corner, const Vec3& position) noexcept {
+    std::uint32_t& seen = seen_[number % seen_.size()];
+    if (seen == number) return;
+    seen = number;
+    const auto bits_of = [](double x) { return std::bit_cast<std::uint64_t>(x + 0.0); };  // no -0, for it equals 0
+    const std::uint64_t hash =
+        (bits_of(position.x()) * factors[0] + bits_of(position.y()) * factors[1]) + bits_of(position.z()) * factors[2];
     std::size_t place = hash >> (64 - bits);
     for (; places_[place] != nobody; place = (place + 1) % places_.size()) {
       if (vertices_[places_[place]].position == position) return;
@@ -46,11 +52,12 @@ class GatheredVertices {
 
  private:
   static constexpr int bits = 10;  // half of the places remain free
-  static constexpr std::uint64_t hash_factor = 0x9E3779B97F4A7C15U;
+  static constexpr std::uint64_t factors[3] = {0x9E3779B97F4A7C15U, 0xC2B2AE3D27D4EB4FU, 0x165667B19E3779F9U};
   static constexpr std::uint16_t nobody = 0xFFFF;
 
   std::array<Vertex, most + 1> vertices_;
   std::array<std::uint16_t, std::size_t{1} << bits> places_;
+  std::array<std::uint32_t, most> seen_;  ///< some of the vertices that were added, by their numbers' last bits
   std::size_t count_ = 0;
 };
 
@@ -80,7 +87,7 @@ class CornersBelow {
   [[nodiscard]] bool has_some_left() const noexcept { return limit_.nodes_left() > 0 && has_time_to_search(); }
   /// False if they are too many, or it was ended.
   [[nodiscard]] bool gather() noexcept;
-  void add(std::uint32_t corner) noexcept { gathered_.add(corner, position(corner)); }
+  void add(std::uint32_t corner) noexcept { gathered_.add(search_.vertex_of(corner), corner, position(corner)); }
   [[nodiscard]] std::uint32_t farthest_below(const Vec3& from, double least_depth) const noexcept;
   /// The corner of greatest value of those below by that depth, or one that is less by no more than `not_greater`.
   template <class Value, class Bounds>

@@ -24,8 +24,12 @@ class CornerSearch {
   CornerSearch(const mesh::TriangleMesh& mesh, const tree::WideTree& tree) noexcept : mesh_(mesh), tree_(tree) {}
 
   [[nodiscard]] static std::uint32_t triangle_of(std::uint32_t corner) noexcept { return corner / 3; }
+  /// Which of the mesh's vertices.
+  [[nodiscard]] std::uint32_t vertex_of(std::uint32_t corner) const noexcept {
+    return mesh_.triangles()[corner / 3][corner % 3];
+  }
   [[nodiscard]] Vec3 place(std::uint32_t corner) const noexcept {
-    return mesh_.vertices()[mesh_.triangles()[corner / 3][corner % 3]] - tree_.origin();
+    return mesh_.vertices()[vertex_of(corner)] - tree_.origin();
   }
   /// By so much, times a direction's length, extents along it may be off, metres.
   [[nodiscard]] float margin() const noexcept { return 16.0F * 0x1p-24F * static_cast<float>(tree_.reach()); }
