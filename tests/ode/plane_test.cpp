@@ -236,6 +236,62 @@ TEST_F(PlaneTest, AMeshThatRepeatsItsVerticesHasTheSameContacts) {
   }
 }
 
+// What is taken of many may be a little less far out than another, which then made a corner of it point inwards.
+TEST_F(PlaneTest, OfManyVerticesNoneIsGivenTwice) {
+  constexpr std::uint32_t cells = 60;
+  std::vector<Vec3> vertices;
+  std::vector<mesh::Triangle> triangles;
+  for (std::uint32_t i = 0; i <= cells; ++i) {
+    for (std::uint32_t k = 0; k <= cells; ++k) {
+      vertices.emplace_back(1.0 * i / cells, 1.0 * k / cells, 0.02 * std::sin(0.9 * i) * std::cos(1.3 * k));
+      const std::uint32_t v = i * (cells + 1) + k;
+      if (i == cells || k == cells) continue;
+      triangles.push_back({v, v + cells + 1, v + 1});
+      triangles.push_back({v + 1, v + cells + 1, v + cells + 2});
+    }
+  }
+  auto sheet = mesh::TriangleMesh::make(std::move(vertices), std::move(triangles));
+  const dGeomID mesh = mesh_geom(
+      query::Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(sheet).value())).value(), space);
+  ASSERT_EQ(dGeomOddsMeshSetBudget(mesh, 1e9), 1);
+  const dGeomID plane = dCreatePlane(space, 0, 0, 1, 0);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (int round = 0; round < 400; ++round) {
+    rotate(mesh, random_direction(random), 3.0 * uniform(random));
+    const Vec3 middle = pose_of(mesh).rotation * Vec3(0.5, 0.5, 0.0);
+    dGeomSetPosition(mesh, 0, 0, 0.3 * uniform(random) - middle.z());
+    const auto contacts = collide(mesh, plane);
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      for (std::size_t k = 0; k < i; ++k) {
+        ASSERT_GT((position_of(contacts[i]) - position_of(contacts[k])).norm(), 1e-6)
+            << round << ": " << i << ", " << k;
+      }
+    }
+  }
+}
+
+// Of 1,681 vertices that are all as deep as each other; which of them hold the body must not depend on the last bits.
+TEST_F(PlaneTest, AFineBottomThatStandsIsHeldAtItsFourCornersOnly) {
+  const dGeomID mesh = mesh_geom(box_shape(1, 1, 0.1, 40), space);
+  const dGeomID plane = dCreatePlane(space, 0, 0, 1, 0);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  ASSERT_EQ(dGeomOddsMeshSetWorkBudget(mesh, 600), 1) << "no leaf is looked at for being as deep as another";
+  for (int round = 0; round < 200; ++round) {
+    const math::Pose turned = {Eigen::AngleAxisd(0.7 + 1e-9 * uniform(random), Vec3::UnitZ()).toRotationMatrix(),
+                               Vec3::Zero()};
+    rotate(mesh, Vec3::UnitZ(), 0.7 + 1e-9 * uniform(random));
+    dGeomSetPosition(mesh, 0, 0, 0.05 - 1e-4 * (1.0 + 0.5 * uniform(random)));
+    const auto contacts = collide(mesh, plane);
+    ASSERT_EQ(contacts.size(), 4u);
+    for (const dContactGeom& contact : contacts) {
+      const Vec3 local = turned.rotation.transpose() * position_of(contact);
+      EXPECT_NEAR(std::abs(local.x()), 0.5, 1e-6);
+      EXPECT_NEAR(std::abs(local.y()), 0.5, 1e-6);
+    }
+  }
+  EXPECT_EQ(stats().primitive_cut_off, 0u);
+}
+
 TEST_F(PlaneTest, AShortBudgetStillFindsOneNearlyAsDeepAsAny) {
   const auto shape = sphere_shape(1, 60);
   const dGeomID mesh = mesh_geom(shape, space);

@@ -24,7 +24,8 @@ constexpr std::uint64_t work_share_for_rest = 3;
 constexpr int sure_looks = 4;
 // Where many have been gathered and there is no time to search, one in so many has to do.
 constexpr std::size_t sample = 8;
-// Of the size of what has been gathered: by so much one of many corners may be less far out than another.
+// Of the size of what has been gathered: by so much one of many corners may be less far out than another, though by no
+// more than the depth. A body that rests is held at its corners, always the same.
 constexpr double rough_share = 0.03;
 
 using OfLanes = query::CornerSearch::OfLanes;
@@ -37,6 +38,9 @@ class BoundAlong {
  public:
   BoundAlong(const query::CornerSearch& search, const Vec3& direction) noexcept
       : direction_(direction.cast<float>()), margin_(search.margin() * direction_.norm()) {}
+
+  /// A bound exceeds what it is of by no more than that, but for the size of boxes.
+  [[nodiscard]] double excess() const noexcept { return 2.0 * static_cast<double>(margin_); }
 
   void of(const tree::WideNode& node, OfLanes& most) const noexcept {
     Extents extents;
@@ -64,6 +68,11 @@ class BoundAcross {
         along_(along.cast<float>()),
         margin_(scale_ * search.margin() + 16.0F * 0x1p-24F * (1.0F + from_.norm())),
         for_height_(static_cast<float>(deeper_at_one_place) * (2.0F + from_.norm())) {}
+
+  [[nodiscard]] double excess() const noexcept {
+    constexpr double farthest = 1.0;  // no two corners are farther apart
+    return 4.0 * farthest * static_cast<double>(margin_) + 2.0 * static_cast<double>(for_height_);
+  }
 
   void of(const tree::WideNode& node, OfLanes& most) const noexcept {
     for (std::size_t k = 0; k < tree::wide_lanes; ++k) {
@@ -152,7 +161,7 @@ CornersBelow::CornersBelow(const PreparedMesh& mesh, const Vec3& normal, double 
     if (deepest_ != no_item) add(deepest_);  // one more than there is room for
   }
   deepest_ = best_gathered(0.0, 1, value);
-  if (are_many_) rough_ = rough_share * gathered_.size();
+  if (are_many_) rough_ = std::min(rough_share * gathered_.size(), deepest_ == no_item ? 0.0 : depth(deepest_));
 }
 
 bool CornersBelow::gather() noexcept {
@@ -247,8 +256,10 @@ std::uint32_t CornersBelow::search(double least_depth, double not_greater, const
   const double highest = offset_ - least_depth;
   const std::uint64_t nodes = limit_.nodes_left();
   std::uint64_t left = nodes;
+  // Those that are as far out as each other need not all be looked at: the fine bottom of a body that stands.
   const std::uint32_t found = search_.greatest(
-      not_greater, [&](const Vec3& x) { return normal_.dot(x) <= highest ? value(x) : nothing; },
+      std::max(not_greater, bounds.excess()),
+      [&](const Vec3& x) { return normal_.dot(x) <= highest ? value(x) : nothing; },
       BoundBelow(bounds, search_, normal_, highest + rounding_), may_go_on, left);
   limit_.spend(nodes - left);
   return found;

@@ -110,7 +110,7 @@ class CornersBelow {
   std::uint32_t deepest_ = no_item;
   bool is_gathered_ = false;
   bool are_many_ = false;
-  double rough_ = 0.0;  ///< of many, one so much less far out will do, metres
+  double rough_ = 0.0;  ///< of many, one so much less far out will do, metres; besides what bounds are off
   GatheredVertices gathered_;
 };
 

@@ -1,6 +1,7 @@
 // Reducing many points of one contact patch to few: the deepest first, then whatever spans the largest area.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -41,19 +42,29 @@ std::size_t select_manifold(const Source& source, const Vec3& normal, double sep
     std::uint32_t from;
     std::uint32_t outermost;  // the item farthest beyond this side
     double area;              // twice the area it would add; 0 if it is not beyond by more than `separation`
+    Vec3 begin;               // the place of `from`
   };
   const auto side = [&](std::uint32_t from, std::uint32_t to) -> Side {
-    const Vec3 edge = across(source.position(to) - source.position(from));
+    const Vec3 begin = source.position(from);
+    const Vec3 edge = across(source.position(to) - begin);
     const Vec3 outward = edge.cross(normal);
     const std::uint32_t outermost = source.extreme(outward);
-    if (outermost == no_item) return {from, no_item, 0.0};
-    const double area = outward.dot(source.position(outermost) - source.position(from));
-    return {from, outermost, area > separation * edge.norm() ? area : 0.0};
+    if (outermost == no_item) return {from, no_item, 0.0, begin};
+    const double area = outward.dot(source.position(outermost) - begin);
+    return {from, outermost, area > separation * edge.norm() ? area : 0.0, begin};
   };
   std::array<Side, most_contacts> polygon;
   std::size_t corners = 2;
   polygon[0] = side(first, second);
   polygon[1] = side(second, first);
+  // So far that a neighbour is beyond the side of the other one.
+  const auto points_inwards = [&](std::size_t corner) {
+    const Vec3& place = polygon[corner].begin;
+    const Vec3 before = place - polygon[(corner + corners - 1) % corners].begin;
+    const Vec3 after = polygon[(corner + 1) % corners].begin - place;
+    const double inwards = after.cross(before).dot(normal);
+    return inwards > 0.0 && inwards > separation * std::min(across(before).norm(), across(after).norm());
+  };
   while (count < limit) {
     std::size_t best = 0;
     for (std::size_t i = 1; i < corners; ++i) {
@@ -67,16 +78,16 @@ std::size_t select_manifold(const Source& source, const Vec3& normal, double sep
     polygon[best + 1] = side(added, to);
     ++corners;
     take(added);
-    // The deepest may lie within what the others span. As a corner that points inwards it would have sides beyond which
-    // other corners lie, which would be taken again.
-    if (polygon[0].from != first || corners < 4) continue;
-    const std::uint32_t last = polygon[corners - 1].from;
-    const Vec3 before = source.position(first) - source.position(last);
-    const Vec3 after = source.position(polygon[1].from) - source.position(first);
-    if (before.cross(after).dot(normal) >= 0.0) continue;
-    polygon[corners - 1] = side(last, polygon[1].from);
-    --corners;
-    for (std::size_t i = 0; i < corners; ++i) polygon[i] = polygon[i + 1];
+    // A corner may lie within what the others span: the deepest, or one that a Source gave for another a little farther
+    // out. Pointing inwards it would have sides beyond which other corners lie, which would be taken again.
+    for (std::size_t i = 0; i < corners && corners > 3; ++i) {
+      if (!points_inwards(i)) continue;
+      const std::size_t last = (i + corners - 1) % corners;
+      polygon[last] = side(polygon[last].from, polygon[(i + 1) % corners].from);
+      --corners;
+      for (std::size_t k = i; k < corners; ++k) polygon[k] = polygon[k + 1];
+      i = SIZE_MAX;  // its neighbours may do so now: from the first on
+    }
   }
   return count;
 }
