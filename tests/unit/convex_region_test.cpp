@@ -4,11 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <set>
 #include <vector>
 
 #include "odds/math/random.hpp"
-#include "support/instruction_sets.hpp"
+#include "support/each_kernel.hpp"
 #include "support/wavy_tree.hpp"
 
 namespace odds::query {
@@ -114,49 +113,38 @@ TEST_P(ConvexRegions, ChangeAndEndWhereTheyAreTold) {
 INSTANTIATE_TEST_SUITE_P(About, ConvexRegions, ::testing::Values(0.0, 1e3, -1e6));
 
 TEST(HalfSpaceKernels, OfEachInstructionSetGiveTheSame) {
-  const testing::WavyTree sphere(Vec3::Zero());
-  const tree::WideTree& tree = *sphere.tree;
   const wide::Searches& portable = *wide::searches_for(InstructionSet::portable);
   math::Random random(6, 1);
-  std::set<decltype(wide::Searches::children_within)> kernels;
-  for (const InstructionSet set : testing::instruction_sets) {
-    const wide::Searches* const searches = wide::searches_for(set);
-    if (searches == nullptr) continue;  // not on this processor
-    EXPECT_TRUE(kernels.insert(searches->children_within).second);
-    for (std::size_t n = 0; n < tree.node_count(); ++n) {
-      wide::HalfSpaces spaces;
-      for (spaces.count = 0; spaces.count < 9; ++spaces.count) {
-        const Vec3 normal = random.direction();
-        for (int axis = 0; axis < 3; ++axis) spaces.normal[spaces.count][axis] = static_cast<float>(normal[axis]);
-        spaces.offset[spaces.count] = static_cast<float>(random.uniform(0.2, 1.2));
-      }
-      spaces.margin = 1e-6F;
-      spaces.well_within = 2e-6F;
-      wide::LanesWithin expected;
-      wide::LanesWithin own;
-      const auto compare = [&] {
-        ASSERT_EQ(own.lanes, expected.lanes);
-        for (std::size_t lane = 0; lane < tree::wide_lanes; ++lane) {
-          const bool is_within = (own.lanes >> lane & 1U) != 0;
-          ASSERT_TRUE(!is_within || own.sides[lane] == expected.sides[lane]);
-        }
-      };
-      const tree::WideNode& node = tree.nodes()[n];
-      portable.children_within(node, spaces, spaces.all(), expected);
-      searches->children_within(node, spaces, spaces.all(), own);
-      compare();
-      for (unsigned lane = 0; lane < tree::wide_lanes && !node.child[lane].is_nothing(); ++lane) {
-        const tree::ChildRef child = node.child[lane];
-        if (!child.is_leaf()) continue;
-        const Vec3f center(node.center[0][lane], node.center[1][lane], node.center[2][lane]);
-        const tree::WideLeaf& leaf = tree.leaves()[child.index()];
-        portable.triangles_within(leaf, child.count(), center, spaces, spaces.all(), expected);
-        searches->triangles_within(leaf, child.count(), center, spaces, spaces.all(), own);
-        EXPECT_EQ(own.lanes >> child.count(), 0u);
-        compare();
-      }
+  wide::HalfSpaces spaces;
+  spaces.margin = 1e-6F;
+  spaces.well_within = 2e-6F;
+  wide::LanesWithin expected;
+  wide::LanesWithin own;
+  const auto compare = [&] {
+    ASSERT_EQ(own.lanes, expected.lanes);
+    for (std::size_t lane = 0; lane < tree::wide_lanes; ++lane) {
+      const bool is_within = (own.lanes >> lane & 1U) != 0;
+      ASSERT_TRUE(!is_within || own.sides[lane] == expected.sides[lane]);
     }
-  }
+  };
+  testing::for_each_kernel(
+      &wide::Searches::children_within,
+      [&](const wide::Searches& searches, const tree::WideNode& node) {
+        for (spaces.count = 0; spaces.count < 9; ++spaces.count) {
+          const Vec3 normal = random.direction();
+          for (int axis = 0; axis < 3; ++axis) spaces.normal[spaces.count][axis] = static_cast<float>(normal[axis]);
+          spaces.offset[spaces.count] = static_cast<float>(random.uniform(0.2, 1.2));
+        }
+        portable.children_within(node, spaces, spaces.all(), expected);
+        searches.children_within(node, spaces, spaces.all(), own);
+        compare();
+      },
+      [&](const wide::Searches& searches, const tree::WideLeaf& leaf, unsigned count, const Vec3f& center) {
+        portable.triangles_within(leaf, count, center, spaces, spaces.all(), expected);
+        searches.triangles_within(leaf, count, center, spaces, spaces.all(), own);
+        EXPECT_EQ(own.lanes >> count, 0u);
+        compare();
+      });
 }
 
 }  // namespace

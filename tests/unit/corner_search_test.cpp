@@ -5,11 +5,10 @@
 
 #include <algorithm>
 #include <limits>
-#include <set>
 
 #include "odds/math/random.hpp"
 #include "query/wide/searches.hpp"
-#include "support/instruction_sets.hpp"
+#include "support/each_kernel.hpp"
 #include "support/wavy_tree.hpp"
 
 namespace odds::query {
@@ -120,41 +119,39 @@ TEST_P(CornerSearches, EndWhereTheyAreTold) {
 INSTANTIATE_TEST_SUITE_P(About, CornerSearches, ::testing::Values(0.0, 1e3, -1e6));
 
 TEST(ExtentsKernels, OfEachInstructionSetGiveTheSame) {
-  const testing::WavyTree sphere(Vec3::Zero());
-  const tree::WideTree& tree = *sphere.tree;
   const wide::Searches& portable = *wide::searches_for(InstructionSet::portable);
   math::Random random(9, 2);
-  std::set<decltype(wide::Searches::extents_of_children)> kernels;
-  for (const InstructionSet set : testing::instruction_sets) {
-    const wide::Searches* const searches = wide::searches_for(set);
-    if (searches == nullptr) continue;  // not on this processor
-    EXPECT_TRUE(kernels.insert(searches->extents_of_children).second);
-    for (std::size_t n = 0; n < tree.node_count(); ++n) {
-      const tree::WideNode& node = tree.nodes()[n];
-      const Vec3f direction = random.direction().cast<float>();
-      wide::Extents expected;
-      wide::Extents own;
-      portable.extents_of_children(node, direction, expected);
-      searches->extents_of_children(node, direction, own);
-      for (unsigned lane = 0; lane < tree::wide_lanes && !node.child[lane].is_nothing(); ++lane) {
-        EXPECT_EQ(own.least[lane], expected.least[lane]);
-        EXPECT_EQ(own.greatest[lane], expected.greatest[lane]);
-        if (!node.child[lane].is_leaf()) continue;
-        const tree::WideLeaf& leaf = tree.leaves()[node.child[lane].index()];
-        const Vec3f center(node.center[0][lane], node.center[1][lane], node.center[2][lane]);
-        wide::Extents expected_of_leaf;
-        wide::Extents own_of_leaf;
-        portable.extents_of_triangles(leaf, center, direction, expected_of_leaf);
-        searches->extents_of_triangles(leaf, center, direction, own_of_leaf);
-        for (unsigned t = 0; t < node.child[lane].count(); ++t) {
-          EXPECT_EQ(own_of_leaf.least[t], expected_of_leaf.least[t]);
-          EXPECT_EQ(own_of_leaf.greatest[t], expected_of_leaf.greatest[t]);
-          EXPECT_GE(own_of_leaf.least[t], own.least[lane] - 1e-6F) << "a triangle is within its leaf's box";
-          EXPECT_LE(own_of_leaf.greatest[t], own.greatest[lane] + 1e-6F);
+  Vec3f direction;
+  wide::Extents expected;
+  wide::Extents own;
+  testing::for_each_kernel(
+      &wide::Searches::extents_of_children,
+      [&](const wide::Searches& searches, const tree::WideNode& node) {
+        direction = random.direction().cast<float>();
+        portable.extents_of_children(node, direction, expected);
+        searches.extents_of_children(node, direction, own);
+        for (unsigned lane = 0; lane < tree::wide_lanes && !node.child[lane].is_nothing(); ++lane) {
+          EXPECT_EQ(own.least[lane], expected.least[lane]);
+          EXPECT_EQ(own.greatest[lane], expected.greatest[lane]);
         }
-      }
-    }
-  }
+      },
+      [&](const wide::Searches& searches, const tree::WideLeaf& leaf, unsigned count, const Vec3f& center) {
+        portable.extents_of_triangles(leaf, center, direction, expected);
+        searches.extents_of_triangles(leaf, center, direction, own);
+        for (unsigned t = 0; t < count; ++t) {
+          EXPECT_EQ(own.least[t], expected.least[t]);
+          EXPECT_EQ(own.greatest[t], expected.greatest[t]);
+          float least = std::numeric_limits<float>::infinity();
+          float greatest = -least;
+          for (const auto& corner : leaf.corner) {
+            const float along = direction.dot(center + Vec3f(corner[0][t], corner[1][t], corner[2][t]));
+            least = std::min(least, along);
+            greatest = std::max(greatest, along);
+          }
+          EXPECT_NEAR(own.least[t], least, 1e-6F);
+          EXPECT_NEAR(own.greatest[t], greatest, 1e-6F);
+        }
+      });
 }
 
 }  // namespace

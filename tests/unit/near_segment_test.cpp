@@ -5,12 +5,11 @@
 
 #include <algorithm>
 #include <limits>
-#include <set>
 #include <vector>
 
 #include "odds/math/random.hpp"
 #include "odds/primitive/triangle_distance.hpp"
-#include "support/instruction_sets.hpp"
+#include "support/each_kernel.hpp"
 #include "support/wavy_tree.hpp"
 
 namespace odds::query {
@@ -113,41 +112,31 @@ TEST_P(NearSegments, EndWhereTheyAreTold) {
 INSTANTIATE_TEST_SUITE_P(About, NearSegments, ::testing::Values(0.0, 1e3, -1e6));
 
 TEST(NearSegmentKernels, OfEachInstructionSetGiveTheSame) {
-  const testing::WavyTree sphere(Vec3::Zero());
-  const tree::WideTree& tree = *sphere.tree;
   const wide::Searches& portable = *wide::searches_for(InstructionSet::portable);
   math::Random random(9, 1);
-  std::set<decltype(wide::Searches::children_near)> kernels;
-  for (const InstructionSet set : testing::instruction_sets) {
-    const wide::Searches* const searches = wide::searches_for(set);
-    if (searches == nullptr) continue;  // not on this processor
-    EXPECT_TRUE(kernels.insert(searches->children_near).second);
-    for (std::size_t n = 0; n < tree.node_count(); ++n) {
-      wide::SegmentInTree segment;
-      segment.middle = random.direction().cast<float>();
-      segment.half = (n % 4 == 0 ? 0.0 : 0.4) * random.direction().cast<float>();
-      const float square = segment.half.squaredNorm();
-      segment.inverse_square = square > 0.0F ? 1.0F / square : 0.0F;
-      float expected[tree::wide_lanes];
-      float own[tree::wide_lanes];
-      const tree::WideNode& node = tree.nodes()[n];
-      portable.children_near(node, segment, expected);
-      searches->children_near(node, segment, own);
-      for (unsigned lane = 0; lane < tree::wide_lanes; ++lane) {
-        EXPECT_EQ(own[lane], expected[lane]);
-        EXPECT_EQ(node.child[lane].is_nothing(), own[lane] == std::numeric_limits<float>::infinity());
-      }
-      for (unsigned lane = 0; lane < tree::wide_lanes && !node.child[lane].is_nothing(); ++lane) {
-        const tree::ChildRef child = node.child[lane];
-        if (!child.is_leaf()) continue;
-        const Vec3f from(node.center[0][lane], node.center[1][lane], node.center[2][lane]);
-        const tree::WideLeaf& leaf = tree.leaves()[child.index()];
-        portable.triangles_near(leaf, child.count(), from, segment, expected);
-        searches->triangles_near(leaf, child.count(), from, segment, own);
+  wide::SegmentInTree segment;
+  float expected[tree::wide_lanes];
+  float own[tree::wide_lanes];
+  int nodes = 0;
+  testing::for_each_kernel(
+      &wide::Searches::children_near,
+      [&](const wide::Searches& searches, const tree::WideNode& node) {
+        segment.middle = random.direction().cast<float>();
+        segment.half = (nodes++ % 4 == 0 ? 0.0 : 0.4) * random.direction().cast<float>();
+        const float square = segment.half.squaredNorm();
+        segment.inverse_square = square > 0.0F ? 1.0F / square : 0.0F;
+        portable.children_near(node, segment, expected);
+        searches.children_near(node, segment, own);
+        for (unsigned lane = 0; lane < tree::wide_lanes; ++lane) {
+          EXPECT_EQ(own[lane], expected[lane]);
+          EXPECT_EQ(node.child[lane].is_nothing(), own[lane] == std::numeric_limits<float>::infinity());
+        }
+      },
+      [&](const wide::Searches& searches, const tree::WideLeaf& leaf, unsigned count, const Vec3f& from) {
+        portable.triangles_near(leaf, count, from, segment, expected);
+        searches.triangles_near(leaf, count, from, segment, own);
         for (unsigned t = 0; t < tree::wide_lanes; ++t) EXPECT_EQ(own[t], expected[t]);
-      }
-    }
-  }
+      });
 }
 
 }  // namespace

@@ -31,29 +31,28 @@ constexpr double rough_share = 0.03;
 using OfLanes = query::CornerSearch::OfLanes;
 using query::wide::Extents;
 
-const query::wide::Searches& kernels() noexcept { return *query::wide::searches_for(query::InstructionSet::best); }
-
 // Of direction . x.
 class BoundAlong {
  public:
   BoundAlong(const query::CornerSearch& search, const Vec3& direction) noexcept
-      : direction_(direction.cast<float>()), margin_(search.margin() * direction_.norm()) {}
+      : kernels_(search.kernels()), direction_(direction.cast<float>()), margin_(search.margin() * direction_.norm()) {}
 
   /// A bound exceeds what it is of by no more than that, but for the size of boxes.
   [[nodiscard]] double excess() const noexcept { return 2.0 * static_cast<double>(margin_); }
 
   void of(const tree::WideNode& node, OfLanes& most) const noexcept {
     Extents extents;
-    kernels().extents_of_children(node, direction_, extents);
+    kernels_.extents_of_children(node, direction_, extents);
     for (std::size_t k = 0; k < tree::wide_lanes; ++k) most[k] = extents.greatest[k] + margin_;
   }
   void of(const tree::WideLeaf& leaf, const Vec3f& center, OfLanes& most) const noexcept {
     Extents extents;
-    kernels().extents_of_triangles(leaf, center, direction_, extents);
+    kernels_.extents_of_triangles(leaf, center, direction_, extents);
     for (std::size_t k = 0; k < tree::wide_lanes; ++k) most[k] = extents.greatest[k] + margin_;
   }
 
  private:
+  const query::wide::Searches& kernels_;
   Vec3f direction_;
   float margin_;
 };
@@ -115,18 +114,21 @@ template <class Bound>
 class BoundBelow {
  public:
   BoundBelow(const Bound& bound, const query::CornerSearch& search, const Vec3& normal, double highest) noexcept
-      : bound_(bound), normal_(normal.cast<float>()), highest_(static_cast<float>(highest) + search.margin()) {}
+      : kernels_(search.kernels()),
+        bound_(bound),
+        normal_(normal.cast<float>()),
+        highest_(static_cast<float>(highest) + search.margin()) {}
 
   void of(const tree::WideNode& node, OfLanes& most) const noexcept {
     Extents heights;
     bound_.of(node, most);
-    kernels().extents_of_children(node, normal_, heights);
+    kernels_.extents_of_children(node, normal_, heights);
     leave_out_above(heights, most);
   }
   void of(const tree::WideLeaf& leaf, const Vec3f& center, OfLanes& most) const noexcept {
     Extents heights;
     bound_.of(leaf, center, most);
-    kernels().extents_of_triangles(leaf, center, normal_, heights);
+    kernels_.extents_of_triangles(leaf, center, normal_, heights);
     leave_out_above(heights, most);
   }
 
@@ -137,6 +139,7 @@ class BoundBelow {
     }
   }
 
+  const query::wide::Searches& kernels_;
   const Bound& bound_;
   Vec3f normal_;
   float highest_;

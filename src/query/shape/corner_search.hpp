@@ -11,6 +11,7 @@
 #include "odds/query/answer.hpp"
 #include "odds/tree/topology.hpp"
 #include "odds/tree/wide_tree.hpp"
+#include "query/wide/searches.hpp"
 
 namespace odds::query {
 
@@ -21,7 +22,8 @@ class CornerSearch {
   /// A number for each child of a node, or each triangle of a leaf.
   using OfLanes = float[tree::wide_lanes];
 
-  CornerSearch(const mesh::TriangleMesh& mesh, const tree::WideTree& tree) noexcept : mesh_(mesh), tree_(tree) {}
+  CornerSearch(const mesh::TriangleMesh& mesh, const tree::WideTree& tree) noexcept
+      : mesh_(mesh), tree_(tree), kernels_(*wide::searches_for(InstructionSet::best)) {}
 
   [[nodiscard]] static std::uint32_t triangle_of(std::uint32_t corner) noexcept { return corner / 3; }
   /// Which of the mesh's vertices.
@@ -31,6 +33,8 @@ class CornerSearch {
   [[nodiscard]] Vec3 place(std::uint32_t corner) const noexcept {
     return mesh_.vertices()[vertex_of(corner)] - tree_.origin();
   }
+  /// Of the best instruction set.
+  [[nodiscard]] const wide::Searches& kernels() const noexcept { return kernels_; }
   /// By so much, times a direction's length, extents along it may be off, metres.
   [[nodiscard]] float margin() const noexcept { return 16.0F * 0x1p-24F * static_cast<float>(tree_.reach()); }
 
@@ -52,6 +56,7 @@ class CornerSearch {
 
   const mesh::TriangleMesh& mesh_;
   const tree::WideTree& tree_;
+  const wide::Searches& kernels_;
 };
 
 template <class Value, class Bounds, class MayGoOn>
