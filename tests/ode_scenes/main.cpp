@@ -25,13 +25,14 @@ constexpr double least_budget_us = 0.1;
 
 using Scene = Section (*)(const Plan&);
 constexpr std::pair<const char*, Scene> all[] = {
-    {"stacks", &stacks}, {"peg", &peg_in_hole}, {"gears", &gears}, {"bolt", &bolt_and_nut},
-    {"drag", &drag},     {"crowd", &crowd},     {"wall", &wall},   {"behaviours", &behaviours}};
+    {"stacks", &stacks}, {"peg", &peg_in_hole}, {"gears", &gears},       {"bolt", &bolt_and_nut},    {"drag", &drag},
+    {"crowd", &crowd},   {"wall", &wall},       {"partners", &partners}, {"behaviours", &behaviours}};
 
 int usage() {
   fmt::print(
       stderr,
-      "usage: odds_ode_scenes [--out FOLDER] [--only stacks|peg|gears|bolt|drag|crowd|wall|behaviours] [--quick]\n"
+      "usage: odds_ode_scenes [--out FOLDER] [--only stacks|peg|gears|bolt|drag|crowd|wall|partners|behaviours] "
+      "[--quick]\n"
       "                       [--seconds S] [--budgets US,US,...] [--work | --counted NS] [--bricks N,N,...] [--gaps "
       "MM,MM,...] "
       "[--ours] "

@@ -25,6 +25,7 @@ struct Plan {
 [[nodiscard]] Section drag(const Plan& plan);
 [[nodiscard]] Section crowd(const Plan& plan);
 [[nodiscard]] Section wall(const Plan& plan);
+[[nodiscard]] Section partners(const Plan& plan);
 [[nodiscard]] Section behaviours(const Plan& plan);
 /// A stack for ten minutes: does it drift on?
 [[nodiscard]] Section soak(double seconds);

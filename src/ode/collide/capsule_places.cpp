@@ -106,10 +106,17 @@ void add_of_many(const PreparedMesh& mesh, const Capsule& capsule, const query::
 
 }  // namespace
 
-void find_places(const PreparedMesh& mesh, const Capsule& capsule, Limit& limit, CapsulePlaces& places) noexcept {
+bool has_little_time(const Limit& limit) noexcept {
+  constexpr std::uint64_t enough_nodes = 1000;
+  return limit.nodes_in_time(time_for_places) < enough_nodes;
+}
+
+void find_places(const PreparedMesh& mesh, const Capsule& capsule, bool few, Limit& limit,
+                 CapsulePlaces& places) noexcept {
   const query::NearSegment axis(*mesh.wide_tree, capsule.ends[0], capsule.ends[1]);
-  places.complete = add_all_within(mesh, capsule, axis, limit, places);
+  places.complete = !few && add_all_within(mesh, capsule, axis, limit, places);
   if (!places.complete) add_of_many(mesh, capsule, axis, limit, places);
+  if (few && places.count == 0) places.complete = places.nearest_is_sure;
   std::sort(places.all.begin(), places.all.begin() + places.count, [](const CapsulePlace& a, const CapsulePlace& b) {
     return a.distance != b.distance ? a.distance < b.distance : a.triangle < b.triangle;
   });

@@ -8,6 +8,7 @@
 
 #include "ode/collide/capsule_places.hpp"
 #include "ode/collide/contact_writer.hpp"
+#include "ode/collide/kept_contacts.hpp"
 #include "ode/collide/manifold.hpp"
 #include "ode/collide/nearest_in_time.hpp"
 #include "ode/geom/colliders.hpp"
@@ -177,17 +178,15 @@ void add_minima(const PreparedMesh& mesh, const Capsule& capsule, const CapsuleP
   }
 }
 
-// Each end as a ball: a capsule that lies needs both, whichever is a little deeper.
-void add_end_balls(const PreparedMesh& mesh, const Capsule& capsule, Limit& limit, CapsuleContacts& contacts) noexcept {
-  for (const Vec3& end : capsule.ends) {
-    if (limit.time_is_up()) return;
-    bool finished = false;  // what is not the nearest place of an end is a place all the same
-    const auto nearest = nearest_in_time(mesh, end, capsule.radius, 1.0, limit, finished);
-    if (!nearest || nearest->inside || nearest->distance <= same_place * capsule.radius) continue;
-    if (contacts.near(nearest->point, separate_end * capsule.radius)) continue;
-    contacts.add({nearest->point, (end - nearest->point) / nearest->distance, capsule.radius - nearest->distance,
-                  nearest->triangle});
-  }
+// An end as a ball, within that share of the time. A capsule that lies needs both, whichever is a little deeper.
+void add_end_ball(const PreparedMesh& mesh, const Capsule& capsule, const Vec3& end, double share, Limit& limit,
+                  CapsuleContacts& contacts) noexcept {
+  bool finished = false;  // what is not the nearest place of an end is a place all the same
+  const auto nearest = nearest_in_time(mesh, end, capsule.radius, share, limit, finished);
+  if (!nearest || nearest->inside || nearest->distance <= same_place * capsule.radius) return;
+  if (contacts.near(nearest->point, separate_end * capsule.radius)) return;
+  contacts.add({nearest->point, (end - nearest->point) / nearest->distance, capsule.radius - nearest->distance,
+                nearest->triangle});
 }
 
 // The surface at the first place, as it is seen from the axis. The nearest point of the surface to the axis is the
@@ -222,8 +221,43 @@ void add_beside(const PreparedMesh& mesh, const Capsule& capsule, CapsulePlaces&
   }
   // The nearest place and both ends hold it, if there is no time for more.
   add_minima(mesh, capsule, places, 0, std::min<std::size_t>(places.count, 1), std::nullopt, limit, contacts);
-  add_end_balls(mesh, capsule, limit, contacts);
+  for (const Vec3& end : capsule.ends) {
+    if (!limit.time_is_up()) add_end_ball(mesh, capsule, end, 1.0, limit, contacts);
+  }
   add_minima(mesh, capsule, places, 1, places.count, std::nullopt, limit, contacts);
+}
+
+void add_contacts(const PreparedMesh& mesh, const Capsule& capsule, CapsulePlaces& places, Limit& limit,
+                  CapsuleContacts& contacts) noexcept {
+  if (places.count == 0 || places.all[0].distance > same_place * capsule.radius) {
+    return add_beside(mesh, capsule, places, limit, contacts);
+  }
+  contacts.count = 0;  // an end that was found before it was known that the axis goes through the surface
+  const std::optional<Vec3> out = add_crossing(mesh, capsule, places, limit, contacts);
+  add_minima(mesh, capsule, places, 0, places.count, out, limit, contacts);
+}
+
+// False: some triangle was left out. A capsule that lies is held by its nearest place and both ends. Where there may be
+// time for one of them only, each has its turn to be first; what was found in others is kept.
+bool find_contacts(const PreparedMesh& mesh, const Capsule& capsule, std::uint32_t turn, Limit& limit,
+                   CapsuleContacts& found) noexcept {
+  constexpr std::uint32_t turns = 3;
+  constexpr double share_of_end = 0.5;
+  CapsulePlaces places;
+  const bool few = has_little_time(limit);
+  if (few) {
+    if (turn % turns > 0) add_end_ball(mesh, capsule, capsule.ends[turn % turns - 1], share_of_end, limit, found);
+    find_places(mesh, capsule, true, limit, places);
+    add_contacts(mesh, capsule, places, limit, found);
+    if (places.complete) return limit.units > 0;
+    if (limit.time_is_up(share_of_end) || limit.units == 0) return false;
+    places = CapsulePlaces();
+  }
+  find_places(mesh, capsule, false, limit, places);
+  if (few && !places.complete) return false;
+  found.count = 0;
+  add_contacts(mesh, capsule, places, limit, found);
+  return places.complete && limit.units > 0;
 }
 
 // The deepest first, then always the one farthest from those before it.
@@ -256,7 +290,7 @@ void write(CapsuleContacts& contacts, const math::Pose& pose, ContactWriter& wri
 
 int collide_capsule(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int skip) noexcept {
   count(statistics().primitive_queries);
-  const GeomData& data = own_data(o1);
+  GeomData& data = own_data(o1);
   const PreparedMesh& mesh = *data.mesh;
   const std::optional<math::Pose> mesh_in_world = world_pose(o1);
   const std::optional<math::Pose> capsule_in_world = world_pose(o2);
@@ -268,23 +302,25 @@ int collide_capsule(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, i
     return 0;
   }
   Limit limit(data.settings);
+  const int room = room_for(flags, data.settings.max_contacts);
   const math::Pose capsule_in_mesh = mesh_in_world->inverse() * *capsule_in_world;
   const Vec3 half_axis = 0.5 * length * capsule_in_mesh.rotation.col(2);
   const Capsule capsule = {{capsule_in_mesh.translation - half_axis, capsule_in_mesh.translation + half_axis},
                            radius,
                            capsule_in_mesh.rotation};
-  CapsulePlaces places;
-  find_places(mesh, capsule, limit, places);
+  const bool is_kept = data.settings.carry_motion > 0.0 && data.settings.undecided_policy == ODDS_UNDECIDED_HIT;
+  const RestingContacts::Question question{o2, dCapsuleClass, 0, Vec3(radius, radius, 0.5 * length), room};
   CapsuleContacts found;
-  if (places.count > 0 && places.all[0].distance <= same_place * capsule.radius) {
-    const std::optional<Vec3> out = add_crossing(mesh, capsule, places, limit, found);
-    add_minima(mesh, capsule, places, 0, places.count, out, limit, found);
-  } else {
-    add_beside(mesh, capsule, places, limit, found);
-  }
-  ContactWriter writer(o1, o2, room_for(flags, data.settings.max_contacts), contacts, skip);
+  const std::uint32_t turn = is_kept ? data.resting.turn(question, capsule_in_mesh) : 0;
+  const bool complete = find_contacts(mesh, capsule, turn, limit, found);
+  ContactWriter writer(o1, o2, room, contacts, skip);
   write(found, *mesh_in_world, writer);
-  return limit.finish(places.complete && limit.units > 0, writer.count());
+  if (is_kept) {
+    const double size = std::min(mesh.mesh().size(), length + 2.0 * radius);
+    settle_contacts(*mesh_in_world, capsule_in_mesh, complete && !limit.time_is_up(), size, question, data.resting,
+                    writer);
+  }
+  return limit.finish(complete, writer.count());
 }
 
 }  // namespace odds::ode

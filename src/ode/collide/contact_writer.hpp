@@ -26,6 +26,7 @@ class ContactWriter {
 
   [[nodiscard]] int count() const noexcept { return count_; }
   [[nodiscard]] bool full() const noexcept { return count_ >= limit_; }
+  void clear() noexcept { count_ = 0; }
 
   /// World frame, unit normal into g1, depth >= 0 in metres. Refused: a full array, and a contact that is not finite
   /// (so that a NaN never enters a simulation).

@@ -7,6 +7,7 @@
 
 #include "ode/collide/convex_patch.hpp"
 #include "ode/collide/gather_pieces.hpp"
+#include "ode/collide/kept_contacts.hpp"
 #include "ode/collide/manifold.hpp"
 #include "ode/collide/manifold_points.hpp"
 #include "ode/collide/nearest_in_time.hpp"
@@ -24,6 +25,10 @@ constexpr std::size_t most_patches = 6;
 constexpr double same_patch = 0.85;       // cosine of the largest angle to a patch's first normal, 32 degrees
 constexpr double same_direction = 0.999;  // patches that leave the same way are one manifold
 constexpr double same_place = 1e-6;       // of the body's size
+// What it takes to look for the surface over a body's lowest point, and for the lowest corners of a body with many
+// sides in all pieces.
+constexpr double looking_us = 3.0;
+constexpr double for_features_us = 4.0;
 
 struct Patch {
   std::array<const Piece*, most_pieces> pieces;
@@ -86,7 +91,7 @@ bool add_corners(const Piece& piece, const Vec3& direction, const ConvexBody& bo
 void add_points(const Patch& patch, const Vec3& direction, const ConvexBody& body, bool ridges, const Limit& limit,
                 ManifoldPoints& points) noexcept {
   Features features;
-  if (has_many_sides(body) && limit.time_is_up(time_for_points)) {
+  if (has_many_sides(body) && !limit.has_time_left(for_features_us, time_for_points)) {
     features.add_corner(body.farthest(-direction));  // only the deepest, if it is below a face
     ridges = false;
   } else {
@@ -345,30 +350,8 @@ bool write_resting(const PreparedMesh& mesh, const math::Pose& mesh_in_world, co
   };
   std::array<query::Contact, query::most_contacts> held;
   const std::size_t count = resting.write(question, body_in_mesh, motion, size, meets, held);
-  for (const query::Contact& contact : std::span(held).first(count)) {
-    const Vec3 on_mesh = contact.position - 0.5 * contact.depth * contact.normal;
-    writer.add(mesh_in_world * on_mesh, mesh_in_world.rotation * contact.normal, contact.depth, contact.triangle_a,
-               query::no_feature);
-  }
+  write_kept(std::span(held).first(count), mesh_in_world, writer);
   return count > 0;
-}
-
-// Keeps what was written. A contact between meshes is half-way between two surfaces, these are on the mesh's own.
-void keep_resting(const math::Pose& mesh_in_world, const math::Pose& body_in_mesh, const ContactWriter& writer,
-                  const RestingContacts::Question& question, RestingContacts& resting) noexcept {
-  std::array<query::Contact, query::most_contacts> made;
-  const math::Pose into_mesh = mesh_in_world.inverse();
-  const auto count = static_cast<std::size_t>(writer.count());
-  for (std::size_t i = 0; i < count; ++i) {
-    const dContactGeom& contact = writer[static_cast<int>(i)];
-    made[i].normal = into_mesh.rotation * Vec3(contact.normal[0], contact.normal[1], contact.normal[2]);
-    made[i].depth = contact.depth;
-    made[i].position =
-        into_mesh * Vec3(contact.pos[0], contact.pos[1], contact.pos[2]) + 0.5 * made[i].depth * made[i].normal;
-    made[i].triangle_a = static_cast<std::uint32_t>(contact.side1);
-    made[i].triangle_b = query::no_feature;
-  }
-  resting.keep(question, std::span(made).first(count), body_in_mesh);
 }
 
 // Of pieces that were left out, the deepest are asked for: those over the lowest points of the body.
@@ -378,7 +361,8 @@ void add_deepest(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const
   for (Patch& patch : patches) {
     const auto goes_the_same_way = [&](const Patch& p) { return p.exit.direction == patch.exit.direction; };
     const bool is_first = &*std::find_if(patches.begin(), patches.end(), goes_the_same_way) == &patch;
-    if (!is_first || !(patch.exit.depth < dInfinity) || limit.time_is_up(time_for_exits)) continue;
+    if (!is_first || !(patch.exit.depth < dInfinity)) continue;
+    if (limit.time_is_up(time_for_exits) || !limit.has_time_left(looking_us)) return;
     const double most = deeper * patch.exit.depth;
     if (!add_piece_above(mesh, body_in_mesh, body, patch.exit.direction, most, limit, pieces)) continue;
     patch.pieces[patch.count++] = &pieces.all[pieces.count - 1];
@@ -389,10 +373,11 @@ void add_deepest(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const
 }  // namespace
 
 Seen write_convex_contacts(const PreparedMesh& mesh, const math::Pose& mesh_in_world, const math::Pose& body_in_world,
-                           const ConvexBody& body, Limit& limit, ContactWriter& writer, int room) noexcept {
+                           const ConvexBody& body, std::uint32_t turn, Limit& limit, ContactWriter& writer,
+                           int room) noexcept {
   const math::Pose body_in_mesh = mesh_in_world.inverse() * body_in_world;
   Pieces pieces;
-  gather_pieces(mesh, body_in_mesh, body, limit, pieces);
+  gather_pieces(mesh, body_in_mesh, body, turn, limit, pieces);
   if (pieces.count == 0) {
     if (!push_out(mesh, mesh_in_world, body_in_mesh, body, pieces.cut_off, limit, writer)) pieces.cut_off = true;
   } else {
@@ -402,7 +387,9 @@ Seen write_convex_contacts(const PreparedMesh& mesh, const math::Pose& mesh_in_w
     find_exits(std::span(patches).first(count), by_size.span(), pieces.complete, body, limit);
     leave_sideways(mesh, body_in_mesh, by_size.span(), body, limit, std::span(patches).first(count));
     if (!pieces.complete) {
-      leave_by_the_near_side(mesh, body_in_mesh, body, limit, std::span(patches).first(count));
+      if (!pieces.nearest_first) {
+        leave_by_the_near_side(mesh, body_in_mesh, body, limit, std::span(patches).first(count));
+      }
       add_deepest(mesh, body_in_mesh, body, limit, pieces, std::span(patches).first(count));
     }
     if (mesh.closed && (pieces.cut_off || limit.time_is_up(time_for_exits))) {
@@ -436,9 +423,11 @@ int collide_convex_body(dGeomID mesh, dGeomID partner, const ConvexBody& body, i
                     writer)) {
     return limit.finish_carried(writer.count());
   }
-  const Seen seen = write_convex_contacts(*data.mesh, *mesh_in_world, *body_in_world, body, limit, writer, room);
-  if (seen != Seen::cut_off && motion > 0.0 && !limit.time_is_up()) {
-    keep_resting(*mesh_in_world, body_in_mesh, writer, question, data.resting);
+  const std::uint32_t turn = motion > 0.0 ? data.resting.turn(question, body_in_mesh) : 0;
+  const Seen seen = write_convex_contacts(*data.mesh, *mesh_in_world, *body_in_world, body, turn, limit, writer, room);
+  const bool finished = seen != Seen::cut_off && !limit.time_is_up();
+  if (motion > 0.0 && (finished || data.settings.undecided_policy == ODDS_UNDECIDED_HIT)) {
+    settle_contacts(*mesh_in_world, body_in_mesh, finished, size, question, data.resting, writer);
   }
   return limit.finish(seen == Seen::all, writer.count());
 }

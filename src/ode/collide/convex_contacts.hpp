@@ -20,11 +20,11 @@ enum class Seen : std::uint8_t {
 
 /// Writes contacts of a mesh (the writer's g1) with a body, the deepest patch first; normals lead into the mesh. One
 /// normal for all patches that the body leaves in the same direction; depths are at most the way out of the patch.
-/// Nothing but the limit, or the room for pieces of the surface, ends it before every triangle was seen. noexcept, no
-/// allocation (about 150 KB of the stack).
+/// Nothing but the limit, or the room for pieces of the surface, ends it before every triangle was seen; `turn`: see
+/// gather_pieces. noexcept, no allocation (about 150 KB of the stack).
 [[nodiscard]] Seen write_convex_contacts(const PreparedMesh& mesh, const math::Pose& mesh_in_world,
-                                         const math::Pose& body_in_world, const ConvexBody& body, Limit& limit,
-                                         ContactWriter& writer, int room) noexcept;
+                                         const math::Pose& body_in_world, const ConvexBody& body, std::uint32_t turn,
+                                         Limit& limit, ContactWriter& writer, int room) noexcept;
 
 /// The whole of a collider function: the mesh's pose and settings, the limit, the counters. `body_in_world` may be
 /// empty (a bad pose).

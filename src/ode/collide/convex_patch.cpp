@@ -7,7 +7,9 @@
 #include <cmath>
 #include <limits>
 
+#include "ode/geom/convex_shape.hpp"
 #include "ode/mesh/triangle_corners.hpp"
+#include "query/wide/searches.hpp"
 
 namespace odds::ode {
 namespace {
@@ -56,15 +58,23 @@ bool cut(Piece& piece, const HalfSpace& half_space, std::int16_t number) noexcep
 }
 
 // As sides in turn do, but most of them are passed over.
-void cut_by_many(Piece& piece, std::span<const HalfSpace> sides) noexcept {
+void cut_by_many(Piece& piece, const ConvexBody& body) noexcept {
+  using query::wide::EightSides;
   Ball ball(piece);
-  for (std::size_t i = 0; i < sides.size() && piece.count >= 3; ++i) {
-    const double height = sides[i].normal.dot(ball.center) - sides[i].offset;
-    if (height <= -ball.radius) continue;
-    if (height > ball.radius) {
-      piece.count = 0;
-    } else if (cut(piece, sides[i], static_cast<std::int16_t>(i)) && piece.count >= 3) {
-      ball = Ball(piece);
+  std::array<std::uint8_t, ConvexShape::most_faces / EightSides::count> near;
+  const query::wide::Searches& kernels = *query::wide::searches_for(query::InstructionSet::best);
+  if (!kernels.sides_near(body.many_sides(), ball.center, ball.radius, near.data())) piece.count = 0;
+  for (std::size_t eight = 0; eight < body.many_sides().size() && piece.count >= 3; ++eight) {
+    for (unsigned lanes = near[eight]; lanes != 0 && piece.count >= 3; lanes &= lanes - 1) {
+      const std::size_t i = EightSides::count * eight + static_cast<std::size_t>(std::countr_zero(lanes));
+      const HalfSpace& side = body.sides()[i];
+      const double height = side.normal.dot(ball.center) - side.offset;
+      if (height <= -ball.radius) continue;
+      if (height > ball.radius) {
+        piece.count = 0;
+      } else if (cut(piece, side, static_cast<std::int16_t>(i)) && piece.count >= 3) {
+        ball = Ball(piece);
+      }
     }
   }
 }
@@ -153,7 +163,7 @@ bool cut_triangle(const PreparedMesh& mesh, std::uint32_t triangle, const math::
     piece.side[i] = Piece::own_edge;
   }
   if (has_many_sides(body)) {
-    cut_by_many(piece, body.sides());
+    cut_by_many(piece, body);
   } else {
     for (; sides != 0 && piece.count >= 3; sides &= sides - 1) {
       const auto i = static_cast<std::size_t>(std::countr_zero(sides));
@@ -198,7 +208,7 @@ Exit shortest_exit(std::span<const Piece* const> patch, const ConvexBody& body, 
     consider(piece->normal);
     if (tried_count < tried.size()) tried[tried_count++] = piece->normal;
   }
-  if (limit.time_is_up(time_for_exits) || (has_many_sides(body) && !limit.has_time_left(listing_us))) return best;
+  if (!limit.has_time_left(has_many_sides(body) ? listing_us : 0.0, time_for_exits)) return best;
   ExitList exits(mean);
   body.add_exits(patch, limit.has_time_left(refining_us), exits);
   for (const Vec3& direction : exits.all()) {

@@ -19,8 +19,8 @@ constexpr double time_for_pieces = 0.5;
 constexpr double time_for_exits = 0.75;
 constexpr double time_for_points = 0.9;
 
-/// One cut, or one way through the body, may take longer than a short budget: the clock is looked at before each.
-[[nodiscard]] inline bool has_many_sides(const ConvexBody& body) noexcept { return body.sides().size() > 32; }
+/// A body of which nodes of a mesh, and its own corners, take long.
+[[nodiscard]] inline bool has_many_sides(const ConvexBody& body) noexcept { return !body.many_sides().empty(); }
 
 /// About a piece: what does not come near it is told soonest.
 struct Ball {

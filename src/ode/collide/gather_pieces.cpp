@@ -7,6 +7,7 @@
 #include "ode/collide/convex_patch.hpp"
 #include "ode/collide/sieve.hpp"
 #include "ode/collide/surface_above.hpp"
+#include "query/shape/near_segment.hpp"
 
 namespace odds::ode {
 namespace {
@@ -28,22 +29,29 @@ std::size_t octant_of(const Piece& piece, const Vec3& box_center) noexcept {
   return (sum.x() > 0.0 ? 1U : 0U) + (sum.y() > 0.0 ? 2U : 0U) + (sum.z() > 0.0 ? 4U : 0U);
 }
 
+/// How many pieces there will be time for, and is room for.
+std::size_t room_in_time(const Limit& limit) noexcept {
+  return static_cast<std::size_t>(std::min<std::uint64_t>(Pieces::most, limit.nodes_in_time(time_for_pieces)));
+}
+
 class Gathering {
  public:
-  Gathering(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const ConvexBody& body, Limit& limit,
-            Pieces& pieces) noexcept
+  Gathering(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const ConvexBody& body, std::uint32_t turn,
+            Limit& limit, Pieces& pieces) noexcept
       : mesh_(mesh),
         body_(body),
         mesh_in_body_(body_in_mesh.inverse()),
+        turn_(turn),
         limit_(limit),
         pieces_(pieces),
         sieve_(mesh, body, body_in_mesh),
         nodes_a_cut_(1 + body.sides().size() / 32) {}
 
   void run() noexcept {
-    if (!seem_many()) {
+    if (!seem_more_than(room_in_time(limit_))) {
       end_share_ = time_for_pieces;
-      pieces_.complete = sift(any_octant, Way::forwards, limit_.nodes_left(), Pieces::most);
+      const Way way = turn_ % 2 == 0 ? Way::forwards : Way::backwards;
+      pieces_.complete = sift(any_octant, way, limit_.nodes_left(), Pieces::most);
       if (pieces_.complete || pieces_.cut_off) return;
       if (used_ >= time_for_pieces) {
         pieces_.cut_off = true;
@@ -60,8 +68,8 @@ class Gathering {
  private:
   using Way = query::ConvexRegion::Way;
 
-  /// Whether more triangles are in the body than there is room for, as far as a part of the tree tells.
-  [[nodiscard]] bool seem_many() noexcept {
+  /// Whether more triangles are in the body, as far as a part of the tree tells.
+  [[nodiscard]] bool seem_more_than(std::size_t room) noexcept {
     constexpr std::size_t below_leaves = 40;  // of a node above them, as they usually are
     if (mesh_.mesh().triangles().size() <= Pieces::most) return false;
     std::size_t about = 0;
@@ -71,14 +79,14 @@ class Gathering {
                                : child.height() == 1 ? below_leaves
                                                      : Pieces::most;
       about += sides == 0 && child.is_leaf() ? child.count() : half;
-      return about > Pieces::most ? Visit::end : Visit::pass_over;
+      return about > room ? Visit::end : Visit::pass_over;
     };
     const auto take = [](std::uint32_t, Sieve::Sides) { return true; };
     const std::uint64_t nodes = limit_.nodes_left();
     std::uint64_t left = nodes;
     static_cast<void>(sieve_.region().search(node, take, left));
     limit_.spend(nodes - left);
-    return about > Pieces::most;
+    return about > room;
   }
 
   /// Adds the pieces in that octant, which the sieve is set to, but for those that are there; at most `most`. False if
@@ -131,7 +139,8 @@ class Gathering {
   /// plate. Then what is left of the room goes to those that need more. What lies beside the body in its box takes no
   /// place of what is in the body.
   void by_octants() noexcept {
-    std::array<std::size_t, octants> hungry = in_order;
+    std::array<std::size_t, octants> hungry;
+    std::rotate_copy(in_order.begin(), in_order.begin() + turn_ % octants, in_order.end(), hungry.begin());
     std::size_t hungry_count = octants;
     for (int round = 0; round < 3 && hungry_count > 0 && !pieces_.cut_off; ++round) {
       const bool last = round == 2;
@@ -162,6 +171,7 @@ class Gathering {
   const PreparedMesh& mesh_;
   const ConvexBody& body_;
   math::Pose mesh_in_body_;
+  std::uint32_t turn_;
   Limit& limit_;
   Pieces& pieces_;
   Sieve sieve_;
@@ -172,6 +182,37 @@ class Gathering {
   Piece spare_;                   ///< found while another octant was looked at, and nothing else
   bool has_spare_ = false;
 };
+
+/// Of a body that many half-spaces bound, each node takes long. Those nearest to its middle are in it if any are, and
+/// the deepest: they come first, and are found without the half-spaces. In other turns those nearest to another inner
+/// point.
+void gather_from_within(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const ConvexBody& body,
+                        std::uint32_t turn, Limit& limit, Pieces& pieces) noexcept {
+  constexpr double outwards = 0.7;  // of the half extents
+  const math::Pose mesh_in_body = body_in_mesh.inverse();
+  Vec3 middle = body.center();
+  if (const std::uint32_t of_turns = turn % (octants + 1); of_turns > 0) {
+    const std::size_t octant = in_order[of_turns - 1];
+    const Vec3 way((octant & 1U) != 0 ? outwards : -outwards, (octant & 2U) != 0 ? outwards : -outwards,
+                   (octant & 4U) != 0 ? outwards : -outwards);
+    middle = body.box_center() + way.cwiseProduct(body.box_half_extents());
+  }
+  const Vec3 farthest = body.box_half_extents() + (middle - body.box_center()).cwiseAbs();
+  const Vec3 from = body_in_mesh * middle;
+  const query::NearSegment about(*mesh.wide_tree, from, from);
+  const std::uint64_t nodes = limit.nodes_left();
+  std::uint64_t left = nodes;
+  const auto may_go_on = [&] { return !limit.time_is_up(pieces.count == 0 ? time_for_exits : time_for_pieces); };
+  const auto take = [&](std::uint32_t triangle) {
+    if (!may_go_on() || pieces.count == Pieces::most) return false;
+    if (cut_triangle(mesh, triangle, mesh_in_body, body, all_sides, pieces.all[pieces.count])) ++pieces.count;
+    return true;
+  };
+  pieces.nearest_first = true;
+  pieces.complete = about.all_within(farthest.norm(), take, may_go_on, left);
+  pieces.cut_off = !pieces.complete;
+  limit.spend(nodes - left);
+}
 
 }  // namespace
 
@@ -188,9 +229,15 @@ bool add_piece_above(const PreparedMesh& mesh, const math::Pose& body_in_mesh, c
   return true;
 }
 
-void gather_pieces(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const ConvexBody& body, Limit& limit,
-                   Pieces& pieces) noexcept {
-  Gathering(mesh, body_in_mesh, body, limit, pieces).run();
+void gather_pieces(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const ConvexBody& body, std::uint32_t turn,
+                   Limit& limit, Pieces& pieces) noexcept {
+  constexpr std::uint64_t from_all_octants =
+      8 * Pieces::most;  // it takes so many nodes to find pieces, and those that fit
+  if (has_many_sides(body) && limit.nodes_in_time(time_for_pieces) < from_all_octants) {
+    gather_from_within(mesh, body_in_mesh, body, turn, limit, pieces);
+  } else {
+    Gathering(mesh, body_in_mesh, body, turn, limit, pieces).run();
+  }
 }
 
 }  // namespace odds::ode

@@ -42,9 +42,9 @@ class Limit {
     return time_ns_ > 0.0 ? static_cast<double>(clock_() - start_ns_) / time_ns_ : 1.0;
   }
 
-  /// Whether so much of the time is left, or there is no limit.
-  [[nodiscard]] bool has_time_left(double microseconds) const noexcept {
-    return !timed_ || clock_() + static_cast<std::int64_t>(1e3 * microseconds) < end_ns(1.0);
+  /// Whether so much of the time is left and no more than `share` of it is gone, or there is no limit.
+  [[nodiscard]] bool has_time_left(double microseconds, double share = 1.0) const noexcept {
+    return !timed_ || clock_() < std::min(end_ns(share), end_ns(1.0) - static_cast<std::int64_t>(1e3 * microseconds));
   }
 
   /// How many nodes a search may visit that looks at the clock itself.

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "odds/math/types.hpp"
+#include "query/wide/many_sides.hpp"
 
 namespace odds::ode {
 
@@ -83,6 +84,8 @@ class ConvexBody {
 
   /// Half-spaces whose intersection holds the body, and is the body unless it is curved.
   [[nodiscard]] std::span<const HalfSpace> sides() const noexcept { return sides_; }
+  /// The same by eight, of a body that has many; else empty.
+  [[nodiscard]] std::span<const query::wide::EightSides> many_sides() const noexcept { return many_sides_; }
   [[nodiscard]] const Vec3& center() const noexcept { return center_; }  ///< a point inside
   [[nodiscard]] const Vec3& box_center() const noexcept { return box_center_; }
   [[nodiscard]] const Vec3& box_half_extents() const noexcept { return box_half_extents_; }
@@ -117,6 +120,7 @@ class ConvexBody {
   ConvexBody& operator=(const ConvexBody&) = default;
 
   std::span<const HalfSpace> sides_;
+  std::span<const query::wide::EightSides> many_sides_;
   Vec3 center_ = Vec3::Zero();
   Vec3 box_center_ = Vec3::Zero();
   Vec3 box_half_extents_ = Vec3::Zero();

@@ -10,6 +10,8 @@
 #include <string>
 #include <utility>
 
+#include "query/wide/searches.hpp"
+
 namespace odds::ode {
 namespace {
 
@@ -126,6 +128,7 @@ Result<std::shared_ptr<const ConvexShape>> ConvexShape::make(std::span<const Vec
   shape->box_center_ = 0.5 * (lower + upper);
   shape->box_half_extents_ = 0.5 * (upper - lower);
   shape->prepare_climbing();
+  shape->prepare_many_sides();
   return std::shared_ptr<const ConvexShape>(shape);
 }
 
@@ -226,6 +229,23 @@ void ConvexShape::prepare_climbing() {
   }
   for (const Vec3& point : points_) look(point - center_);
   climbs_ = all;
+}
+
+// Of few sides each says itself whether it cuts a triangle.
+void ConvexShape::prepare_many_sides() {
+  constexpr std::size_t few_sides = 32;
+  if (faces_.size() <= few_sides) return;
+  using query::wide::EightSides;
+  faces_by_eight_.resize((faces_.size() + EightSides::count - 1) / EightSides::count);
+  for (std::size_t i = 0; i < faces_.size(); ++i) {
+    faces_by_eight_[i / EightSides::count].set(i % EightSides::count, faces_[i].normal, faces_[i].offset);
+  }
+  many_sides_ = faces_by_eight_;
+}
+
+double ConvexShape::way_through(const Vec3& point, const Vec3& direction) const noexcept {
+  if (many_sides_.empty()) return ConvexBody::way_through(point, direction);
+  return query::wide::searches_for(query::InstructionSet::best)->way_out(many_sides_, point, direction);
 }
 
 // Across an edge of the surface and one of the body: of a body that has few directions of edges, any of them, as of a

@@ -31,6 +31,7 @@ class ConvexShape final : public ConvexBody {
 
   [[nodiscard]] std::uint64_t number() const noexcept override { return number_; }
   [[nodiscard]] Vec3 farthest(const Vec3& direction) const noexcept override;
+  [[nodiscard]] double way_through(const Vec3& point, const Vec3& direction) const noexcept override;
   [[nodiscard]] bool may_lean() const noexcept override { return leans_; }
   void add_exits(std::span<const Piece* const> patch, bool refined, ExitList& exits) const noexcept override;
   void add_features(const Vec3& up, double depth, Features& features) const noexcept override;
@@ -46,11 +47,13 @@ class ConvexShape final : public ConvexBody {
 
   static constexpr std::size_t start_count = 96;  ///< six sides of a cube, sixteen parts of each
   void prepare_climbing();
+  void prepare_many_sides();
   [[nodiscard]] unsigned climb(const Vec3& direction) const noexcept;
   [[nodiscard]] static std::size_t start_of(const Vec3& direction) noexcept;
 
   std::vector<Vec3> points_;
   std::vector<HalfSpace> faces_;
+  std::vector<query::wide::EightSides> faces_by_eight_;  ///< of more than few
   std::vector<std::array<unsigned, 2>> edges_;
   std::vector<Vec3> edge_directions_;  ///< unit, of `edges_`, no two parallel; of many only the first
   bool leans_ = false;                 ///< two faces at one corner face away from each other

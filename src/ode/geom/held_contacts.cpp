@@ -112,6 +112,22 @@ void HeldContacts::note_apart(const math::Pose& b_in_a) noexcept {
   count_ = kept;
 }
 
+void HeldContacts::keep_apart(const HeldContacts& before, const math::Pose& b_in_a, double size) noexcept {
+  for (std::size_t i = 0; i < before.count_ && count_ < most; ++i) {
+    const auto [depth, slip] = before.held_[i].parted(b_in_a);
+    if (depth > 0.0 || depth < -most_gap * size || slip > most_slip * size) continue;
+    const Vec3 place = before.held_[i].at(b_in_a).position;
+    const auto is_there = [&](const query::HeldContact& held) {
+      return (held.at(b_in_a).position - place).norm() < same_place * size;
+    };
+    if (std::any_of(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(count_), is_there)) continue;
+    held_[count_] = before.held_[i];
+    complete_[count_] = false;
+    added_[count_] = before.added_[i];
+    ++count_;
+  }
+}
+
 void HeldContacts::keep(std::span<const query::Contact> found, const math::Pose& b_in_a, bool careful,
                         bool complete) noexcept {
   count_ = std::min(found.size(), most);

@@ -54,6 +54,11 @@ class HeldContacts {
   /// that there is.
   void keep(std::span<const query::Contact> found, const math::Pose& b_in_a, bool careful, bool complete) noexcept;
 
+  /// Adds what was held `before` and is apart now, as far as there is room: where bodies rock, they touch there next.
+  void keep_apart(const HeldContacts& before, const math::Pose& b_in_a, double size) noexcept;
+
+  [[nodiscard]] bool is_empty() const noexcept { return count_ == 0; }
+
   /// Whether what `at` gave last is better than what a run gives now that had no time to measure: made with care, and
   /// either not long ago, for bodies that turn come to touch in other places, or of bodies that have hardly moved
   /// since.

@@ -1,6 +1,7 @@
 #include "ode/geom/resting_contacts.hpp"
 
 #include <algorithm>
+#include <bit>
 
 namespace odds::ode {
 
@@ -20,25 +21,84 @@ RestingContacts::Slot& RestingContacts::slot_to_fill() noexcept {
                            [&age](const Slot& x, const Slot& y) { return age(x) < age(y); });
 }
 
-void RestingContacts::keep(const Question& question, std::span<const query::Contact> contacts,
-                           const math::Pose& body_in_mesh) noexcept {
-  Slot* known = slot_of(question.partner);
-  if (known == nullptr && contacts.empty()) return;
+std::uint32_t RestingContacts::turn(const Question& question, const math::Pose& body_in_mesh) noexcept {
+  const Use use(slot_of(question.partner));
+  if (use.slot != nullptr && use.slot->question == question) return use.slot->turn++;
+  std::uint64_t mixed = 0;
+  for (const double x : body_in_mesh.translation) {
+    mixed = (mixed ^ std::bit_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15U;  // 2^64 over the golden ratio
+    mixed ^= mixed >> 32U;
+  }
+  return static_cast<std::uint32_t>(mixed);
+}
+
+/// Of a part of the surface the way out may be taken for a longer one; and what was overlooked for a while, and is deep
+/// by now, must not push the body off at once. So it is as deep as what was given about there, and the body has come
+/// since, and a little more each time.
+double RestingContacts::believed_depth(const query::Contact& contact, const Slot& slot, const math::Pose& body_in_mesh,
+                                       double size) noexcept {
+  constexpr double about_there = 0.1;  // of the size
+  const Vec3 motion = contact.position - slot.given_at * (body_in_mesh.inverse() * contact.position);
+  if (motion.norm() > HeldContacts::most_trusted * size) return contact.depth;
+  double deepest = 0.0;
+  for (const Given& given : std::span(slot.given).first(slot.given_count)) {
+    if ((given.position - contact.position).norm() <= about_there * size) deepest = std::max(deepest, given.depth);
+  }
+  const double came = std::max(contact.normal.dot(motion), 0.0);
+  return std::min(contact.depth, deepest + came + HeldContacts::rest * size);
+}
+
+std::size_t RestingContacts::settle(const Question& question, std::span<const query::Contact> found, bool finished,
+                                    const math::Pose& body_in_mesh, double size,
+                                    std::span<query::Contact, query::most_contacts> contacts) noexcept {
+  const auto as_found = [&] {
+    std::copy(found.begin(), found.end(), contacts.begin());
+    return found.size();
+  };
+  Slot* const known = slot_of(question.partner);
+  if (known == nullptr && found.empty()) return 0;
   const Use use(known != nullptr ? known : &slot_to_fill());
-  if (use.slot == nullptr) return;
+  if (use.slot == nullptr) return as_found();
   Slot& slot = *use.slot;
   // Between the look and the hold another thread may have filled it.
-  if (known != nullptr && slot.partner.load(std::memory_order_relaxed) != question.partner) return;
-  if (contacts.empty()) {
-    slot.partner.store(nullptr, std::memory_order_relaxed);
-    return;
+  if (known != nullptr && slot.partner.load(std::memory_order_relaxed) != question.partner) return as_found();
+  const bool is_known = known != nullptr && slot.question == question;
+  if (!is_known) {
+    slot.question = question;
+    slot.carried.forget();
+    slot.held = HeldContacts();
+    slot.turn = 1;
   }
-  std::array<query::TrianglePair, query::most_contacts> triangles;
-  for (std::size_t i = 0; i < contacts.size(); ++i) triangles[i] = {contacts[i].triangle_a, query::no_feature};
-  slot.question = question;
-  slot.carried.keep(contacts, question.room, std::span(triangles).first(contacts.size()), body_in_mesh);
+  if (finished) {
+    std::array<query::TrianglePair, query::most_contacts> triangles;
+    for (std::size_t i = 0; i < found.size(); ++i) triangles[i] = {found[i].triangle_a, query::no_feature};
+    slot.carried.keep(found, question.room, std::span(triangles).first(found.size()), body_in_mesh);
+  }
+  std::array<query::Contact, query::most_contacts> believed;
+  std::copy(found.begin(), found.end(), believed.begin());
+  for (query::Contact& contact : std::span(believed).first(finished || !is_known ? 0 : found.size())) {
+    contact.depth = believed_depth(contact, slot, body_in_mesh, size);
+  }
+  query::Answer answer;
+  answer.basis = finished ? query::Basis::proved : query::Basis::budget;
+  answer.contacts = std::span(believed).first(found.size());
+  answer.contacts_complete = finished;
+  answer.contact_pairs = 1;  // few, whatever they were made from: the limit decided which
+  const HeldContacts before = slot.held;
+  const std::span<const query::Contact> best = slot.held.best_of(answer, body_in_mesh, size);
+  if (finished) slot.held.keep_apart(before, body_in_mesh, size);
+  const std::size_t count = std::min(best.size(), static_cast<std::size_t>(question.room));
+  std::copy_n(best.begin(), count, contacts.begin());
+  slot.given_at = body_in_mesh;
+  slot.given_count = best.size();
+  for (std::size_t i = 0; i < best.size(); ++i) slot.given[i] = {best[i].position, best[i].depth};
+  if (best.empty() && slot.held.is_empty()) {
+    slot.partner.store(nullptr, std::memory_order_relaxed);
+    return 0;
+  }
   slot.last_use.store(next_use(), std::memory_order_relaxed);
   slot.partner.store(question.partner, std::memory_order_relaxed);
+  return count;
 }
 
 }  // namespace odds::ode

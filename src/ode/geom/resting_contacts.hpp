@@ -8,14 +8,16 @@
 #include <span>
 
 #include "odds/ode/odds_ode.h"
+#include "ode/geom/held_contacts.hpp"
 #include "query/known/carried_contacts.hpp"
 
 namespace odds::ode {
 
-/// What one geom with a mesh keeps of its contacts with convex bodies that touched it lately, by the rules of
-/// query::CarriedContacts; of more than `most_partners` the ones that were longest out of use are let go. All in the
-/// mesh's frame, metres. Different partners may be asked about in different threads at once. No allocation (about 1 KB
-/// a partner).
+/// What one geom with a mesh keeps of its contacts with convex bodies that touched it lately: those of bodies that rest
+/// by the rules of query::CarriedContacts, and what a collision that its limit ended falls back on by those of
+/// HeldContacts. Of more than `most_partners` the ones that were longest out of use are let go. All in the mesh's
+/// frame, metres. Different partners may be asked about in different threads at once. No allocation (about 3 KB a
+/// partner).
 class RestingContacts {
  public:
   static constexpr std::size_t most_partners = 16;
@@ -55,18 +57,37 @@ class RestingContacts {
     return 0;
   }
 
-  /// Takes the place of what is kept of that partner; without contacts: nothing is kept any more.
-  void keep(const Question& question, std::span<const query::Contact> contacts,
-            const math::Pose& body_in_mesh) noexcept;
+  /// Another number in each collision of a partner that touched lately, and of others at nearly each pose: collisions
+  /// that their limit ends must not all look in the same place.
+  [[nodiscard]] std::uint32_t turn(const Question& question, const math::Pose& body_in_mesh) noexcept;
+
+  /// Takes note of the contacts that a collision found, and writes those that it is to give: its own if it was
+  /// `finished`, else the best of them and of what is held. Returns their number. `size`: of the smaller body.
+  [[nodiscard]] std::size_t settle(const Question& question, std::span<const query::Contact> found, bool finished,
+                                   const math::Pose& body_in_mesh, double size,
+                                   std::span<query::Contact, query::most_contacts> contacts) noexcept;
 
  private:
+  struct Given {
+    Vec3 position;
+    double depth = 0.0;
+  };
   struct Slot {
     std::atomic<dGeomID> partner{nullptr};  ///< null: free
     std::atomic<bool> busy{false};          ///< in use by a thread
     std::atomic<std::uint64_t> last_use{0};
     Question question;
     query::CarriedContacts carried;
+    HeldContacts held;
+    std::array<Given, query::most_contacts> given;  ///< by the last collision
+    std::size_t given_count = 0;
+    math::Pose given_at;
+    std::uint32_t turn = 0;
   };
+
+  /// How deep a contact may be that a collision found which did not see all; the last one that is known was there.
+  [[nodiscard]] static double believed_depth(const query::Contact& contact, const Slot& slot,
+                                             const math::Pose& body_in_mesh, double size) noexcept;
 
   /// Holds a slot for this thread; `slot` is null if there is none, or another thread holds it.
   struct Use {

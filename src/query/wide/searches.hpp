@@ -18,6 +18,7 @@
 #include "query/wide/half_spaces.hpp"
 #include "query/wide/kinetic_front.hpp"
 #include "query/wide/known_faces.hpp"
+#include "query/wide/many_sides.hpp"
 #include "query/wide/near_segment.hpp"
 #include "query/wide/sweep.hpp"
 
@@ -112,6 +113,10 @@ struct Searches {
                         float (&least)[tree::wide_lanes]) noexcept;
   void (*triangles_near)(const tree::WideLeaf& leaf, unsigned count, const Vec3f& from, const SegmentInTree& segment,
                          float (&least)[tree::wide_lanes]) noexcept;
+  /// Which of a body's many sides a ball is not wholly within, and the way out of the body.
+  bool (*sides_near)(std::span<const EightSides> sides, const Vec3& center, double radius,
+                     std::uint8_t* lanes) noexcept;
+  double (*way_out)(std::span<const EightSides> sides, const Vec3& point, const Vec3& direction) noexcept;
   patch::Kernels patch;
 };
 

@@ -6,6 +6,7 @@
 #include "query/wide/extents.hpp"
 #include "query/wide/half_spaces.hpp"
 #include "query/wide/incremental.hpp"
+#include "query/wide/many_sides.hpp"
 #include "query/wide/near_segment.hpp"
 #include "query/wide/nearest.hpp"
 #include "query/wide/patch_kernel.hpp"
@@ -32,6 +33,8 @@ constexpr Searches searches_of() noexcept {
           &ExtentsKernel<L>::triangles,
           &NearSegmentKernel<L>::children,
           &NearSegmentKernel<L>::triangles,
+          &ManySidesKernel<L>::near,
+          &ManySidesKernel<L>::way_out,
           PatchKernel<L>::table()};
 }
 

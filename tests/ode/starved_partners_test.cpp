@@ -1,0 +1,183 @@
+// Bodies of ODE on finely cut ground, within so little work that each collision sees a small part of it: they stand,
+// for what earlier collisions have found is kept.
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <string>
+
+#include "ode/ode_fixture.hpp"
+#include "ode/starved_ground.hpp"
+
+namespace odds::test {
+namespace {
+
+constexpr double radius = 0.1;  // of the coin and the cylinder; half of the box's side
+constexpr double height = 0.05;
+
+enum class Ground : std::uint8_t { flat, hilly };
+
+class StarvedPartners : public OdeTest {
+ protected:
+  void SetUp() override {
+    OdeTest::SetUp();
+    world = dWorldCreate();
+    joints = dJointGroupCreate(0);
+    dWorldSetGravity(world, 0, 0, -9.81);
+  }
+  void TearDown() override {
+    coin.reset();
+    dJointGroupDestroy(joints);
+    dWorldDestroy(world);
+    OdeTest::TearDown();
+  }
+
+  /// Hills 1 cm high above valleys, 0.3 m apart; cells of 8 mm.
+  void lay(Ground kind, unsigned long work_units) {
+    const double hill = kind == Ground::hilly ? 0.005 : 0.0;
+    ground = mesh_geom(
+        slab_shape(120, [hill](double x, double y) { return hill * (std::sin(20.0 * x) + std::cos(17.0 * y)); }),
+        space);
+    top = 2.0 * hill;
+    ASSERT_EQ(dGeomOddsMeshSetWorkBudget(ground, work_units), 1);
+  }
+  void put(const std::string& kind) {
+    dMass mass;
+    dGeomID geom = nullptr;
+    dMassSetCylinder(&mass, 500, 3, radius, height);
+    if (kind == "box") {
+      geom = dCreateBox(space, 2 * radius, 2 * radius, height);
+      dMassSetBox(&mass, 500, 2 * radius, 2 * radius, height);
+    }
+    if (kind == "cylinder") geom = dCreateCylinder(space, radius, height);
+    if (kind == "convex") geom = coin.emplace(space, radius, height, 40).geom;
+    dMatrix3 turn;
+    dRFromAxisAndAngle(turn, 0, 0, 1, 0.7);
+    if (kind == "capsule") {
+      geom = dCreateCapsule(space, 0.5 * height, 2 * radius);
+      dMassSetCapsule(&mass, 500, 3, 0.5 * height, 2 * radius);
+      dRFromAxisAndAngle(turn, 0.6, 0.8, 0, 0.5 * std::numbers::pi);
+    }
+    body = dBodyCreate(world);
+    dBodySetMass(body, &mass);
+    dGeomSetBody(geom, body);
+    dBodySetPosition(body, 0.03, 0.02, top + 0.5 * height + 1e-3);
+    dBodySetRotation(body, turn);
+  }
+  void step() {
+    dSpaceCollide(space, this, [](void* data, dGeomID a, dGeomID b) {
+      const auto* self = static_cast<StarvedPartners*>(data);
+      dContact contacts[8];
+      const int count = dCollide(a, b, 8, &contacts[0].geom, sizeof(dContact));
+      for (int i = 0; i < count; ++i) {
+        std::memset(static_cast<void*>(&contacts[i].surface), 0, sizeof contacts[i].surface);
+        contacts[i].surface.mu = 0.5;
+        contacts[i].surface.mode = dContactApprox1;
+        dJointAttach(dJointCreateContact(self->world, self->joints, &contacts[i]), dGeomGetBody(a), dGeomGetBody(b));
+      }
+    });
+    dWorldStep(world, 1e-3);
+    dJointGroupEmpty(joints);
+  }
+  [[nodiscard]] double degrees_from_upright() const {
+    return std::acos(std::min(1.0, dBodyGetRotation(body)[10])) * 180.0 / std::numbers::pi;
+  }
+  [[nodiscard]] Vec3 place() const {
+    const dReal* const at = dBodyGetPosition(body);
+    return {at[0], at[1], at[2]};
+  }
+
+  dGeomID ground = nullptr;
+  dBodyID body = nullptr;
+  dWorldID world = nullptr;
+  dJointGroupID joints = nullptr;
+  std::optional<ConvexCoin> coin;
+  double top = 0.0;
+};
+
+struct Starved {
+  const char* body;
+  Ground ground;
+  unsigned long units;
+  double tilt;  ///< degrees, at most
+};
+
+class Standing : public StarvedPartners, public ::testing::WithParamInterface<Starved> {};
+
+TEST_P(Standing, StandsThroughFiveSeconds) {
+  lay(GetParam().ground, GetParam().units);
+  put(GetParam().body);
+  for (int i = 0; i < 2000; ++i) step();
+  const Vec3 settled = place();
+  for (int i = 0; i < 3000; ++i) {
+    step();
+    ASSERT_LE(degrees_from_upright(), GetParam().tilt) << "step " << i;
+    ASSERT_GE(place().z(), 0.5 * height - 1e-3);
+  }
+  EXPECT_LE((place() - settled).norm(), 5e-3);
+  EXPECT_GT(stats().primitive_cut_off, 100u) << "there was time for all";
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Bodies, Standing,
+    ::testing::Values(Starved{"box", Ground::flat, 40, 0.5}, Starved{"box", Ground::hilly, 40, 8},
+                      Starved{"box", Ground::hilly, 80, 8}, Starved{"cylinder", Ground::flat, 40, 0.5},
+                      Starved{"cylinder", Ground::hilly, 40, 8}, Starved{"cylinder", Ground::hilly, 80, 8},
+                      Starved{"convex", Ground::flat, 40, 0.5}, Starved{"convex", Ground::hilly, 40, 8},
+                      Starved{"convex", Ground::hilly, 320, 8}),
+    [](const auto& of) {
+      return std::string(of.param.body) + (of.param.ground == Ground::flat ? "Flat" : "Hilly") +
+             std::to_string(of.param.units);
+    });
+
+TEST_F(StarvedPartners, ACapsuleLiesOnBothEnds) {
+  for (const unsigned long units : {40UL, 80UL}) {
+    lay(Ground::flat, units);
+    put("capsule");
+    for (int i = 0; i < 5000; ++i) {
+      step();
+      ASSERT_NEAR(degrees_from_upright(), 90.0, 0.5) << "step " << i << ", units " << units;
+    }
+    EXPECT_NEAR(place().z(), 0.5 * height, 1e-3);
+    dGeomDestroy(dBodyGetFirstGeom(body));
+    dGeomDestroy(ground);
+  }
+}
+
+TEST_F(StarvedPartners, NothingIsKeptWhereNothingIsToBeCarried) {
+  lay(Ground::flat, 40);
+  dGeomOddsMeshSetCarryMotion(ground, 0);
+  put("box");
+  dBodySetPosition(body, 0.03, 0.02, 0.5 * height - 1e-4);
+  const dGeomID box = dBodyGetFirstGeom(body);
+  const auto first = collide(ground, box);
+  for (int i = 0; i < 10; ++i) {
+    const auto again = collide(ground, box);
+    ASSERT_EQ(again.size(), first.size());
+    for (std::size_t k = 0; k < first.size(); ++k) EXPECT_EQ(position_of(again[k]), position_of(first[k]));
+  }
+}
+
+TEST_F(StarvedPartners, AnotherTurnFindsOtherContacts) {
+  lay(Ground::flat, 40);
+  put("box");
+  dBodySetPosition(body, 0.03, 0.02, 0.5 * height - 1e-4);
+  const dGeomID box = dBodyGetFirstGeom(body);
+  const auto spread = [&] {
+    double most = 0.0;
+    const auto contacts = collide(ground, box);
+    for (const auto& a : contacts) {
+      for (const auto& b : contacts) most = std::max(most, (position_of(a) - position_of(b)).norm());
+    }
+    return most;
+  };
+  const double first = spread();
+  double last = 0.0;
+  for (int i = 0; i < 10; ++i) last = spread();
+  EXPECT_GT(last, 1.2 * radius);
+  EXPECT_LT(first, last);
+}
+
+}  // namespace
+}  // namespace odds::test
