@@ -33,19 +33,14 @@ std::uint32_t RestingContacts::turn(const Question& question, const math::Pose& 
 }
 
 /// Of a part of the surface the way out may be taken for a longer one; and what was overlooked for a while, and is deep
-/// by now, must not push the body off at once. So it is as deep as what was given about there, and the body has come
-/// since, and a little more each time.
+/// by now, must not throw the body. So it is as deep as the deepest was, and the body has come since, and a little more
+/// each time.
 double RestingContacts::believed_depth(const query::Contact& contact, const Slot& slot, const math::Pose& body_in_mesh,
                                        double size) noexcept {
-  constexpr double about_there = 0.1;  // of the size
-  const Vec3 motion = contact.position - slot.given_at * (body_in_mesh.inverse() * contact.position);
+  const Vec3 motion = contact.position - slot.deepest_at * (body_in_mesh.inverse() * contact.position);
   if (motion.norm() > HeldContacts::most_trusted * size) return contact.depth;
-  double deepest = 0.0;
-  for (const Given& given : std::span(slot.given).first(slot.given_count)) {
-    if ((given.position - contact.position).norm() <= about_there * size) deepest = std::max(deepest, given.depth);
-  }
   const double came = std::max(contact.normal.dot(motion), 0.0);
-  return std::min(contact.depth, deepest + came + HeldContacts::rest * size);
+  return std::min(contact.depth, slot.deepest + came + HeldContacts::rest * size);
 }
 
 std::size_t RestingContacts::settle(const Question& question, std::span<const query::Contact> found, bool finished,
@@ -89,9 +84,9 @@ std::size_t RestingContacts::settle(const Question& question, std::span<const qu
   if (finished) slot.held.keep_apart(before, body_in_mesh, size);
   const std::size_t count = std::min(best.size(), static_cast<std::size_t>(question.room));
   std::copy_n(best.begin(), count, contacts.begin());
-  slot.given_at = body_in_mesh;
-  slot.given_count = best.size();
-  for (std::size_t i = 0; i < best.size(); ++i) slot.given[i] = {best[i].position, best[i].depth};
+  slot.deepest_at = body_in_mesh;
+  slot.deepest = 0.0;
+  for (const query::Contact& contact : best) slot.deepest = std::max(slot.deepest, contact.depth);
   if (best.empty() && slot.held.is_empty()) {
     slot.partner.store(nullptr, std::memory_order_relaxed);
     return 0;

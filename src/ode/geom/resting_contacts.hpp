@@ -68,10 +68,6 @@ class RestingContacts {
                                    std::span<query::Contact, query::most_contacts> contacts) noexcept;
 
  private:
-  struct Given {
-    Vec3 position;
-    double depth = 0.0;
-  };
   struct Slot {
     std::atomic<dGeomID> partner{nullptr};  ///< null: free
     std::atomic<bool> busy{false};          ///< in use by a thread
@@ -79,9 +75,8 @@ class RestingContacts {
     Question question;
     query::CarriedContacts carried;
     HeldContacts held;
-    std::array<Given, query::most_contacts> given;  ///< by the last collision
-    std::size_t given_count = 0;
-    math::Pose given_at;
+    double deepest = 0.0;  ///< of the contacts that the last collision gave, metres
+    math::Pose deepest_at;
     std::uint32_t turn = 0;
   };
 
