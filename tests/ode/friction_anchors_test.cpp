@@ -295,6 +295,17 @@ TEST_F(FrictionAnchors, BeginAnewAfterSomeStepsApart) {
   EXPECT_EQ(motion(), 0.0) << "they were apart";
 }
 
+TEST_F(FrictionAnchors, HoldNothingWithoutNextStep) {
+  Touching touching;
+  const Anchors anchors = make_anchors();
+  for (int i = 0; i < 5; ++i) {
+    dContact contact = touching.contact;
+    dBodySetPosition(touching.body, 1e-6 * i, 0.0, 0.0);
+    EXPECT_EQ(oddsFrictionAnchorsHold(anchors.get(), touching.body, nullptr, &contact, 1, step_s), 1);
+    EXPECT_EQ(std::hypot(contact.surface.motion1, contact.surface.motion2), 0.0) << i;
+  }
+}
+
 /// A body that spins on one contact holds no turn, nor does what it has turned meanwhile.
 TEST_F(FrictionAnchors, PullNoContactBackByMoreThanTheSlip) {
   Touching touching;

@@ -20,7 +20,7 @@ extern "C" {
  * contact gets more force than its mu allows. */
 typedef struct oddsFrictionAnchors* oddsFrictionAnchorsID;
 
-/* Takes memory for at most `most_pairs` pairs of geoms that touch in a step (1 .. 1048576; 0.7 to 1.4 KB each).
+/* Takes memory for at most `most_pairs` pairs of geoms that touch in a step (1 .. 1048576; 1.5 to 3 KB each).
  * `most_slip`: metres, > 0, finite. A ten-thousandth of a body's size will do, 1e-5 for bricks of 0.1 m; bodies that
  * give by more swing back as on springs. Null with an error otherwise. Any number may be alive; at most one thread at a
  * time may use one. */

@@ -172,7 +172,7 @@ oddsFrictionAnchors::Slid oddsFrictionAnchors::follow(Anchor& anchor, const Midd
   const math::Pose first = pose_of(anchor.pair.bodies[0]);
   const math::Pose second = pose_of(anchor.pair.bodies[1]);
   const Mat3 turned = second.rotation.transpose() * first.rotation;
-  const bool is_new = anchor.step == 0;
+  const bool is_new = anchor.met == step_;
   Vec3 place = is_new ? middle.place : first * anchor.points[0];
   Vec3 by = Vec3::Zero();
   double turn = 0.0;
@@ -218,6 +218,7 @@ bool oddsFrictionAnchors::hold(dBodyID b1, dBodyID b2, dContact* contacts, int c
   if (anchor == nullptr) return false;
   const double sign = in_order ? 1.0 : -1.0;
   const Slid slid = follow(*anchor, Middle(contacts, count, b1 == nullptr, sign), sign, step_s);
+  if (anchor->step == 0) anchor->met = step_;
   anchor->step = step_;
   for (int i = 0; i < count; ++i) {
     Vec3 here = slid.by + slid.turn.cross(vector_of(contacts[i].geom.pos) - slid.place);

@@ -33,7 +33,8 @@ struct oddsFrictionAnchors {
   };
   struct Anchor {
     Touching pair;
-    std::uint64_t step = 0;                                           ///< the last one in which they touched; 0: never
+    std::uint64_t step = 0;  ///< the last one in which they touched; 0: never
+    std::uint64_t met = 0;   ///< the one in which they came to rest: nothing is held in it
     odds::Vec3 points[2] = {odds::Vec3::Zero(), odds::Vec3::Zero()};  ///< one of each body, in its frame
     odds::Mat3 turned = odds::Mat3::Identity();                       ///< of the first body in the second's frame then
     double turn = 0.0;   ///< about the normal, what the first had turned against the second then
