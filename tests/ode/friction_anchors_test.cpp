@@ -457,10 +457,14 @@ TEST_F(FrictionAnchors, RefuseWhatMakesNoSense) {
   };
   EXPECT_EQ(hold(touching.contact, nullptr, nullptr, step_s), 1) << "nothing to hold";
   EXPECT_EQ(hold(touching.contact, touching.body, touching.body, step_s), 0);
-  for (const double bad : {0.0, -1.0, nan, infinity}) EXPECT_EQ(hold(touching.contact, touching.body, nullptr, bad), 0);
+  for (const double bad : {0.0, -1.0, nan, infinity, 1e-310})
+    EXPECT_EQ(hold(touching.contact, touching.body, nullptr, bad), 0);
   dContact odd = touching.contact;
   odd.geom.pos[1] = nan;
   EXPECT_EQ(hold(odd, touching.body, nullptr, step_s), 0);
+  odd = touching.contact;
+  odd.geom.normal[2] = 0.0;
+  EXPECT_EQ(hold(odd, touching.body, nullptr, step_s), 0) << "no normal: its directions would not be numbers";
   odd = touching.contact;
   odd.surface.mode = dContactMotion1;
   odd.surface.motion1 = infinity;

@@ -37,7 +37,7 @@ void oddsFrictionAnchorsNextStep(oddsFrictionAnchorsID anchors) ODDS_NOTHROW;
  * the bodies have slid there. `b1` and `b2` are what you give to dJointAttach, in its order. 1: done, or there is
  * nothing to hold: no contacts, or both bodies null. 0, with an error and nothing changed: there is no room for one
  * more pair, a pointer is null, the step is not > 0, it is one body twice, the contacts are of several pairs, or
- * something is not finite. No allocation, no lock, no system call. */
+ * something is not finite, or a normal zero. No allocation, no lock, no system call. */
 int oddsFrictionAnchorsHold(oddsFrictionAnchorsID anchors, dBodyID b1, dBodyID b2, dContact* contacts, int count,
                             dReal step_s) ODDS_NOTHROW;
 

@@ -91,7 +91,9 @@ bool is_finite(dBodyID body) noexcept {
 }
 
 bool is_finite(const dContact& contact) noexcept {
-  return vector_of(contact.geom.pos).allFinite() && vector_of(contact.geom.normal).allFinite() &&
+  const Vec3 normal = vector_of(contact.geom.normal);
+  // Of none ODE's directions of friction are not numbers either.
+  return vector_of(contact.geom.pos).allFinite() && normal.allFinite() && !normal.isZero(0.0) &&
          ((contact.surface.mode & dContactFDir1) == 0 || vector_of(contact.fdir1).allFinite()) &&
          std::isfinite(motion1_of(contact.surface)) && std::isfinite(motion2_of(contact.surface));
 }
@@ -216,9 +218,9 @@ bool oddsFrictionAnchors::hold(dBodyID b1, dBodyID b2, dContact* contacts, int c
   if (!in_order) pair = {{pair.geoms[1], pair.geoms[0]}, {b2, b1}};
   Anchor* const anchor = find(pair);
   if (anchor == nullptr) return false;
+  if (anchor->step == 0) anchor->met = step_;
   const double sign = in_order ? 1.0 : -1.0;
   const Slid slid = follow(*anchor, Middle(contacts, count, b1 == nullptr, sign), sign, step_s);
-  if (anchor->step == 0) anchor->met = step_;
   anchor->step = step_;
   for (int i = 0; i < count; ++i) {
     Vec3 here = slid.by + slid.turn.cross(vector_of(contacts[i].geom.pos) - slid.place);
@@ -268,13 +270,15 @@ int oddsFrictionAnchorsHold(oddsFrictionAnchorsID anchors, dBodyID b1, dBodyID b
   if (count == 0 || (b1 == nullptr && b2 == nullptr)) return 1;
   if (contacts == nullptr) return refuse("oddsFrictionAnchorsHold: the contacts are null");
   if (b1 == b2) return refuse("oddsFrictionAnchorsHold: needs two bodies, at most one of them null");
-  if (!(step_s > 0) || !std::isfinite(step_s)) return refuse("oddsFrictionAnchorsHold: the step must be > 0 seconds");
+  if (!(step_s > 0) || !std::isfinite(step_s) || !std::isfinite(1.0 / step_s)) {
+    return refuse("oddsFrictionAnchorsHold: the step must be > 0 seconds");
+  }
   if (!is_finite(b1) || !is_finite(b2)) return refuse("oddsFrictionAnchorsHold: a body is not finite");
   for (int i = 0; i < count; ++i) {
     if (contacts[i].geom.g1 != contacts[0].geom.g1 || contacts[i].geom.g2 != contacts[0].geom.g2) {
       return refuse("oddsFrictionAnchorsHold: the contacts must be of one pair of geoms, in one order");
     }
-    if (!is_finite(contacts[i])) return refuse("oddsFrictionAnchorsHold: a contact is not finite");
+    if (!is_finite(contacts[i])) return refuse("oddsFrictionAnchorsHold: a contact is not finite, or has no normal");
   }
   if (!anchors->hold(b1, b2, contacts, count, step_s)) {
     return refuse("oddsFrictionAnchorsHold: no room for one more pair; create anchors for more");
