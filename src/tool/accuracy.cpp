@@ -9,6 +9,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,6 +23,7 @@
 #include "tool/progress_line.hpp"
 #include "tool/shape_argument.hpp"
 #include "tool/shared_options.hpp"
+#include "tree/checksum.hpp"
 
 namespace odds::tool {
 namespace {
@@ -138,6 +140,11 @@ Result<StudyShapes> prepare(const AccuracyOptions& options) {
   return shapes;
 }
 
+std::string checksum_of(const mesh::TriangleMesh& mesh) {
+  return fmt::format("{:016x}{:016x}", tree::checksum(std::as_bytes(mesh.vertices())),
+                     tree::checksum(std::as_bytes(mesh.triangles())));
+}
+
 Result<report::Study> measure(const AccuracyOptions& options) {
   const Result<StudyShapes> shapes = prepare(options);
   if (!shapes.ok()) return shapes.error();
@@ -153,6 +160,8 @@ Result<report::Study> measure(const AccuracyOptions& options) {
   s.scale_b = options.scale_b;
   s.triangles_a = shapes.value().a->mesh().triangles().size();
   s.triangles_b = shapes.value().b->mesh().triangles().size();
+  s.checksum_a = checksum_of(shapes.value().a->mesh());
+  s.checksum_b = checksum_of(shapes.value().b->mesh());
   s.bounding_volume = volume::name(shapes.value().a->volume());
   s.tau = shapes.value().a->options().tau;
   s.estimator = options.estimator == query::EstimatorKind::cells ? "cells" : "kinematic";

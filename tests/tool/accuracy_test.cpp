@@ -192,6 +192,25 @@ TEST(Accuracy, RefusesToMergeWhatDoesNotBelongTogether) {
   refused("a --out m", "a/poses.csv");
 }
 
+// As many triangles, and the smaller body, to which all figures refer, is the other one.
+TEST(Accuracy, RefusesToMergeShardsBetweenWhichAMeshWasChanged) {
+  const TemporaryFolder folder;
+  const std::string one = "accuracy body.obj made:gear --budgets-us none --work 64 --poses 1 ";
+  const auto write_body = [&](const char* height) {
+    folder.write("body.obj",
+                 std::string("v 0 0 0\nv 9 0 0\nv 0 9 0\nv 1 1 ") + height + "\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+  };
+  write_body("5");
+  ASSERT_EQ(run_tool(folder, one + "--shard 0/2 --out a").status, 0);
+  ASSERT_EQ(run_tool(folder, one + "--shard 1/2 --out b").status, 0);
+  EXPECT_EQ(run_tool(folder, "accuracy --merge a b --out whole").status, 0);
+  write_body("6");
+  ASSERT_EQ(run_tool(folder, one + "--shard 1/2 --out b").status, 0);
+  const Ran ran = run_tool(folder, "accuracy --merge a b --out m");
+  EXPECT_EQ(ran.status, 1);
+  EXPECT_NE(ran.errors.find("error: b: 'body.obj' was another mesh than in a; "), std::string::npos) << ran.errors;
+}
+
 TEST(Accuracy, RefusesToMergeDamagedFiles) {
   const TemporaryFolder folder;
   ASSERT_EQ(run_tool(folder, meshes + "--budgets-us none --work 64 --poses 1 --out a").status, 0);

@@ -26,6 +26,8 @@ Json settings_json(const StudySettings& s) {
           {"scale_b", s.scale_b},
           {"triangles_a", s.triangles_a},
           {"triangles_b", s.triangles_b},
+          {"checksum_a", s.checksum_a},
+          {"checksum_b", s.checksum_b},
           {"size_m", s.size_m},
           {"bounding_volume", s.bounding_volume},
           {"tau", s.tau},
@@ -75,6 +77,8 @@ StudySettings settings_from(const Json& json) {
   json.at("scale_b").get_to(s.scale_b);
   json.at("triangles_a").get_to(s.triangles_a);
   json.at("triangles_b").get_to(s.triangles_b);
+  s.checksum_a = json.value("checksum_a", "");  // older studies have none
+  s.checksum_b = json.value("checksum_b", "");
   json.at("size_m").get_to(s.size_m);
   json.at("bounding_volume").get_to(s.bounding_volume);
   json.at("tau").get_to(s.tau);
@@ -84,7 +88,7 @@ StudySettings settings_from(const Json& json) {
   s.procedure = procedure_from(json.at("procedure").get<std::string>());
   json.at("seed").get_to(s.seed);
   json.at("poses_per_band").get_to(s.poses_per_band);
-  s.calibration_poses = json.value("calibration_poses", 0U);  // older studies have none
+  s.calibration_poses = json.value("calibration_poses", 0U);  // ... nor this
   for (const Json& trial : json.at("trials")) {
     s.trials.push_back({kind_from(trial.at("limit").get<std::string>()), trial.at("amount").get<double>(),
                         trial.at("p_min").get<double>()});

@@ -61,6 +61,22 @@ std::optional<Error> write_worst(const fs::path& directory, const Study& study, 
   return std::nullopt;
 }
 
+/// Why a study cannot be merged with the first; nothing: it can.
+std::optional<Error> unlike(const Study& study, const std::string& name, const Study& first,
+                            const std::string& first_name) {
+  StudySettings settings = study.settings;
+  settings.checksum_a = first.settings.checksum_a;
+  settings.checksum_b = first.settings.checksum_b;
+  if (!(settings == first.settings) || study.shard.of != first.shard.of || study.version != first.version) {
+    return Error{name, "", "is of another study than " + first_name,
+                 "merge shards i/n of one n, with the same meshes, options and version"};
+  }
+  if (study.settings == first.settings) return std::nullopt;
+  const bool is_a = study.settings.checksum_a != first.settings.checksum_a;
+  return Error{name, "", "'" + (is_a ? settings.mesh_a : settings.mesh_b) + "' was another mesh than in " + first_name,
+               "run all shards with the same files"};
+}
+
 Result<std::string> text_of(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(file), {}};
@@ -129,11 +145,7 @@ Result<Study> merge_studies(std::vector<Study> studies, const std::vector<std::s
   std::vector<std::size_t> place(shards, studies.size());
   for (std::size_t i = 0; i < studies.size(); ++i) {
     const Study& study = studies[i];
-    if (!(study.settings == studies.front().settings) || study.shard.of != shards ||
-        study.version != studies.front().version) {
-      return Error{names[i], "", "is of another study than " + names.front(),
-                   "merge shards i/n of one n, with the same meshes, options and version"};
-    }
+    if (auto error = unlike(study, names[i], studies.front(), names.front())) return *std::move(error);
     if (place[study.shard.number] != studies.size()) {
       return Error{
           names[i], "",

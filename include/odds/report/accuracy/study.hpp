@@ -43,6 +43,8 @@ struct StudySettings {
   double scale_b = 1.0;
   std::uint64_t triangles_a = 0;
   std::uint64_t triangles_b = 0;
+  std::string checksum_a;  ///< of the mesh's vertices and triangles: a file may change under its name; may be empty
+  std::string checksum_b;
   double size_m = 0.0;  ///< what parts of the size refer to
   std::string bounding_volume;
   double tau = 0.25;
