@@ -243,6 +243,8 @@ TEST(Accuracy, RefusesToMergeDamagedFiles) {
   refused_with("a/poses.csv", line, "nan" + line.substr(line.find(',')));
   const std::string answers = file_in(folder, "a/answers.csv");
   refused_with("a/answers.csv", ",budget,", ",guess,");
+  refused_with("a/answers.csv", ",work,64,1,", ",us,64,1,");
+  refused_with("a/answers.csv", ",work,64,1,", ",work,64,0.5,");
   EXPECT_EQ(run_tool(folder, "accuracy --merge a --out m").status, 0) << "the undamaged study";
 }
 

@@ -166,9 +166,10 @@ std::optional<Error> read_answers_csv(const std::string& file, const std::string
     }
     auto& samples = study.samples[trial];
     if (fields.number<std::uint64_t>() != study.poses[samples.size()].pose.index) fields.fail("another pose is due");
-    (void)fields.word();  // the limit: in the order of the settings
-    if (fields.number<double>() != study.settings.trials[trial].amount) fields.fail("another limit is due");
-    (void)fields.word();
+    const Trial& due = study.settings.trials[trial];
+    const bool is_due = fields.word() == name(due.kind) && fields.number<double>() == due.amount &&
+                        fields.number<double>() == due.p_min;
+    if (!is_due) fields.fail("another limit is due");
     samples.push_back(read_sample(fields));
     fields.finish_line();
   }
