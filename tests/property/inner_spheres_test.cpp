@@ -198,6 +198,15 @@ TEST(InnerSpheres, AShallowPairOfBallsIsNoDeeperThanItIs) {
   EXPECT_EQ(deep_overlap(ball, ball, {Mat3::Identity(), Vec3(0.041, 0, 0)}).count, 0U);
 }
 
+// Each ball in a thin plate fills next to nothing of it: only the first was kept.
+TEST(InnerSpheres, OfAThinPlateAreAsManyAsWereAskedFor) {
+  for (const char* plate : {"box:x=1,y=1,z=0.02", "box:x=1,y=1,z=0.01", "box:x=1,y=1,z=0.001"}) {
+    for (const std::uint32_t count : {8U, 128U, 512U}) {
+      EXPECT_EQ(packed(plate, count).radii().size(), count) << plate;
+    }
+  }
+}
+
 TEST(InnerSpheres, TheSameForEveryBoundingVolume) {
   const InnerSpheres wide = InnerSpheres::pack(made("gear")).value();
   const InnerSpheres boxes = InnerSpheres::pack(made("gear", volume::Kind::aabb)).value();

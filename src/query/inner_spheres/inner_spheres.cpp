@@ -21,7 +21,8 @@ constexpr int most_shrinks = 40;       // they converge in some 5
 constexpr double shrunk = 1e-6;        // relative: nearer than that, the ball is empty
 constexpr double least_radius = 1e-6;  // of the mesh
 constexpr double point_size = 1e-9;    // of the mesh: a triangle so small stands for a point
-constexpr double least_gain = 1e-3;    // of the volume: what fills less is left out
+constexpr double least_gain = 1e-3;    // of the volume: what fills less is left out ...
+constexpr double least_of_best = 0.1;  // ... if it is less than that of what the best ball fills: in a plate all do
 constexpr std::size_t depths = 2;      // points below each sample that tell what is filled
 
 struct Ball {
@@ -161,6 +162,7 @@ std::vector<Ball> filling(const std::vector<Ball>& balls, std::vector<Inside> po
   for (const Ball& ball : balls) gains.push_back(gain_of(ball));
   std::vector<bool> current(balls.size(), true);
   std::vector<Ball> kept;
+  double least = 0.0;
   while (kept.size() < most) {
     std::size_t best = 0;
     for (;;) {
@@ -169,7 +171,8 @@ std::vector<Ball> filling(const std::vector<Ball>& balls, std::vector<Inside> po
       gains[best] = gain_of(balls[best]);
       current[best] = true;
     }
-    if (!(gains[best] > least_gain * all) && !kept.empty()) break;
+    if (kept.empty()) least = std::min(least_gain * all, least_of_best * gains[best]);
+    if (!(gains[best] > least) && !kept.empty()) break;
     kept.push_back(balls[best]);
     std::erase_if(points, [&](const Inside& point) { return fills(balls[best], point); });
     gains[best] = 0.0;
