@@ -207,6 +207,18 @@ TEST(InnerSpheres, OfAThinPlateAreAsManyAsWereAskedFor) {
   }
 }
 
+// As in coordinates of a map: rounding is more than what a ray is lifted off the triangle that it starts from.
+TEST(InnerSpheres, OfABodyFarFromItsOriginAreThere) {
+  const mesh::TriangleMesh box = mesh::made::make_shape("made:box:x=0.005,y=0.005,z=0.005").value();
+  std::vector<Vec3> vertices(box.vertices().begin(), box.vertices().end());
+  for (Vec3& vertex : vertices) vertex += Vec3(5e7, -5e7, 4e7);
+  auto mesh = mesh::TriangleMesh::make(vertices, {box.triangles().begin(), box.triangles().end()}).value();
+  const auto far = Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(mesh))).value();
+  const auto spheres = InnerSpheres::pack(far);
+  ASSERT_TRUE(spheres.ok()) << spheres.error().message();
+  EXPECT_NEAR(spheres.value().thickness(), packed("box:x=0.005,y=0.005,z=0.005").thickness(), 1e-4);
+}
+
 TEST(InnerSpheres, TheSameForEveryBoundingVolume) {
   const InnerSpheres wide = InnerSpheres::pack(made("gear")).value();
   const InnerSpheres boxes = InnerSpheres::pack(made("gear", volume::Kind::aabb)).value();

@@ -112,7 +112,9 @@ std::vector<Sample> spread(const mesh::TriangleMesh& mesh) {
 // centre than the sample.
 std::optional<Ball> ball_under(const Shape& shape, Surface& surface, const Sample& sample) {
   const double size = shape.mesh().size();
-  const double lifted = 1e-7 * size;  // off the triangle that the ray starts from
+  const mesh::TriangleMesh& mesh = shape.mesh();
+  const double farthest = std::max(mesh.lower().cwiseAbs().maxCoeff(), mesh.upper().cwiseAbs().maxCoeff());
+  const double lifted = std::max(1e-7 * size, 8.0 * 0x1p-53 * farthest);  // off the triangle that the ray starts from
   const auto across = cast_ray(shape, sample.place + lifted * sample.inward, sample.inward, 2.0 * size);
   if (!across) return std::nullopt;
   double radius = 0.5 * (across->distance + lifted);
