@@ -36,14 +36,20 @@ struct alignas(64) Line {
 };
 
 #if defined(MAP_POPULATE)
-constexpr int map_flags = MAP_PRIVATE | MAP_POPULATE;
+constexpr int all_pages = MAP_POPULATE;
 #else
-constexpr int map_flags = MAP_PRIVATE;
+constexpr int all_pages = 0;
 #endif
+
+bool is_worth_reading(int file, std::uint64_t size, const WorthReading& worth) {
+  std::vector<std::byte> first(worth.first_bytes);
+  const ssize_t count = ::pread(file, first.data(), first.size(), 0);
+  return count > 0 && worth.is_worth(std::span(first).first(static_cast<std::size_t>(count)), size);
+}
 
 }  // namespace
 
-Result<KeptBytes> map_file(const std::filesystem::path& path) {
+Result<KeptBytes> map_file(const std::filesystem::path& path, const WorthReading& worth) {
   const Descriptor file(path);
   if (file.number() < 0) {
     return Error{path.string(), "", "cannot open: " + reason(errno), "check the path and its permissions"};
@@ -54,7 +60,8 @@ Result<KeptBytes> map_file(const std::filesystem::path& path) {
   }
   const auto size = static_cast<std::size_t>(status.st_size);
   if (size == 0) return KeptBytes{};
-  void* const memory = ::mmap(nullptr, size, PROT_READ, map_flags, file.number(), 0);
+  const int flags = MAP_PRIVATE | (is_worth_reading(file.number(), size, worth) ? all_pages : 0);
+  void* const memory = ::mmap(nullptr, size, PROT_READ, flags, file.number(), 0);
   if (memory == MAP_FAILED) {
     return Error{path.string(), "", "cannot be mapped into memory: " + reason(errno), "free some memory and try again"};
   }

@@ -153,6 +153,14 @@ bool begins_like_saved_file(std::span<const std::byte> bytes) noexcept {
   return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
 }
 
+bool may_be_whole(std::span<const std::byte> first, std::uint64_t size) noexcept {
+  if (!begins_like_saved_file(first) || first.size() < header_end) return false;
+  SavedHeader header;
+  std::memcpy(&header, first.data(), sizeof header);
+  if (header.byte_order == swapped(SavedHeader::our_byte_order)) swap_header(header);
+  return header.file_bytes == size && checksum(first.first(offsetof(SavedHeader, checksum))) == header.checksum;
+}
+
 Result<SavedFile> SavedFile::open(KeptBytes file, const std::string& name) {
   Examination examination(file.bytes, name);
   if (auto error = examination.examine()) return *std::move(error);

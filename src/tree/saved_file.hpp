@@ -98,6 +98,10 @@ class SavedFile {
 /// Whether these may be the first bytes of a saved hierarchy.
 [[nodiscard]] bool begins_like_saved_file(std::span<const std::byte> bytes) noexcept;
 
+/// Whether a file of `size` bytes that begins with these may be a whole one: its header is right, and of that size.
+/// Another may be of any size, and is refused without a look at the rest.
+[[nodiscard]] bool may_be_whole(std::span<const std::byte> first, std::uint64_t size) noexcept;
+
 /// What to do about a file that is not as it was written.
 inline constexpr const char* damaged_file_remedy = "copy it again from where it is whole, or make it anew";
 

@@ -1,9 +1,11 @@
 // Saved shapes that were cut off, altered, or made up: each gives an error that names the byte, none a wrong answer.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <limits>
 
@@ -221,6 +223,23 @@ TEST(DamagedShapes, OfAnotherLayoutKeepTheirRemedy) {
   testing::put_header(bytes, header);
   testing::reseal(bytes);
   EXPECT_EQ(error_of(bytes).remedy, "make the file anew with this odds");
+}
+
+// The whole file was asked for before its header was looked at.
+TEST(DamagedShapes, ThatGoOnForLongTakeNoMemory) {
+  const testing::TemporaryFolder folder;
+  folder.write("long", small_file(volume::Kind::wide));
+  std::filesystem::resize_file(folder / "long", std::uintmax_t{1} << 30U);  // with a hole
+  const auto most_kib = [] {
+    struct rusage usage {};
+    ::getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_maxrss;
+  };
+  const auto before = most_kib();
+  const auto shape = load_shape(folder / "long");
+  ASSERT_FALSE(shape.ok());
+  EXPECT_NE(shape.error().what.find("goes on"), std::string::npos) << shape.error().message();
+  EXPECT_LT(most_kib() - before, 100'000);
 }
 
 TEST(DamagedShapes, ThatAreNoFilesAreErrors) {

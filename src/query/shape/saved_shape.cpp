@@ -182,7 +182,7 @@ std::optional<Error> save_shape(const Shape& shape, const std::filesystem::path&
 
 Result<std::shared_ptr<const Shape>> load_shape(const std::filesystem::path& path) {
   const auto start = std::chrono::steady_clock::now();
-  auto bytes = tree::map_file(path);
+  auto bytes = tree::map_file(path, {sizeof(tree::SavedHeader), &tree::may_be_whole});
   if (!bytes.ok()) return bytes.error();
   return shape_in(std::move(bytes).value(), path.string(), start);
 }
