@@ -476,17 +476,20 @@ TEST(Effects, RefuseWhatCannotWork) {
 }
 
 TEST(Effects, RefuseBodiesThatTheyCanDoNothingWith) {
-  auto parsed = parse_scene(
-      "format = \"odds.scene/1\"\n[loop]\nseconds = 1\n[[mesh]]\nname = \"sheet\"\nfile = \"made:terrain\"\n"
-      "[[body]]\nname = \"one\"\nmesh = \"sheet\"\n[[body]]\nname = \"two\"\nmesh = \"sheet\"\nmotion = "
-      "\"dynamic\"\nmass_kg = 1\n[effects.contact]\n[effects.deep_contact]\n",
-      "test.toml", ".");
-  ASSERT_TRUE(parsed.ok()) << parsed.error().message();
-  const auto made = Simulation::make(std::move(parsed).value(), {});
-  ASSERT_FALSE(made.ok());
-  const std::string message = made.error().message();
-  EXPECT_NE(message.find("test.toml:16"), std::string::npos) << message;
-  EXPECT_NE(message.find("two bodies with closed meshes"), std::string::npos) << message;
+  for (const auto& [file, why] : {std::pair{"made:terrain", "two bodies with closed meshes"},
+                                  {"made:box:x=10,y=10,z=1e-6", "too thin to hold a sphere"}}) {
+    auto parsed = parse_scene(
+        "format = \"odds.scene/1\"\n[loop]\nseconds = 1\n[[mesh]]\nname = \"sheet\"\nfile = \"" + std::string(file) +
+            "\"\n[[body]]\nname = \"one\"\nmesh = \"sheet\"\n[[body]]\nname = \"two\"\nmesh = \"sheet\"\nmotion = "
+            "\"dynamic\"\nmass_kg = 1\n[effects.contact]\n[effects.deep_contact]\n",
+        "test.toml", ".");
+    ASSERT_TRUE(parsed.ok()) << parsed.error().message();
+    const auto made = Simulation::make(std::move(parsed).value(), {});
+    ASSERT_FALSE(made.ok());
+    const std::string message = made.error().message();
+    EXPECT_NE(message.find("test.toml:16"), std::string::npos) << message;
+    EXPECT_NE(message.find(why), std::string::npos) << message;
+  }
 }
 
 }  // namespace

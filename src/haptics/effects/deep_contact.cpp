@@ -31,13 +31,20 @@ class DeepContact final : public Effect {
     packed_.clear();
     of_body_.assign(world.body_count(), nullptr);
     std::size_t solids = 0;
+    std::optional<Error> too_thin;
     for (std::uint32_t i = 0; i < world.body_count(); ++i) {
       const std::shared_ptr<const query::Shape>& shape = world.shape({i});
       if (!shape->is_solid()) continue;
       auto [entry, is_new] = known.try_emplace(shape.get(), nullptr);
       if (is_new) {
         auto packed = query::InnerSpheres::pack(shape, static_cast<std::uint32_t>(parameters_.spheres));
-        if (!packed) continue;  // too thin to hold any: it keeps its patches, as an open mesh does
+        if (!packed) {  // too thin to hold any: it keeps its patches, as an open mesh does
+          too_thin = Error{"", "",
+                           "'deep_contact' needs two bodies with spheres in them, and '" + shape->mesh().name() +
+                               "' is too thin to hold a sphere",
+                           "leave it out, or make the mesh thicker"};
+          continue;
+        }
         packed_.push_back(std::make_unique<const query::InnerSpheres>(std::move(packed).value()));
         entry->second = packed_.back().get();
       }
@@ -45,6 +52,7 @@ class DeepContact final : public Effect {
       if (entry->second != nullptr) ++solids;
     }
     if (solids < 2) {
+      if (too_thin) return too_thin;
       return Error{"", "", "'deep_contact' needs two bodies with closed meshes; of others the inside is not known",
                    "leave it out, or close the meshes ('odds inspect' shows where they are open)"};
     }
