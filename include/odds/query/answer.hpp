@@ -88,7 +88,8 @@ struct Answer {
   std::uint32_t contact_pairs = 0;
   bool contacts_carried = false;  ///< they are those of an earlier run, moved along (Request::carry_motion)
   /// They were made with care, but for a pose some runs ago, for a short budget had no time for them at once; moved
-  /// along with the bodies since, the deepest first (Request::late_contacts). Then contacts_complete is false.
+  /// along with the bodies since (Request::late_contacts). First come those where the bodies are deepest, though what
+  /// came in while nobody knew is given its depth gently: another may be given more. Then contacts_complete is false.
   bool contacts_late = false;
   /// They are of flat faces that lie on each other, as polygons, at the pose of this run (Request::late_contacts).
   /// Where contacts_complete is false, it had no time for a patch: all that is known of, but something else may touch.
