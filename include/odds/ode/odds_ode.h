@@ -144,7 +144,8 @@ int dGeomOddsMeshGetMaxContacts(dGeomID geom) ODDS_NOTHROW;
 /* Contacts of a mesh with a mesh, box, cylinder or convex are carried along with the bodies instead of being made anew
  * while nothing near them has moved farther than this part of the smaller body's size, 0 .. 1, since they were made
  * with care: bodies at rest cost next to nothing, and their contacts stand still. A pair of triangles that still meets,
- * or a triangle that still is inside, proves the hit. Default 1e-5; 0: always made anew. */
+ * or a triangle that still is inside, proves the hit. Default 1e-5; 0: always made anew, and collisions with a box,
+ * cylinder, capsule or convex that a budget ends keep nothing of earlier ones. */
 int dGeomOddsMeshSetCarryMotion(dGeomID geom, dReal part) ODDS_NOTHROW;
 dReal dGeomOddsMeshGetCarryMotion(dGeomID geom) ODDS_NOTHROW;
 
@@ -183,7 +184,8 @@ int dGeomOddsMeshGetEstimator(dGeomID geom) ODDS_NOTHROW;
  *                              query before gave a contact and did not prove them apart, or if the last query that was
  *                              decided, by proof or estimate, was a hit at most 16 queries ago and no point of the
  *                              smaller body has moved by more than half of its size since, else none;
- *   ODDS_UNDECIDED_NO_CONTACT  none (p is kept but not used).
+ *   ODDS_UNDECIDED_NO_CONTACT  none (p is kept but not used). Nor are contacts kept of boxes, cylinders, capsules and
+ *                              convexes for collisions that a budget ends.
  * The last answer says in each case what happened. */
 enum { ODDS_UNDECIDED_HIT = 0, ODDS_UNDECIDED_NO_CONTACT = 1 };
 int dGeomOddsMeshSetUndecidedPolicy(dGeomID geom, int policy, dReal p) ODDS_NOTHROW;
