@@ -310,13 +310,16 @@ int collide_capsule(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, i
                            capsule_in_mesh.rotation};
   const bool is_kept = data.settings.carry_motion > 0.0 && data.settings.undecided_policy == ODDS_UNDECIDED_HIT;
   const RestingContacts::Question question{o2, dCapsuleClass, 0, Vec3(radius, radius, 0.5 * length), room};
+  const double size = std::min(mesh.mesh().size(), length + 2.0 * radius);
+  ContactWriter writer(o1, o2, room, contacts, skip);
+  if (gives_only_held()) {
+    return is_kept ? give_kept(*mesh_in_world, capsule_in_mesh, size, question, data.resting, writer) : 0;
+  }
   CapsuleContacts found;
   const std::uint32_t turn = is_kept ? data.resting.turn(question, capsule_in_mesh) : 0;
   const bool complete = find_contacts(mesh, capsule, turn, limit, found);
-  ContactWriter writer(o1, o2, room, contacts, skip);
   write(found, *mesh_in_world, writer);
   if (is_kept) {
-    const double size = std::min(mesh.mesh().size(), length + 2.0 * radius);
     settle_contacts(*mesh_in_world, capsule_in_mesh, complete && !limit.time_is_up(), size, question, data.resting,
                     writer);
   }

@@ -419,6 +419,10 @@ int collide_convex_body(dGeomID mesh, dGeomID partner, const ConvexBody& body, i
   const math::Pose body_in_mesh = mesh_in_world->inverse() * *body_in_world;
   const double size = std::min(data.mesh->mesh().size(), 2.0 * body.box_half_extents().norm());
   const double motion = data.settings.carry_motion * size;
+  const bool holds = motion > 0.0 && data.settings.undecided_policy == ODDS_UNDECIDED_HIT;
+  if (gives_only_held()) {
+    return holds ? give_kept(*mesh_in_world, body_in_mesh, size, question, data.resting, writer) : 0;
+  }
   if (write_resting(*data.mesh, *mesh_in_world, body_in_mesh, body, question, motion, size, data.resting, limit,
                     writer)) {
     return limit.finish_carried(writer.count());
@@ -426,7 +430,7 @@ int collide_convex_body(dGeomID mesh, dGeomID partner, const ConvexBody& body, i
   const std::uint32_t turn = motion > 0.0 ? data.resting.turn(question, body_in_mesh) : 0;
   const Seen seen = write_convex_contacts(*data.mesh, *mesh_in_world, *body_in_world, body, turn, limit, writer, room);
   const bool finished = seen != Seen::cut_off && !limit.time_is_up();
-  if (motion > 0.0 && (finished || data.settings.undecided_policy == ODDS_UNDECIDED_HIT)) {
+  if (holds || (finished && motion > 0.0)) {
     settle_contacts(*mesh_in_world, body_in_mesh, finished, size, question, data.resting, writer);
   }
   return limit.finish(seen == Seen::all, writer.count());

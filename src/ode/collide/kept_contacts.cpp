@@ -3,10 +3,13 @@
 
 #include <array>
 
+#include "ode/frame/frame_share.hpp"
+
 namespace odds::ode {
 
 void write_kept(std::span<const query::Contact> contacts, const math::Pose& mesh_in_world,
                 ContactWriter& writer) noexcept {
+  if (current_share != nullptr) current_share->keeps = true;
   for (const query::Contact& contact : contacts) {
     const Vec3 on_mesh = contact.position - 0.5 * contact.depth * contact.normal;
     writer.add(mesh_in_world * on_mesh, mesh_in_world.rotation * contact.normal, contact.depth, contact.triangle_a,
@@ -32,9 +35,19 @@ void settle_contacts(const math::Pose& mesh_in_world, const math::Pose& body_in_
   std::array<query::Contact, query::most_contacts> best;
   const std::size_t best_count =
       resting.settle(question, std::span(made).first(count), finished, body_in_mesh, size, best);
+  if (current_share != nullptr) current_share->keeps = true;
   if (finished) return;  // they are what was written
   writer.clear();
   write_kept(std::span(best).first(best_count), mesh_in_world, writer);
+}
+
+int give_kept(const math::Pose& mesh_in_world, const math::Pose& body_in_mesh, double size,
+              const RestingContacts::Question& question, RestingContacts& resting, ContactWriter& writer) noexcept {
+  std::array<query::Contact, query::most_contacts> kept;
+  const std::size_t count = resting.held(question, body_in_mesh, size, kept);
+  write_kept(std::span(kept).first(count), mesh_in_world, writer);
+  current_share->report(0, writer.count(), Outcome::unknown);
+  return writer.count();
 }
 
 }  // namespace odds::ode

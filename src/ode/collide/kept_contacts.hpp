@@ -10,7 +10,7 @@
 
 namespace odds::ode {
 
-/// Writes contacts that are kept, in the mesh's frame.
+/// Writes contacts that are kept, in the mesh's frame. A frame may have them given again.
 void write_kept(std::span<const query::Contact> contacts, const math::Pose& mesh_in_world,
                 ContactWriter& writer) noexcept;
 
@@ -19,5 +19,9 @@ void write_kept(std::span<const query::Contact> contacts, const math::Pose& mesh
 void settle_contacts(const math::Pose& mesh_in_world, const math::Pose& body_in_mesh, bool finished, double size,
                      const RestingContacts::Question& question, RestingContacts& resting,
                      ContactWriter& writer) noexcept;
+
+/// Of a frame in which it is not this pair's turn: writes what is kept, where the bodies are now. Returns the number.
+int give_kept(const math::Pose& mesh_in_world, const math::Pose& body_in_mesh, double size,
+              const RestingContacts::Question& question, RestingContacts& resting, ContactWriter& writer) noexcept;
 
 }  // namespace odds::ode

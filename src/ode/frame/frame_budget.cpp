@@ -113,7 +113,7 @@ void oddsFrameBudget::learn(const Candidate& candidate, double share, double cos
   // Of one of ODE's own collisions nobody says how it went; one with a primitive states no odds.
   known->probability = given.outcome == Outcome::unknown ? 0.5 : given.contacts > 0 ? 1.0 : 0.0;
   known->proved = given.outcome == Outcome::finished;
-  known->touches = false;
+  known->touches = given.keeps && given.contacts > 0;
   const odds::ode::PairEntry* answered = odds::ode::answered_pair(candidate.a, candidate.b);
   if (answered == nullptr) return;
   known->probability = answered->last.probability;

@@ -30,6 +30,7 @@ struct FrameShare {
   double stall_us = 0.0;    ///< that the machine took
   int contacts = 0;
   Outcome outcome = Outcome::unknown;
+  bool keeps = false;  ///< contacts of one with a body of ODE that can be given again without a search
 
   void report(std::uint64_t units, int given, Outcome how) noexcept {
     spent += static_cast<unsigned long>(units);

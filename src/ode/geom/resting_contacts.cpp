@@ -82,17 +82,25 @@ std::size_t RestingContacts::settle(const Question& question, std::span<const qu
   const HeldContacts before = slot.held;
   const std::span<const query::Contact> best = slot.held.best_of(answer, body_in_mesh, size);
   if (finished) slot.held.keep_apart(before, body_in_mesh, size);
-  const std::size_t count = std::min(best.size(), static_cast<std::size_t>(question.room));
+  slot.partner.store(best.empty() && slot.held.is_empty() ? nullptr : question.partner, std::memory_order_relaxed);
+  return give(best, body_in_mesh, slot, contacts);
+}
+
+std::size_t RestingContacts::held(const Question& question, const math::Pose& body_in_mesh, double size,
+                                  std::span<query::Contact, query::most_contacts> contacts) noexcept {
+  const Use use(slot_of(question.partner));
+  if (use.slot == nullptr || !(use.slot->question == question)) return 0;
+  return give(use.slot->held.at(body_in_mesh, size), body_in_mesh, *use.slot, contacts);
+}
+
+std::size_t RestingContacts::give(std::span<const query::Contact> best, const math::Pose& body_in_mesh, Slot& slot,
+                                  std::span<query::Contact, query::most_contacts> contacts) noexcept {
+  const std::size_t count = std::min(best.size(), static_cast<std::size_t>(slot.question.room));
   std::copy_n(best.begin(), count, contacts.begin());
   slot.deepest_at = body_in_mesh;
   slot.deepest = 0.0;
   for (const query::Contact& contact : best) slot.deepest = std::max(slot.deepest, contact.depth);
-  if (best.empty() && slot.held.is_empty()) {
-    slot.partner.store(nullptr, std::memory_order_relaxed);
-    return 0;
-  }
   slot.last_use.store(next_use(), std::memory_order_relaxed);
-  slot.partner.store(question.partner, std::memory_order_relaxed);
   return count;
 }
 

@@ -67,6 +67,10 @@ class RestingContacts {
                                    const math::Pose& body_in_mesh, double size,
                                    std::span<query::Contact, query::most_contacts> contacts) noexcept;
 
+  /// Writes what is held, where the body is now, without a collision. Returns the number.
+  [[nodiscard]] std::size_t held(const Question& question, const math::Pose& body_in_mesh, double size,
+                                 std::span<query::Contact, query::most_contacts> contacts) noexcept;
+
  private:
   struct Slot {
     std::atomic<dGeomID> partner{nullptr};  ///< null: free
@@ -83,6 +87,10 @@ class RestingContacts {
   /// How deep a contact may be that a collision found which did not see all; the last one that is known was there.
   [[nodiscard]] static double believed_depth(const query::Contact& contact, const Slot& slot,
                                              const math::Pose& body_in_mesh, double size) noexcept;
+
+  /// Notes and writes what a collision gives.
+  std::size_t give(std::span<const query::Contact> best, const math::Pose& body_in_mesh, Slot& slot,
+                   std::span<query::Contact, query::most_contacts> contacts) noexcept;
 
   /// Holds a slot for this thread; `slot` is null if there is none, or another thread holds it.
   struct Use {
