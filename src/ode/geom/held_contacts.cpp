@@ -33,6 +33,18 @@ std::span<const query::Contact> HeldContacts::best_of(const query::Answer& answe
   return answer.contacts;
 }
 
+std::span<const query::Contact> HeldContacts::with_part(std::span<const query::Contact> found, const math::Pose& b_in_a,
+                                                        double size) noexcept {
+  const std::span<const query::Contact> still_held = at(b_in_a, size, found.empty() ? most_slip_undecided : most_slip);
+  if (found.empty()) return still_held;
+  if (still_held.empty()) {
+    keep(found, b_in_a, false, false);
+    return found;
+  }
+  add(found, b_in_a, size);
+  return at(b_in_a, size);
+}
+
 /// A few pairs of triangles, of whose rim each run finds others: what they touched is kept beside what they touch now
 /// (a persistent manifold), the nearest one's place is taken where there are as many as can be. What pushes where none
 /// of those found now does was a wrong guess, or is another side; and what no run has found for a while is gone. But

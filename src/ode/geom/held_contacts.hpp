@@ -50,6 +50,10 @@ class HeldContacts {
   [[nodiscard]] std::span<const query::Contact> best_of(const query::Answer& answer, const math::Pose& b_in_a,
                                                         double size) noexcept;
 
+  /// Of a run that saw a part of the surfaces, and that part well: what it found beside what is held.
+  [[nodiscard]] std::span<const query::Contact> with_part(std::span<const query::Contact> found,
+                                                          const math::Pose& b_in_a, double size) noexcept;
+
   /// Takes the place of all that was held. `careful`: not what a run gave that had no time to measure; `complete`: all
   /// that there is.
   void keep(std::span<const query::Contact> found, const math::Pose& b_in_a, bool careful, bool complete) noexcept;

@@ -75,12 +75,13 @@ std::size_t RestingContacts::settle(const Question& question, std::span<const qu
     contact.depth = believed_depth(contact, slot, body_in_mesh, size);
   }
   query::Answer answer;
-  answer.basis = finished ? query::Basis::proved : query::Basis::budget;
-  answer.contacts = std::span(believed).first(found.size());
-  answer.contacts_complete = finished;
-  answer.contact_pairs = 1;  // few, whatever they were made from: the limit decided which
+  answer.basis = query::Basis::proved;
+  answer.contacts = found;
+  answer.contacts_complete = true;
   const HeldContacts before = slot.held;
-  const std::span<const query::Contact> best = slot.held.best_of(answer, body_in_mesh, size);
+  const std::span<const query::Contact> best =
+      finished ? slot.held.best_of(answer, body_in_mesh, size)
+               : slot.held.with_part(std::span(believed).first(found.size()), body_in_mesh, size);
   if (finished) slot.held.keep_apart(before, body_in_mesh, size);
   slot.partner.store(best.empty() && slot.held.is_empty() ? nullptr : question.partner, std::memory_order_relaxed);
   return give(best, body_in_mesh, slot, contacts);
