@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "ode/ode_fixture.hpp"
 #include "ode/starved_ground.hpp"
@@ -164,6 +165,30 @@ TEST_F(StarvedPartners, ACylinderThatTipsOverSinksInNowhere) {
       ASSERT_GE(lowest, -1.5e-3) << "step " << i << ", units " << units;
     }
     dGeomDestroy(dBodyGetFirstGeom(body));
+    dGeomDestroy(ground);
+  }
+}
+
+TEST_F(StarvedPartners, WhatSeesAllThereIsRoomForGivesNothingElse) {
+  for (const char* const kind : {"box", "cylinder", "convex", "capsule"}) {
+    lay(Ground::hilly, 0);
+    put(kind);
+    const dGeomID geom = dBodyGetFirstGeom(body);
+    std::vector<dContactGeom> first[2];
+    for (int i = 0; i < 20; ++i) {
+      dBodySetPosition(body, 0.03 + 1e-3 * (i % 2), 0.02, 0.5 * height - 4e-3);
+      const auto contacts = collide(ground, geom);
+      if (i < 2) first[i] = contacts;
+      ASSERT_EQ(contacts.size(), first[i % 2].size()) << kind;
+      for (std::size_t k = 0; k < contacts.size(); ++k) {
+        EXPECT_EQ(position_of(contacts[k]), position_of(first[i % 2][k])) << kind << ", collision " << i;
+      }
+    }
+    if (coin) {
+      coin.reset();
+    } else {
+      dGeomDestroy(geom);
+    }
     dGeomDestroy(ground);
   }
 }

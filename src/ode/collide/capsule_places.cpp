@@ -49,10 +49,12 @@ std::uint32_t find_nearest(const PreparedMesh& mesh, const Capsule& capsule, con
 // if there is no room for them, or no time.
 bool add_all_within(const PreparedMesh& mesh, const Capsule& capsule, const query::NearSegment& axis, Limit& limit,
                     CapsulePlaces& places) noexcept {
+  bool full = false;
   const auto take = [&](std::uint32_t t) {
     const CapsulePlace place = place_of(mesh, capsule, t);
     if (!(place.distance < capsule.radius)) return true;
-    if (places.count == CapsulePlaces::most) return false;
+    full = places.count == CapsulePlaces::most;
+    if (full) return false;
     places.all[places.count++] = place;
     return true;
   };
@@ -61,6 +63,7 @@ bool add_all_within(const PreparedMesh& mesh, const Capsule& capsule, const quer
   const bool all = axis.all_within(
       capsule.radius, take, [&] { return !limit.time_is_up(time_for_places); }, left);
   limit.spend(nodes - left);
+  places.cut_off = !all && !full;
   return all;
 }
 
@@ -117,6 +120,7 @@ void find_places(const PreparedMesh& mesh, const Capsule& capsule, bool few, Lim
   places.complete = !few && add_all_within(mesh, capsule, axis, limit, places);
   if (!places.complete) add_of_many(mesh, capsule, axis, limit, places);
   if (few && places.count == 0) places.complete = places.nearest_is_sure;
+  places.cut_off = places.cut_off || !places.nearest_is_sure;
   std::sort(places.all.begin(), places.all.begin() + places.count, [](const CapsulePlace& a, const CapsulePlace& b) {
     return a.distance != b.distance ? a.distance < b.distance : a.triangle < b.triangle;
   });

@@ -36,6 +36,7 @@ struct CapsulePlaces {
   std::array<CapsulePlace, most> all;
   std::size_t count = 0;
   bool complete = true;         ///< false: some triangle was left out; the nearest of those that were seen is there
+  bool cut_off = false;         ///< by the limit; else only the room for places was too small
   bool nearest_is_sure = true;  ///< none is nearer by 1e-6 of the mesh's size, nor within the radius if there is none
 
   [[nodiscard]] std::span<const CapsulePlace> span() const noexcept { return {all.data(), count}; }

@@ -8,6 +8,7 @@
 
 #include "ode/collide/capsule_places.hpp"
 #include "ode/collide/contact_writer.hpp"
+#include "ode/collide/convex_contacts.hpp"
 #include "ode/collide/kept_contacts.hpp"
 #include "ode/collide/manifold.hpp"
 #include "ode/collide/nearest_in_time.hpp"
@@ -213,6 +214,7 @@ void add_beside(const PreparedMesh& mesh, const Capsule& capsule, CapsulePlaces&
     bool finished = false;
     const auto nearest = nearest_in_time(mesh, capsule.middle(), anywhere, time_for_nearest, limit, finished);
     places.complete = places.complete && finished;
+    places.cut_off = places.cut_off || !finished;
     if (!nearest) return;
     if (nearest->inside) {
       add_ends_behind(capsule, nearest->point, nearest->outward, nearest->triangle, contacts);
@@ -237,9 +239,14 @@ void add_contacts(const PreparedMesh& mesh, const Capsule& capsule, CapsulePlace
   add_minima(mesh, capsule, places, 0, places.count, out, limit, contacts);
 }
 
-// False: some triangle was left out. A capsule that lies is held by its nearest place and both ends. Where there may be
+Seen seen_of(const CapsulePlaces& places, const Limit& limit) noexcept {
+  if (places.cut_off || limit.units == 0) return Seen::cut_off;
+  return places.complete ? Seen::all : Seen::what_has_room;
+}
+
+// A capsule that lies is held by its nearest place and both ends. Where there may be
 // time for one of them only, each has its turn to be first; what was found in others is kept.
-bool find_contacts(const PreparedMesh& mesh, const Capsule& capsule, std::uint32_t turn, Limit& limit,
+Seen find_contacts(const PreparedMesh& mesh, const Capsule& capsule, std::uint32_t turn, Limit& limit,
                    CapsuleContacts& found) noexcept {
   constexpr std::uint32_t turns = 3;
   constexpr double share_of_end = 0.5;
@@ -249,15 +256,15 @@ bool find_contacts(const PreparedMesh& mesh, const Capsule& capsule, std::uint32
     if (turn % turns > 0) add_end_ball(mesh, capsule, capsule.ends[turn % turns - 1], share_of_end, limit, found);
     find_places(mesh, capsule, true, limit, places);
     add_contacts(mesh, capsule, places, limit, found);
-    if (places.complete) return limit.units > 0;
-    if (limit.time_is_up(share_of_end) || limit.units == 0) return false;
+    if (places.complete) return seen_of(places, limit);
+    if (limit.time_is_up(share_of_end) || limit.units == 0) return Seen::cut_off;
     places = CapsulePlaces();
   }
   find_places(mesh, capsule, false, limit, places);
-  if (few && !places.complete) return false;
+  if (few && places.cut_off) return Seen::cut_off;
   found.count = 0;
   add_contacts(mesh, capsule, places, limit, found);
-  return places.complete && limit.units > 0;
+  return seen_of(places, limit);
 }
 
 // The deepest first, then always the one farthest from those before it.
@@ -317,13 +324,13 @@ int collide_capsule(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, i
   }
   CapsuleContacts found;
   const std::uint32_t turn = is_kept ? data.resting.turn(question, capsule_in_mesh) : 0;
-  const bool complete = find_contacts(mesh, capsule, turn, limit, found);
+  const Seen seen = find_contacts(mesh, capsule, turn, limit, found);
   write(found, *mesh_in_world, writer);
   if (is_kept) {
-    settle_contacts(*mesh_in_world, capsule_in_mesh, complete && !limit.time_is_up(), size, question, data.resting,
-                    writer);
+    const bool finished = seen != Seen::cut_off && !limit.time_is_up();
+    settle_contacts(*mesh_in_world, capsule_in_mesh, finished, size, question, data.resting, writer);
   }
-  return limit.finish(complete, writer.count());
+  return limit.finish(seen == Seen::all, writer.count());
 }
 
 }  // namespace odds::ode
