@@ -210,7 +210,7 @@ void gather_from_within(const PreparedMesh& mesh, const math::Pose& body_in_mesh
   };
   pieces.nearest_first = true;
   pieces.complete = about.all_within(farthest.norm(), take, may_go_on, left);
-  pieces.cut_off = !pieces.complete;
+  pieces.cut_off = !pieces.complete;  // where only the room ends it, too: other turns have others
   limit.spend(nodes - left);
 }
 
