@@ -69,6 +69,26 @@ TEST_F(Allocation, NoneInAnyCollisionOfPreparedPairs) {
   EXPECT_GT(collisions, 300u) << "the poses must not be all misses";
 }
 
+TEST_F(Allocation, NoneWhereContactsAreKept) {
+  const dGeomID floor = mesh_geom(box_shape(8.0, 8.0, 2.0, 60), space);
+  dGeomSetPosition(floor, 0, 0, -1);
+  const Partners known(space);
+  for (const dGeomID partner : known.all) ASSERT_EQ(oddsPreparePair(floor, partner), 1) << oddsGetLastError();
+  dGeomOddsMeshSetWorkBudget(floor, 60);
+  dContactGeom contacts[8];
+  int found = 0;
+  for (int round = 0; round < 50; ++round) {
+    for (const dGeomID partner : known.all) {
+      dGeomSetPosition(partner, 0.1, 0.2, 0.3 + 1e-4 * (round % 3));
+      const support::AllocationCounter counter;
+      found += dCollide(floor, partner, 8, contacts, sizeof(dContactGeom));
+      ASSERT_EQ(counter.allocations(), 0U);
+    }
+  }
+  EXPECT_GT(found, 500);
+  EXPECT_GT(stats().primitive_cut_off, 100U);
+}
+
 TEST_F(Allocation, NoneInASimpleSpace) {
   const auto shape = sphere_shape(1.0, 6);
   std::vector<dGeomID> geoms;

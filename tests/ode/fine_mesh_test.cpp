@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "ode/convex_ball.hpp"
+#include "ode/known_convexes.hpp"
 #include "ode/ode_fixture.hpp"
 
 namespace odds::test {

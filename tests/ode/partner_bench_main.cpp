@@ -18,7 +18,7 @@
 #include "odds/ode/odds_ode.h"
 #include "odds/query/shape.hpp"
 #include "odds/realtime/clock.hpp"
-#include "ode/convex_ball.hpp"
+#include "ode/known_convexes.hpp"
 
 namespace {
 

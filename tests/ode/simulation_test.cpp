@@ -1,29 +1,18 @@
 // End to end: things dropped on things come to rest and stay, 10 s at 1 kHz.
 #include <cmath>
-#include <cstring>
 
-#include "ode/ode_fixture.hpp"
+#include "ode/world_fixture.hpp"
 
 namespace odds::test {
 namespace {
 
-constexpr double period = 1e-3;  // seconds
-
-class Simulation : public OdeTest {
+class Simulation : public WorldTest {
  protected:
   void SetUp() override {
-    OdeTest::SetUp();
-    world = dWorldCreate();
-    joints = dJointGroupCreate(0);
-    dWorldSetGravity(world, 0, 0, -9.81);
+    WorldTest::SetUp();
     dWorldSetERP(world, 0.2);
     dWorldSetContactMaxCorrectingVel(world, 0.5);
     dWorldSetContactSurfaceLayer(world, 1e-4);
-  }
-  void TearDown() override {
-    dJointGroupDestroy(joints);
-    dWorldDestroy(world);
-    OdeTest::TearDown();
   }
 
   dBodyID body_of(dGeomID geom, double x, double y, double z) {
@@ -34,22 +23,6 @@ class Simulation : public OdeTest {
     dGeomSetBody(geom, body);
     dBodySetPosition(body, x, y, z);
     return body;
-  }
-
-  void step() {
-    dSpaceCollide(space, this, [](void* data, dGeomID a, dGeomID b) {
-      auto* self = static_cast<Simulation*>(data);
-      if (dGeomGetBody(a) == nullptr && dGeomGetBody(b) == nullptr) return;
-      dContact contacts[8];
-      const int count = dCollide(a, b, 8, &contacts[0].geom, sizeof(dContact));
-      for (int i = 0; i < count; ++i) {
-        std::memset(static_cast<void*>(&contacts[i].surface), 0, sizeof contacts[i].surface);
-        contacts[i].surface.mu = 0.8;
-        dJointAttach(dJointCreateContact(self->world, self->joints, &contacts[i]), dGeomGetBody(a), dGeomGetBody(b));
-      }
-    });
-    dWorldStep(world, period);
-    dJointGroupEmpty(joints);
   }
 
   // Runs 10 s; after the first two nothing may move by more than `drift` (metres), turn, or be faster than `speed` at
@@ -73,9 +46,6 @@ class Simulation : public OdeTest {
   static double tilt_degrees(dBodyID body) {
     return std::acos(std::min(1.0, dBodyGetRotation(body)[10])) * 180.0 / M_PI;
   }
-
-  dWorldID world = nullptr;
-  dJointGroupID joints = nullptr;
 };
 
 TEST_F(Simulation, AMeshBoxOnAPlane) {

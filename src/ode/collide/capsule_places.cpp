@@ -97,6 +97,7 @@ void add_of_many(const PreparedMesh& mesh, const Capsule& capsule, const query::
   double least = capsule.radius;
   for (const CapsulePlace& place : places.span()) least = std::min(least, place.distance);
   const std::uint32_t nearest = find_nearest(mesh, capsule, axis, least, limit, places.nearest_is_sure);
+  places.cut_off = places.cut_off || !places.nearest_is_sure;
   // Each crossing of the axis is a way out; beside the axis, places are of use only if they are all there.
   const bool crosses =
       std::min(least, nearest == query::no_feature ? least : place_of(mesh, capsule, nearest).distance) <=
@@ -107,6 +108,12 @@ void add_of_many(const PreparedMesh& mesh, const Capsule& capsule, const query::
   places.all[places.count++] = place_of(mesh, capsule, nearest);
 }
 
+void sort_nearest_first(CapsulePlaces& places) noexcept {
+  std::sort(places.all.begin(), places.all.begin() + places.count, [](const CapsulePlace& a, const CapsulePlace& b) {
+    return a.distance != b.distance ? a.distance < b.distance : a.triangle < b.triangle;
+  });
+}
+
 }  // namespace
 
 bool has_little_time(const Limit& limit) noexcept {
@@ -114,16 +121,19 @@ bool has_little_time(const Limit& limit) noexcept {
   return limit.nodes_in_time(time_for_places) < enough_nodes;
 }
 
-void find_places(const PreparedMesh& mesh, const Capsule& capsule, bool few, Limit& limit,
-                 CapsulePlaces& places) noexcept {
+void find_places(const PreparedMesh& mesh, const Capsule& capsule, Limit& limit, CapsulePlaces& places) noexcept {
   const query::NearSegment axis(*mesh.wide_tree, capsule.ends[0], capsule.ends[1]);
-  places.complete = !few && add_all_within(mesh, capsule, axis, limit, places);
+  places.complete = add_all_within(mesh, capsule, axis, limit, places);
   if (!places.complete) add_of_many(mesh, capsule, axis, limit, places);
-  if (few && places.count == 0) places.complete = places.nearest_is_sure;
-  places.cut_off = places.cut_off || !places.nearest_is_sure;
-  std::sort(places.all.begin(), places.all.begin() + places.count, [](const CapsulePlace& a, const CapsulePlace& b) {
-    return a.distance != b.distance ? a.distance < b.distance : a.triangle < b.triangle;
-  });
+  sort_nearest_first(places);
+}
+
+void find_nearest_place(const PreparedMesh& mesh, const Capsule& capsule, Limit& limit,
+                        CapsulePlaces& places) noexcept {
+  const query::NearSegment axis(*mesh.wide_tree, capsule.ends[0], capsule.ends[1]);
+  add_of_many(mesh, capsule, axis, limit, places);
+  places.complete = places.count == 0 && places.nearest_is_sure;
+  sort_nearest_first(places);
 }
 
 bool is_local_minimum(const PreparedMesh& mesh, const CapsulePlaces& places, std::size_t index,

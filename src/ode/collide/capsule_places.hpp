@@ -45,10 +45,11 @@ struct CapsulePlaces {
 /// Whether there is hardly time to look at all triangles near a capsule.
 [[nodiscard]] bool has_little_time(const Limit& limit) noexcept;
 
-/// One place for each triangle that is nearer to the axis than the radius, nearest first. `few`: only the nearest one,
-/// or where the axis goes through. noexcept, no allocation.
-void find_places(const PreparedMesh& mesh, const Capsule& capsule, bool few, Limit& limit,
-                 CapsulePlaces& places) noexcept;
+/// One place for each triangle that is nearer to the axis than the radius, nearest first. noexcept, no allocation.
+void find_places(const PreparedMesh& mesh, const Capsule& capsule, Limit& limit, CapsulePlaces& places) noexcept;
+
+/// The nearest of those only, or where the axis goes through: `complete` if there is none. noexcept, no allocation.
+void find_nearest_place(const PreparedMesh& mesh, const Capsule& capsule, Limit& limit, CapsulePlaces& places) noexcept;
 
 /// Whether no nearer triangle of `places` touches the place: otherwise it is only the rim of a neighbour, and its
 /// normal would be that of an internal edge.

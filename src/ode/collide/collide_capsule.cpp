@@ -23,6 +23,8 @@ namespace {
 constexpr double same_place = Capsule::same_place;
 // The share of the time after which the way out of a solid that holds all of it is not looked for.
 constexpr double time_for_nearest = 0.9;
+// The share for the first of few contacts; after it, there is no time for more.
+constexpr double time_for_few = 0.5;
 // An end adds a contact only if it is this part of the radius away from those that are there.
 constexpr double separate_end = 1e-2;
 // Cosine from which on two contacts lead the same way.
@@ -239,32 +241,32 @@ void add_contacts(const PreparedMesh& mesh, const Capsule& capsule, CapsulePlace
   add_minima(mesh, capsule, places, 0, places.count, out, limit, contacts);
 }
 
-Seen seen_of(const CapsulePlaces& places, const Limit& limit) noexcept {
-  if (places.cut_off || limit.units == 0) return Seen::cut_off;
-  return places.complete ? Seen::all : Seen::what_has_room;
+// Where there is hardly time for all. A capsule that lies is held by its nearest place and both ends: where there is
+// time for one of them only, each has its turn, and what was found in others is kept.
+Seen find_few_contacts(const PreparedMesh& mesh, const Capsule& capsule, std::uint32_t turn, Limit& limit,
+                       CapsuleContacts& found) noexcept {
+  constexpr std::uint32_t turns = 3;
+  CapsulePlaces places;
+  if (turn % turns > 0) add_end_ball(mesh, capsule, capsule.ends[turn % turns - 1], time_for_few, limit, found);
+  find_nearest_place(mesh, capsule, limit, places);
+  add_contacts(mesh, capsule, places, limit, found);
+  return places.complete && limit.units > 0 ? Seen::all : Seen::cut_off;
 }
 
-// A capsule that lies is held by its nearest place and both ends. Where there may be
-// time for one of them only, each has its turn to be first; what was found in others is kept.
 Seen find_contacts(const PreparedMesh& mesh, const Capsule& capsule, std::uint32_t turn, Limit& limit,
                    CapsuleContacts& found) noexcept {
-  constexpr std::uint32_t turns = 3;
-  constexpr double share_of_end = 0.5;
-  CapsulePlaces places;
-  const bool few = has_little_time(limit);
-  if (few) {
-    if (turn % turns > 0) add_end_ball(mesh, capsule, capsule.ends[turn % turns - 1], share_of_end, limit, found);
-    find_places(mesh, capsule, true, limit, places);
-    add_contacts(mesh, capsule, places, limit, found);
-    if (places.complete) return seen_of(places, limit);
-    if (limit.time_is_up(share_of_end) || limit.units == 0) return Seen::cut_off;
-    places = CapsulePlaces();
+  const bool has_few = has_little_time(limit);
+  if (has_few) {
+    const Seen seen = find_few_contacts(mesh, capsule, turn, limit, found);
+    if (seen == Seen::all || limit.time_is_up(time_for_few) || limit.units == 0) return seen;
   }
-  find_places(mesh, capsule, false, limit, places);
-  if (few && places.cut_off) return Seen::cut_off;
+  CapsulePlaces places;
+  find_places(mesh, capsule, limit, places);
+  if (has_few && places.cut_off) return Seen::cut_off;
   found.count = 0;
   add_contacts(mesh, capsule, places, limit, found);
-  return seen_of(places, limit);
+  if (places.cut_off || limit.units == 0) return Seen::cut_off;
+  return places.complete ? Seen::all : Seen::what_has_room;
 }
 
 // The deepest first, then always the one farthest from those before it.

@@ -29,6 +29,11 @@ std::size_t octant_of(const Piece& piece, const Vec3& box_center) noexcept {
   return (sum.x() > 0.0 ? 1U : 0U) + (sum.y() > 0.0 ? 2U : 0U) + (sum.z() > 0.0 ? 4U : 0U);
 }
 
+/// Towards an octant's corner of the box.
+Vec3 signs_of(std::size_t octant) noexcept {
+  return {(octant & 1U) != 0 ? 1.0 : -1.0, (octant & 2U) != 0 ? 1.0 : -1.0, (octant & 4U) != 0 ? 1.0 : -1.0};
+}
+
 /// How many pieces there will be time for, and is room for.
 std::size_t room_in_time(const Limit& limit) noexcept {
   return static_cast<std::size_t>(std::min<std::uint64_t>(Pieces::most, limit.nodes_in_time(time_for_pieces)));
@@ -192,10 +197,7 @@ void gather_from_within(const PreparedMesh& mesh, const math::Pose& body_in_mesh
   const math::Pose mesh_in_body = body_in_mesh.inverse();
   Vec3 middle = body.center();
   if (const std::uint32_t of_turns = turn % (octants + 1); of_turns > 0) {
-    const std::size_t octant = in_order[of_turns - 1];
-    const Vec3 way((octant & 1U) != 0 ? outwards : -outwards, (octant & 2U) != 0 ? outwards : -outwards,
-                   (octant & 4U) != 0 ? outwards : -outwards);
-    middle = body.box_center() + way.cwiseProduct(body.box_half_extents());
+    middle = body.box_center() + outwards * signs_of(in_order[of_turns - 1]).cwiseProduct(body.box_half_extents());
   }
   const Vec3 farthest = body.box_half_extents() + (middle - body.box_center()).cwiseAbs();
   const Vec3 from = body_in_mesh * middle;
@@ -231,8 +233,7 @@ bool add_piece_above(const PreparedMesh& mesh, const math::Pose& body_in_mesh, c
 
 void gather_pieces(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const ConvexBody& body, std::uint32_t turn,
                    Limit& limit, Pieces& pieces) noexcept {
-  constexpr std::uint64_t from_all_octants =
-      8 * Pieces::most;  // it takes so many nodes to find pieces, and those that fit
+  constexpr std::uint64_t from_all_octants = 8 * Pieces::most;  // nodes: some for each piece that there is room for
   if (has_many_sides(body) && limit.nodes_in_time(time_for_pieces) < from_all_octants) {
     gather_from_within(mesh, body_in_mesh, body, turn, limit, pieces);
   } else {

@@ -9,7 +9,7 @@ namespace odds::ode {
 
 void write_kept(std::span<const query::Contact> contacts, const math::Pose& mesh_in_world,
                 ContactWriter& writer) noexcept {
-  if (current_share != nullptr) current_share->keeps = true;
+  note_kept();
   for (const query::Contact& contact : contacts) {
     const Vec3 on_mesh = contact.position - 0.5 * contact.depth * contact.normal;
     writer.add(mesh_in_world * on_mesh, mesh_in_world.rotation * contact.normal, contact.depth, contact.triangle_a,
@@ -35,7 +35,7 @@ void settle_contacts(const math::Pose& mesh_in_world, const math::Pose& body_in_
   std::array<query::Contact, query::most_contacts> best;
   const std::size_t best_count =
       resting.settle(question, std::span(made).first(count), finished, body_in_mesh, size, best);
-  if (current_share != nullptr) current_share->keeps = true;
+  note_kept();
   if (finished) return;  // they are what was written
   writer.clear();
   write_kept(std::span(best).first(best_count), mesh_in_world, writer);

@@ -49,6 +49,11 @@ inline thread_local FrameShare* current_share = nullptr;
   return units_ended ? shared.work_units != own.work_units : shared.budget_us < own.budget_us;
 }
 
+/// Of a collision with a body of ODE: what it gives is kept.
+inline void note_kept() noexcept {
+  if (current_share != nullptr) current_share->keeps = true;
+}
+
 [[nodiscard]] inline bool gives_only_held() noexcept { return current_share != nullptr && current_share->only_held; }
 
 /// A geom's or a pair's settings, within the share.

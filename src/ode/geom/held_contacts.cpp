@@ -11,13 +11,7 @@ namespace odds::ode {
 std::span<const query::Contact> HeldContacts::best_of(const query::Answer& answer, const math::Pose& b_in_a,
                                                       double size) noexcept {
   if (answer.basis == query::Basis::proved && answer.contacts_complete) {
-    // Bodies at rest hop: what is apart now by less than a hop touches in the same places again.
-    if (answer.contacts.empty()) {
-      static_cast<void>(at(b_in_a, size));
-      note_apart(b_in_a);
-    } else {
-      keep(answer.contacts, b_in_a, true, true);
-    }
+    note_all(answer.contacts, b_in_a, size);
     return answer.contacts;
   }
   const std::span<const query::Contact> still_held =
@@ -31,6 +25,21 @@ std::span<const query::Contact> HeldContacts::best_of(const query::Answer& answe
   }
   keep(answer.contacts, b_in_a, !rough, false);
   return answer.contacts;
+}
+
+// Bodies at rest hop: what is apart now by less than a hop touches in the same places again.
+void HeldContacts::note_all(std::span<const query::Contact> found, const math::Pose& b_in_a, double size) noexcept {
+  if (!found.empty()) return keep(found, b_in_a, true, true);
+  static_cast<void>(at(b_in_a, size));
+  note_apart(b_in_a);
+}
+
+std::span<const query::Contact> HeldContacts::with_all(std::span<const query::Contact> found, const math::Pose& b_in_a,
+                                                       double size) noexcept {
+  const HeldContacts before = *this;
+  note_all(found, b_in_a, size);
+  add_apart(before, b_in_a, size);
+  return found;
 }
 
 std::span<const query::Contact> HeldContacts::with_part(std::span<const query::Contact> found, const math::Pose& b_in_a,
@@ -124,7 +133,7 @@ void HeldContacts::note_apart(const math::Pose& b_in_a) noexcept {
   count_ = kept;
 }
 
-void HeldContacts::keep_apart(const HeldContacts& before, const math::Pose& b_in_a, double size) noexcept {
+void HeldContacts::add_apart(const HeldContacts& before, const math::Pose& b_in_a, double size) noexcept {
   for (std::size_t i = 0; i < before.count_ && count_ < most; ++i) {
     const auto [depth, slip] = before.held_[i].parted(b_in_a);
     if (depth > 0.0 || depth < -most_gap * size || slip > most_slip * size) continue;

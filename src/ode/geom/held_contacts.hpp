@@ -50,16 +50,18 @@ class HeldContacts {
   [[nodiscard]] std::span<const query::Contact> best_of(const query::Answer& answer, const math::Pose& b_in_a,
                                                         double size) noexcept;
 
-  /// Of a run that saw a part of the surfaces, and that part well: what it found beside what is held.
+  /// What to give for a run that saw all of the surfaces: what it found. Keeps what was held and is apart now, too:
+  /// where bodies rock, they touch there next.
+  [[nodiscard]] std::span<const query::Contact> with_all(std::span<const query::Contact> found,
+                                                         const math::Pose& b_in_a, double size) noexcept;
+
+  /// Of a run that saw a part of them, and that part well: what it found beside what is held.
   [[nodiscard]] std::span<const query::Contact> with_part(std::span<const query::Contact> found,
                                                           const math::Pose& b_in_a, double size) noexcept;
 
   /// Takes the place of all that was held. `careful`: not what a run gave that had no time to measure; `complete`: all
   /// that there is.
   void keep(std::span<const query::Contact> found, const math::Pose& b_in_a, bool careful, bool complete) noexcept;
-
-  /// Adds what was held `before` and is apart now, as far as there is room: where bodies rock, they touch there next.
-  void keep_apart(const HeldContacts& before, const math::Pose& b_in_a, double size) noexcept;
 
   [[nodiscard]] bool is_empty() const noexcept { return count_ == 0; }
 
@@ -78,6 +80,8 @@ class HeldContacts {
                                                    double most_slid = most_slip) noexcept;
 
  private:
+  void note_all(std::span<const query::Contact> found, const math::Pose& b_in_a, double size) noexcept;
+  void add_apart(const HeldContacts& before, const math::Pose& b_in_a, double size) noexcept;
   void add(std::span<const query::Contact> found, const math::Pose& b_in_a, double size) noexcept;
   void add_one(const query::Contact& contact, bool trusted, const math::Pose& b_in_a, double size) noexcept;
   [[nodiscard]] bool is_trusted(const math::Pose& b_in_a, double size) const noexcept;

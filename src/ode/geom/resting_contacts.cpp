@@ -71,18 +71,12 @@ std::size_t RestingContacts::settle(const Question& question, std::span<const qu
   }
   std::array<query::Contact, query::most_contacts> believed;
   std::copy(found.begin(), found.end(), believed.begin());
-  for (query::Contact& contact : std::span(believed).first(finished || !is_known ? 0 : found.size())) {
-    contact.depth = believed_depth(contact, slot, body_in_mesh, size);
+  const std::span<query::Contact> part = std::span(believed).first(found.size());
+  if (!finished && is_known) {
+    for (query::Contact& contact : part) contact.depth = believed_depth(contact, slot, body_in_mesh, size);
   }
-  query::Answer answer;
-  answer.basis = query::Basis::proved;
-  answer.contacts = found;
-  answer.contacts_complete = true;
-  const HeldContacts before = slot.held;
   const std::span<const query::Contact> best =
-      finished ? slot.held.best_of(answer, body_in_mesh, size)
-               : slot.held.with_part(std::span(believed).first(found.size()), body_in_mesh, size);
-  if (finished) slot.held.keep_apart(before, body_in_mesh, size);
+      finished ? slot.held.with_all(found, body_in_mesh, size) : slot.held.with_part(part, body_in_mesh, size);
   slot.partner.store(best.empty() && slot.held.is_empty() ? nullptr : question.partner, std::memory_order_relaxed);
   return give(best, body_in_mesh, slot, contacts);
 }
