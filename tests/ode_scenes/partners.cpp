@@ -97,8 +97,8 @@ Section partners(const Plan& plan) {
   Section section{
       "partners",
       "ODE's bodies on fine ground",
-      "<p>A box and a cylinder, 20 cm wide and 5 cm high, stand on ground whose triangles are a fiftieth of "
-      "their size, and a capsule lies on it. No short budget has time for all the triangles under them.</p>",
+      "<p>A box and a cylinder, 20 cm wide and 5 cm high, stand on ground whose cells are a twelfth and a "
+      "thirtieth of that, and a capsule lies on it. No short budget has time for all the triangles under them.</p>",
       "",
       "",
       false,
