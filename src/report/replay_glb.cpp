@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "math/rotation_between.hpp"
 #include "report/glb_builder.hpp"
 #include "report/replay_front.hpp"
 
@@ -190,7 +191,7 @@ class Glb {
       const Vec3 force = force_at(frame);
       const double length = force.norm() / greatest * size_m_;
       push(track.translations, frame.poses[*tool_].translation - origin_m_);
-      push(track.rotations, Quat::FromTwoVectors(Vec3::UnitZ(), length > 0.0 ? force : Vec3::UnitZ().eval()));
+      push(track.rotations, math::rotation_between(Vec3::UnitZ(), length > 0.0 ? force : Vec3::UnitZ().eval()));
       push(track.scales, Vec3::Constant(std::max(length, static_cast<double>(hidden))));
     }
     add_animated("force on the hand", arrow(force_colour, "force"), track, "LINEAR");
@@ -206,7 +207,7 @@ class Glb {
         if (mark.cell_pair != cell_pairs || n == most) continue;
         Track& track = tracks[n++];
         push(track.translations, mark.position_m - origin_m_);
-        push(track.rotations, Quat::FromTwoVectors(Vec3::UnitZ(), mark.normal));
+        push(track.rotations, math::rotation_between(Vec3::UnitZ(), mark.normal));
         push(track.scales, Vec3::Constant(0.25 * size_m_ * std::max(0.2, mark.probability)));
       }
       used = std::max(used, n);

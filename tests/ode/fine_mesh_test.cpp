@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "math/rotation_between.hpp"
 #include "ode/known_convexes.hpp"
 #include "ode/ode_fixture.hpp"
 
@@ -200,7 +201,7 @@ TEST_F(FineMeshTest, ACapsuleAcrossTheSurfaceHasAContactHoweverEarlyItsSearchEnd
   for (std::uint64_t units = 9; units < 200; ++units) {
     ASSERT_EQ(dGeomOddsMeshSetWorkBudget(solid, units), 1);
     const Vec3 out = any_turn() * Vec3::UnitZ();
-    const Quat turn = Quat::FromTwoVectors(Vec3::UnitZ(), out);
+    const Quat turn = math::rotation_between(Vec3::UnitZ(), out);
     const dQuaternion q = {turn.w(), turn.x(), turn.y(), turn.z()};
     dGeomSetQuaternion(capsule, q);
     dGeomSetPosition(capsule, out.x(), out.y(), out.z());  // one half is inside

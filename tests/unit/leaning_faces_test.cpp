@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "math/rotation_between.hpp"
 #include "odds/math/tolerances.hpp"
 #include "support/flush_slabs.hpp"
 
@@ -48,7 +49,7 @@ TEST(LeaningFaces, WhereEdgesCrossTheyPartAcrossBoth) {
   ASSERT_FALSE(written(flush, below(1e-3), testing::under_slab).empty());
   const Vec3 along = Vec3(0.0, 1.0, 0.1).normalized();  // B's edge
   math::Pose pose;
-  pose.rotation = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitY(), along) * Eigen::AngleAxisd(0.2, Vec3::UnitY());
+  pose.rotation = math::rotation_between(Vec3::UnitY(), along) * Eigen::AngleAxisd(0.2, Vec3::UnitY());
   const Vec3 crossing(-0.2, 0.5, -0.1);
   pose.translation = crossing + Vec3(0.0, 0.0, 1e-3) - pose * Vec3(-0.5, 0.1, 0.1);
   flush.begin();

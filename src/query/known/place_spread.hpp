@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "odds/math/pose.hpp"
+#include "math/rotation_between.hpp"
+#include "odds/math/types.hpp"
 
 namespace odds::query {
 
@@ -23,7 +24,7 @@ class PlaceSpread {
     const double far = centre_b.norm();
     const Vec3 line = far > little ? Vec3(centre_b / far) : Vec3(Vec3::Zero());
     if (!line.isZero() && !line_.isZero() && line.dot(line_) > -0.9)
-      sum_ = Eigen::Quaterniond::FromTwoVectors(line_, line) * sum_;
+      sum_ = math::rotation_between(line_, line) * sum_;
     line_ = line;
     sum_ *= kept;
     squares_ *= kept;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "math/rotation_between.hpp"
+
 namespace odds::scene {
 namespace {
 
@@ -102,7 +104,7 @@ Soup solid_of(const Geometry& geometry) {
     case Geometry::Kind::plane: {
       const Soup slab = box({2.0 * plane_half_side_m, 2.0 * plane_half_side_m, plane_thickness_m});
       math::Pose pose;
-      pose.rotation = Quat::FromTwoVectors(Vec3::UnitZ(), geometry.normal).toRotationMatrix();
+      pose.rotation = math::rotation_between(Vec3::UnitZ(), geometry.normal).toRotationMatrix();
       pose.translation = -0.5 * plane_thickness_m * geometry.normal;
       Soup soup;
       soup.add(slab.vertices, slab.triangles, pose, Vec3::Ones());
