@@ -13,7 +13,9 @@ namespace {
 double depth_of(const Vec3& point, const ode::PreparedMesh& in) {
   if (!ode::in_bounds(in, point)) return 0.0;
   std::uint64_t units = std::numeric_limits<std::uint64_t>::max();
-  const auto nearest = ode::nearest_surface(in, point, std::numeric_limits<double>::infinity(), units);
+  bool finished = false;
+  const auto nearest = ode::nearest_surface(in, point, std::numeric_limits<double>::infinity(), query::no_feature, {},
+                                            0, units, finished);
   return nearest && nearest->inside ? nearest->distance : 0.0;
 }
 

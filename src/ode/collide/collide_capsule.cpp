@@ -113,7 +113,7 @@ std::optional<NearestSurface> way_out_sideways(const PreparedMesh& mesh, const C
     const Vec3 middle = capsule.ends[0] + 0.5 * (at[i - 1] + at[i]) * axis;
     if (!in_bounds(mesh, middle)) continue;
     bool finished = false;  // a longer way than the shortest leads out, too
-    const auto nearest = nearest_in_time(mesh, middle, least, 1.0, limit, finished);
+    const auto nearest = nearest_in_time(mesh, middle, least, 1.0, Wanted::what_is_met, limit, finished);
     if (!nearest || !nearest->inside || nearest->outward == Vec3::Zero()) continue;
     const double depth = depth_behind(capsule, nearest->point, nearest->outward);
     if (!(depth < least)) continue;
@@ -185,7 +185,7 @@ void add_minima(const PreparedMesh& mesh, const Capsule& capsule, const CapsuleP
 void add_end_ball(const PreparedMesh& mesh, const Capsule& capsule, const Vec3& end, double share, Limit& limit,
                   CapsuleContacts& contacts) noexcept {
   bool finished = false;  // what is not the nearest place of an end is a place all the same
-  const auto nearest = nearest_in_time(mesh, end, capsule.radius, share, limit, finished);
+  const auto nearest = nearest_in_time(mesh, end, capsule.radius, share, Wanted::what_is_met, limit, finished);
   if (!nearest || nearest->inside || nearest->distance <= same_place * capsule.radius) return;
   if (contacts.near(nearest->point, separate_end * capsule.radius)) return;
   contacts.add({nearest->point, (end - nearest->point) / nearest->distance, capsule.radius - nearest->distance,
@@ -194,27 +194,32 @@ void add_end_ball(const PreparedMesh& mesh, const Capsule& capsule, const Vec3& 
 
 // The surface at the first place, as it is seen from the axis. The nearest point of the surface to the axis is the
 // nearest to that point of the axis, too, and its pseudo-normal tells the side.
-NearestSurface seen_from_axis(const PreparedMesh& mesh, const CapsulePlaces& places) noexcept {
+// Nothing if that takes long.
+std::optional<NearestSurface> seen_from_axis(const PreparedMesh& mesh, const CapsulePlaces& places) noexcept {
   const CapsulePlace& place = places.all[0];
-  if (!places.nearest_is_sure) return surface_towards(mesh, place.on_axis, place.on_surface, place.triangle);
+  if (!places.nearest_is_sure) {
+    return surface_towards(mesh, place.on_axis, place.on_surface, place.triangle, nodes_of_a_ray);
+  }
   const Vec3 outward = outward_at(mesh, place.on_surface, place.triangle, place.on_axis);
-  return {place.on_surface, place.distance, place.triangle, outward,
-          outward.dot(place.on_axis - place.on_surface) < 0.0};
+  return NearestSurface{place.on_surface, place.distance, place.triangle, outward,
+                        outward.dot(place.on_axis - place.on_surface) < 0.0};
 }
 
 // No triangle crosses the axis: outside the mesh, or all of it inside.
 void add_beside(const PreparedMesh& mesh, const Capsule& capsule, CapsulePlaces& places, Limit& limit,
                 CapsuleContacts& contacts) noexcept {
   if (mesh.closed && places.count > 0) {
-    const NearestSurface seen = seen_from_axis(mesh, places);
-    if (seen.inside) {
-      add_ends_behind(capsule, seen.point, seen.outward, seen.triangle, contacts);
+    const std::optional<NearestSurface> seen = seen_from_axis(mesh, places);
+    if (!seen) return;
+    if (seen->inside) {
+      add_ends_behind(capsule, seen->point, seen->outward, seen->triangle, contacts);
       return;
     }
   } else if (mesh.closed && in_bounds(mesh, capsule.middle())) {
     constexpr double anywhere = std::numeric_limits<double>::infinity();
     bool finished = false;
-    const auto nearest = nearest_in_time(mesh, capsule.middle(), anywhere, time_for_nearest, limit, finished);
+    const auto nearest =
+        nearest_in_time(mesh, capsule.middle(), anywhere, time_for_nearest, Wanted::something, limit, finished);
     places.complete = places.complete && finished;
     places.cut_off = places.cut_off || !finished;
     if (!nearest) return;
@@ -310,7 +315,7 @@ int collide_capsule(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, i
     count(statistics().bad_poses);
     return 0;
   }
-  Limit limit(data.settings);
+  Limit limit(data, dCapsuleClass);
   const int room = room_for(flags, data.settings.max_contacts);
   const math::Pose capsule_in_mesh = mesh_in_world->inverse() * *capsule_in_world;
   const Vec3 half_axis = 0.5 * length * capsule_in_mesh.rotation.col(2);

@@ -24,7 +24,7 @@ Vec3 outward(const Corners& triangle, const Vec3& direction) noexcept {
 
 int collide_ray(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int skip) noexcept {
   count(statistics().primitive_queries);
-  const GeomData& data = own_data(o1);
+  GeomData& data = own_data(o1);
   const PreparedMesh& mesh = *data.mesh;
   const std::optional<math::Pose> pose = world_pose(o1);
   dVector3 start;
@@ -37,7 +37,7 @@ int collide_ray(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int s
     count(statistics().bad_poses);
     return 0;
   }
-  Limit limit(data.settings);
+  Limit limit(data, dRayClass);
   const bool only_one = dGeomRayGetClosestHit(o2) != 0 || dGeomRayGetFirstContact(o2) != 0;
   const Vec3 local_origin = pose->inverse() * origin;
   const Vec3 local_direction = (pose->rotation.transpose() * direction).normalized();

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "ode/collide/contact_writer.hpp"
 #include "ode/collide/limit.hpp"
@@ -49,15 +50,17 @@ bool add_place(const PreparedMesh& mesh, const Vec3& center, double radius, std:
   return true;
 }
 
-// The nearest point of every triangle that is no farther than the radius, nearest first.
+// The nearest point of every triangle that is no farther than the radius, nearest first; of no use if they are not
+// complete.
 void find_places(const PreparedMesh& mesh, const Vec3& center, double radius, Limit& limit, Places& places) noexcept {
   const auto add = [&](std::uint32_t triangle) { return add_place(mesh, center, radius, triangle, limit, places); };
   const std::uint64_t nodes = limit.nodes_left();
   std::uint64_t left = nodes;
   places.complete = query::NearSegment(*mesh.wide_tree, center, center)
                         .all_within(
-                            radius, add, [] { return true; }, left);
+                            radius, add, [&] { return !limit.time_is_up(); }, left);
   limit.spend(nodes - left);
+  if (!places.complete) return;
   std::sort(places.all.begin(), places.all.begin() + places.count, [](const Place& a, const Place& b) {
     return a.distance != b.distance ? a.distance < b.distance : a.triangle < b.triangle;
   });
@@ -81,7 +84,7 @@ bool is_local_minimum(const PreparedMesh& mesh, const Places& places, std::size_
 
 int collide_sphere(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int skip) noexcept {
   count(statistics().primitive_queries);
-  const GeomData& data = own_data(o1);
+  GeomData& data = own_data(o1);
   const PreparedMesh& mesh = *data.mesh;
   const std::optional<math::Pose> pose = world_pose(o1);
   const dReal* p = dGeomGetPosition(o2);
@@ -91,12 +94,17 @@ int collide_sphere(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, in
     count(statistics().bad_poses);
     return 0;
   }
-  Limit limit(data.settings);
+  Limit limit(data, dSphereClass);
   const Vec3 center = pose->inverse() * world_center;
   const bool may_be_inside = mesh.closed && in_bounds(mesh, center);
   const double reach = may_be_inside ? std::numeric_limits<double>::infinity() : radius;
   bool complete = false;
-  const auto nearest = nearest_in_time(mesh, center, reach, time_for_nearest, limit, complete);
+  const bool remembers = data.settings.carry_motion > 0.0;
+  std::array<std::uint32_t, LastPlaces::most> met;
+  const std::uint32_t guess = remembers && data.met.of(o2, met) > 0 ? met[0] : query::no_feature;
+  const auto nearest =
+      nearest_in_time(mesh, center, reach, time_for_nearest, Wanted::something, limit, complete, guess);
+  if (remembers && nearest) data.met.note(o2, std::span(&nearest->triangle, 1));
 
   ContactWriter writer(o1, o2, room_for(flags, data.settings.max_contacts), contacts, skip);
   if (nearest && (nearest->inside || nearest->distance <= radius)) {

@@ -29,6 +29,8 @@ constexpr double same_place = 1e-6;       // of the body's size
 // sides in all pieces.
 constexpr double looking_us = 3.0;
 constexpr double for_features_us = 4.0;
+// What it takes to choose eight contacts.
+constexpr double choosing_us = 4.0;
 
 struct Patch {
   std::array<const Piece*, most_pieces> pieces;
@@ -156,19 +158,24 @@ void write_manifolds(const PreparedMesh& mesh, const math::Pose& body_in_mesh, s
   const bool ridges = patches.size() > 1 || !is_flat(patches[0]) || body.crowding() > 0.0;
   for (std::size_t i = 0; i < patches.size() && !writer.full(); ++i) {
     if (leader[i] != i) continue;
+    if (writer.count() > 0 && limit.is_over()) break;  // the deepest manifold has to do
     ManifoldPoints points;
     points.normal = patches[i].exit.direction;
     for (std::size_t k = i; k < patches.size(); ++k) {
       if (leader[k] == i) add_points(patches[k], points.normal, body, ridges, limit, points);
     }
     add_leaning_tips(mesh, body_in_mesh, body, patches[i].exit, limit, points);
+    // The time for choosing is the last one's: those before it may need no more than some contacts each.
+    const bool is_last = manifolds == 1;
+    const auto may_go_on = [&] { return is_last ? !limit.is_over() : !limit.time_is_up(); };
     points.keep_deep();
-    points.keep_apart(body.crowding());
+    points.keep_apart(body.crowding(), may_go_on);
     const std::size_t share = (static_cast<std::size_t>(room - writer.count()) + manifolds - 1) / manifolds;
     --manifolds;
     std::array<std::uint32_t, most_contacts> chosen;
-    const std::size_t count = select_manifold(points, points.normal, same_place * body.box_half_extents().norm(),
-                                              std::span(chosen).first(std::min(share, most_contacts)));
+    const std::size_t count =
+        select_manifold(ManifoldSource(points), points.normal, same_place * body.box_half_extents().norm(),
+                        std::span(chosen).first(std::min(share, most_contacts)), may_go_on);
     const Vec3 into_mesh = -(body_in_world.rotation * points.normal);
     for (std::size_t c = 0; c < count; ++c) {
       const ManifoldPoint& point = points.all[chosen[c]];
@@ -259,7 +266,7 @@ void leave_sideways(const PreparedMesh& mesh, const math::Pose& body_in_mesh, st
   middle = body_in_mesh * Vec3(middle / area);
   if (!in_bounds(mesh, middle)) return;
   bool finished = false;  // a longer way than the shortest leads out, too
-  const auto nearest = nearest_in_time(mesh, middle, deepest, time_for_points, limit, finished);
+  const auto nearest = nearest_in_time(mesh, middle, deepest, time_for_points, Wanted::what_is_met, limit, finished);
   if (!nearest || !nearest->inside || nearest->outward == Vec3::Zero()) return;
   const Vec3 out = body_in_mesh.rotation.transpose() * nearest->outward;
   const double depth = out.dot(body_in_mesh.inverse() * nearest->point) + body.reach(-out);
@@ -276,8 +283,9 @@ void leave_by_the_near_side(const PreparedMesh& mesh, const math::Pose& body_in_
   if (!mesh.closed || std::none_of(patches.begin(), patches.end(), is_long) || limit.time_is_up(time_for_exits)) return;
   const double size = body.box_half_extents().norm();
   bool finished = false;
-  const auto nearest = nearest_in_time(mesh, body_in_mesh * body.center(), size, time_for_exits, limit, finished);
-  if (!nearest || !finished || nearest->outward == Vec3::Zero()) return;
+  const auto nearest =
+      nearest_in_time(mesh, body_in_mesh * body.center(), size, time_for_exits, Wanted::nothing, limit, finished);
+  if (!nearest || nearest->outward == Vec3::Zero()) return;
   const Vec3 out = body_in_mesh.rotation.transpose() * nearest->outward;
   const Vec3 place = body_in_mesh.inverse() * nearest->point;
   const double depth = out.dot(place) + body.reach(-out);
@@ -318,7 +326,7 @@ bool push_out(const PreparedMesh& mesh, const math::Pose& mesh_in_world, const m
   const double size = 2.0 * body.box_half_extents().norm();
   const double reach = may_be_inside ? std::numeric_limits<double>::infinity() : size;
   bool finished = false;
-  const auto nearest = nearest_in_time(mesh, center, reach, time_for_points, limit, finished);
+  const auto nearest = nearest_in_time(mesh, center, reach, time_for_points, Wanted::something, limit, finished);
   if (!nearest) return finished;
   const Vec3 outward = body_in_mesh.rotation.transpose() * nearest->outward;
   const Vec3 into_mesh = -(mesh_in_world.rotation * nearest->outward);
@@ -411,7 +419,7 @@ int collide_convex_body(dGeomID mesh, dGeomID partner, const ConvexBody& body, i
     count(statistics().bad_poses);
     return 0;
   }
-  Limit limit(data.settings);
+  Limit limit(data, dGeomGetClass(partner), choosing_us);
   const int room = room_for(flags, data.settings.max_contacts);
   ContactWriter writer(mesh, partner, room, contacts, skip);
   const RestingContacts::Question question{partner, dGeomGetClass(partner), body.number(), body.box_half_extents(),

@@ -34,6 +34,7 @@ bool cut(Piece& piece, const HalfSpace& half_space, std::int16_t number) noexcep
   }
   if (!any_above) return false;
   Piece kept;
+  kept.count = 0;
   const auto add = [&kept](const Vec3& corner, std::int16_t side) {
     if (kept.count == Piece::most_corners) return;
     kept.corners[kept.count] = corner;

@@ -14,16 +14,14 @@ constexpr double nothing = -std::numeric_limits<double>::infinity();
 // Relative to the mesh's size: vertices this close count as equally deep. Far above rounding, far below what a contact
 // can feel; without it the deepest corner of a flat face would jump about with the last bit.
 constexpr double same_depth = 1e-6;
-// What is kept of the time when gathering is ended by it, microseconds: for the deepest of all, and for choosing, which
-// looks at each some fifteen times.
-constexpr double time_for_deepest = 2.0;
-constexpr double time_for_each = 0.045;
+// What is kept of the time when gathering is ended by it, microseconds: for the deepest of all, and for choosing,
+// which looks at each some fifteen times, beside what the limit keeps for that.
+constexpr double time_for_deepest = 1.0;
+constexpr double time_for_each = 0.006;
 // One unit of work in so many is kept likewise.
 constexpr std::uint64_t work_share_for_rest = 3;
 // Of the search for the deepest, each eight nodes: it is to come to a leaf, or a body would sink in unnoticed.
-constexpr int sure_looks = 4;
-// Where many have been gathered and there is no time to search, one in so many has to do.
-constexpr std::size_t sample = 8;
+constexpr int sure_looks = 2;
 // Of the size of what has been gathered: by so much one of many corners may be less far out than another, though by no
 // more than the depth. A body that rests is held at its corners, always the same.
 constexpr double rough_share = 0.03;
@@ -145,9 +143,34 @@ class BoundBelow {
   float highest_;
 };
 
+// The same as another bound, of what exceeds so much.
+template <class Bound>
+class BoundOver {
+ public:
+  BoundOver(const Bound& bound, double least) noexcept : bound_(bound), least_(least) {}
+
+  void of(const tree::WideNode& node, OfLanes& most) const noexcept {
+    bound_.of(node, most);
+    leave_out(most);
+  }
+  void of(const tree::WideLeaf& leaf, const Vec3f& center, OfLanes& most) const noexcept {
+    bound_.of(leaf, center, most);
+    leave_out(most);
+  }
+
+ private:
+  void leave_out(OfLanes& most) const noexcept {
+    for (float& x : most) x = static_cast<double>(x) > least_ ? x : -std::numeric_limits<float>::infinity();
+  }
+
+  const Bound& bound_;
+  double least_;
+};
+
 }  // namespace
 
-CornersBelow::CornersBelow(const PreparedMesh& mesh, const Vec3& normal, double offset, Limit& limit) noexcept
+CornersBelow::CornersBelow(const PreparedMesh& mesh, const Vec3& normal, double offset,
+                           std::span<const std::uint32_t> known, Limit& limit) noexcept
     : tree_(*mesh.wide_tree),
       size_(mesh.mesh().size()),
       search_(mesh.mesh(), tree_),
@@ -156,15 +179,43 @@ CornersBelow::CornersBelow(const PreparedMesh& mesh, const Vec3& normal, double 
       rounding_(4e-15 * (std::abs(offset) + tree_.origin().norm())),
       limit_(limit) {
   is_gathered_ = gather();
-  const auto value = [this](const Vec3& x) { return -normal_.dot(x); };
+  if (!is_gathered_) add_known(known);
+  deepest_ = deepest_gathered();
   if (!is_gathered_) {
-    int looks = 0;
-    deepest_ = search(0.0, 0.0, value, BoundAlong(search_, -normal_),
-                      [&] { return ++looks <= sure_looks || has_time_to_search(); });
-    if (deepest_ != no_item) add(deepest_);  // one more than there is room for
+    const std::uint32_t deeper = find_deeper(deepest_ == no_item ? -offset_ : -normal_.dot(position(deepest_)));
+    if (deeper != no_item) {
+      add(deeper);  // one more than there is room for
+      deepest_ = deepest_gathered();
+    }
   }
-  deepest_ = best_gathered(0.0, 1, value);
   if (are_many_) rough_ = std::min(rough_share * gathered_.size(), deepest_ == no_item ? 0.0 : depth(deepest_));
+}
+
+void CornersBelow::add_known(std::span<const std::uint32_t> known) noexcept {
+  for (const std::uint32_t corner : known) {
+    const bool exists = query::CornerSearch::triangle_of(corner) < tree_.triangle_count();
+    if (exists && !gathered_.is_full() && depth(corner) >= 0.0) add(corner);
+  }
+}
+
+std::uint32_t CornersBelow::deepest_gathered() const noexcept {
+  return corner_of(search_.kernels().outermost_along(gathered_.all(), -normal_, 0.0, 0.0, 1));
+}
+
+std::uint32_t CornersBelow::find_deeper(double least) const noexcept {
+  const BoundAlong bound(search_, -normal_);
+  int looks = 0;
+  const std::uint64_t nodes = limit_.nodes_left();
+  std::uint64_t left = nodes;
+  const std::uint32_t found = search_.greatest(
+      bound.excess(),
+      [&](const Vec3& x) {
+        const double value = -normal_.dot(x);
+        return value > least ? value : nothing;
+      },
+      BoundOver(bound, least + bound.excess()), [&] { return ++looks <= sure_looks || has_time_to_search(); }, left);
+  limit_.spend(nodes - left);
+  return found;
 }
 
 bool CornersBelow::gather() noexcept {
@@ -199,12 +250,21 @@ std::uint32_t CornersBelow::first() const noexcept {
 }
 
 std::uint32_t CornersBelow::extreme(const Vec3& direction) const noexcept {
-  const Vec3 downwards = direction - deeper_at_one_place * direction.norm() * normal_;
-  return best(
-      0.0, rough_ * direction.norm(), [&](const Vec3& x) { return downwards.dot(x); }, BoundAlong(search_, downwards));
+  const double per_depth = deeper_at_one_place * direction.norm();
+  if (!are_many_ || !has_some_left()) {
+    return corner_of(search_.kernels().outermost_along(gathered_.all(), direction, per_depth, 0.0, step()));
+  }
+  const Vec3 downwards = direction - per_depth * normal_;
+  return search(
+      0.0, rough_ * direction.norm(), [&](const Vec3& x) { return downwards.dot(x); }, BoundAlong(search_, downwards),
+      [this] { return has_time_to_search(); });
 }
 
 std::uint32_t CornersBelow::farthest_below(const Vec3& from, double least_depth) const noexcept {
+  if (!are_many_ || !has_some_left()) {
+    const double per_depth = deeper_at_one_place * size_;
+    return corner_of(search_.kernels().outermost_from(gathered_.all(), from, normal_, per_depth, least_depth, step()));
+  }
   // In sizes of the mesh, so that squares of floats neither vanish nor overflow.
   const double unit = 1.0 / size_;
   const auto value = [&](const Vec3& x) {
@@ -212,45 +272,20 @@ std::uint32_t CornersBelow::farthest_below(const Vec3& from, double least_depth)
     const double height = d.dot(normal_);
     return (d - height * normal_).squaredNorm() - deeper_at_one_place * height;
   };
-  return best(least_depth, 0.0, value, BoundAcross(search_, from, normal_, unit));
+  return search(least_depth, 0.0, value, BoundAcross(search_, from, normal_, unit),
+                [this] { return has_time_to_search(); });
 }
 
 double CornersBelow::time_to_choose() const noexcept {
-  const std::size_t of_many = are_many_ ? sample : 1;
-  return time_for_each * static_cast<double>(gathered_.all().size() / of_many);
+  return time_for_each * static_cast<double>(gathered_.count() / step());
 }
 
 bool CornersBelow::has_time_to_search() const noexcept { return limit_.has_time_left(time_to_choose()); }
 
 double GatheredVertices::size() const noexcept {
   double square = 0.0;
-  for (const Vertex& vertex : all()) square = std::max(square, (vertex.position - all()[0].position).squaredNorm());
+  for (std::size_t i = 1; i < count_; ++i) square = std::max(square, (position(i) - position(0)).squaredNorm());
   return std::sqrt(square);
-}
-
-template <class Value, class Bounds>
-std::uint32_t CornersBelow::best(double least_depth, double not_greater, const Value& value,
-                                 const Bounds& bounds) const noexcept {
-  const auto may_go_on = [this] { return has_time_to_search(); };
-  if (are_many_ && has_some_left()) return search(least_depth, not_greater, value, bounds, may_go_on);
-  return best_gathered(least_depth, are_many_ ? sample : 1, value);
-}
-
-template <class Value>
-std::uint32_t CornersBelow::best_gathered(double least_depth, std::size_t step, const Value& value) const noexcept {
-  const double highest = offset_ - least_depth;
-  double most = nothing;
-  std::uint32_t found = no_item;
-  const std::span<const GatheredVertices::Vertex> all = gathered_.all();
-  for (std::size_t i = 0; i < all.size(); i += step) {
-    const GatheredVertices::Vertex& vertex = all[i];
-    if (!(normal_.dot(vertex.position) <= highest)) continue;
-    const double v = value(vertex.position);
-    if (!(v > most)) continue;
-    most = v;
-    found = vertex.corner;
-  }
-  return found;
 }
 
 template <class Value, class Bounds, class MayGoOn>

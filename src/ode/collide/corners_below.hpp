@@ -11,31 +11,32 @@
 #include "ode/collide/manifold.hpp"
 #include "ode/mesh/prepared_mesh.hpp"
 #include "query/shape/corner_search.hpp"
+#include "query/wide/outermost.hpp"
 
 namespace odds::ode {
 
 /// Places of corners, each once: a mesh without common vertices, as STL files have it, repeats them.
 class GatheredVertices {
  public:
+  using Eight = query::wide::EightPoints;
   static constexpr std::size_t most = 512;
-
-  struct Vertex {
-    Vec3 position;
-    std::uint32_t corner;
-  };
 
   GatheredVertices() noexcept {
     places_.fill(nobody);
     seen_.fill(query::no_feature);
   }
   [[nodiscard]] bool is_full() const noexcept { return count_ >= most; }
-  [[nodiscard]] std::span<const Vertex> all() const noexcept { return {vertices_.data(), count_}; }
+  [[nodiscard]] std::size_t count() const noexcept { return count_; }
+  [[nodiscard]] std::uint32_t corner(std::size_t i) const noexcept { return corners_[i]; }
+  /// By eight, in the order in which they came.
+  [[nodiscard]] std::span<const Eight> all() const noexcept {
+    return std::span(eights_).first((count_ + Eight::count - 1) / Eight::count);
+  }
   /// How far one of them is from the first, at most, metres.
   [[nodiscard]] double size() const noexcept;
 
-  /// Precondition: not full, but for one that may be added afterwards.
-  /// `number`: of the mesh's vertex.
-  void add(std::uint32_t number, std::uint32_t corner, const Vec3& position) noexcept {
+  /// Precondition: not full, but for one that may be added afterwards. `number`: of the mesh's vertex.
+  void add(std::uint32_t number, std::uint32_t corner, const Vec3& position, double depth) noexcept {
     std::uint32_t& seen = seen_[number % seen_.size()];
     if (seen == number) return;
     seen = number;
@@ -44,18 +45,29 @@ class GatheredVertices {
         (bits_of(position.x()) * factors[0] + bits_of(position.y()) * factors[1]) + bits_of(position.z()) * factors[2];
     std::size_t place = hash >> (64 - bits);
     for (; places_[place] != nobody; place = (place + 1) % places_.size()) {
-      if (vertices_[places_[place]].position == position) return;
+      if (this->position(places_[place]) == position) return;
     }
     places_[place] = static_cast<std::uint16_t>(count_);
-    vertices_[count_++] = {position, corner};
+    if (count_ % Eight::count == 0) {
+      for (std::size_t lane = 1; lane < Eight::count; ++lane) eights_[count_ / Eight::count].leave_out(lane);
+    }
+    eights_[count_ / Eight::count].set(count_ % Eight::count, position, depth);
+    corners_[count_++] = corner;
   }
 
  private:
+  [[nodiscard]] Vec3 position(std::size_t i) const noexcept {
+    const auto& at = eights_[i / Eight::count].at;
+    const std::size_t lane = i % Eight::count;
+    return {at[0][lane], at[1][lane], at[2][lane]};
+  }
+
   static constexpr int bits = 10;  // half of the places remain free
   static constexpr std::uint64_t factors[3] = {0x9E3779B97F4A7C15U, 0xC2B2AE3D27D4EB4FU, 0x165667B19E3779F9U};
   static constexpr std::uint16_t nobody = 0xFFFF;
 
-  std::array<Vertex, most + 1> vertices_;
+  std::array<Eight, most / Eight::count + 1> eights_;
+  std::array<std::uint32_t, most + 1> corners_;
   std::array<std::uint16_t, std::size_t{1} << bits> places_;
   std::array<std::uint32_t, most> seen_;  ///< some of the vertices that were added, by their numbers' last bits
   std::size_t count_ = 0;
@@ -66,8 +78,10 @@ class GatheredVertices {
 /// were gathered have to do. No allocation.
 class CornersBelow {
  public:
-  /// Normal, unit, and offset in the mesh's frame. Mesh and limit must outlive it.
-  CornersBelow(const PreparedMesh& mesh, const Vec3& normal, double offset, Limit& limit) noexcept;
+  /// Normal, unit, and offset in the mesh's frame. `known`: corners that may be below, as those chosen from the last
+  /// time; they count only where not all were gathered. Mesh and limit must outlive it.
+  CornersBelow(const PreparedMesh& mesh, const Vec3& normal, double offset, std::span<const std::uint32_t> known,
+               Limit& limit) noexcept;
 
   /// Whether nothing was left out for want of work or time.
   [[nodiscard]] bool is_complete() const noexcept { return is_gathered_ || (are_many_ && has_some_left()); }
@@ -87,18 +101,29 @@ class CornersBelow {
   [[nodiscard]] bool has_some_left() const noexcept { return limit_.nodes_left() > 0 && has_time_to_search(); }
   /// False if they are too many, or it was ended.
   [[nodiscard]] bool gather() noexcept;
-  void add(std::uint32_t corner) noexcept { gathered_.add(search_.vertex_of(corner), corner, position(corner)); }
+  void add(std::uint32_t corner) noexcept {
+    const Vec3 place = position(corner);
+    gathered_.add(search_.vertex_of(corner), corner, place, offset_ - normal_.dot(place));
+  }
+  /// Of those that the mesh has, what is below.
+  void add_known(std::span<const std::uint32_t> known) noexcept;
+  /// The deepest of those that were gathered.
+  [[nodiscard]] std::uint32_t deepest_gathered() const noexcept;
+  /// The deepest of those with -normal . x greater than `least`, as far as there is work and time.
+  [[nodiscard]] std::uint32_t find_deeper(double least) const noexcept;
   [[nodiscard]] std::uint32_t farthest_below(const Vec3& from, double least_depth) const noexcept;
+  /// Its corner, of the item of those that were gathered.
+  [[nodiscard]] std::uint32_t corner_of(std::uint32_t item) const noexcept {
+    return item == no_item ? no_item : gathered_.corner(item);
+  }
+  /// Of many that were gathered, each so many-th eight has to do.
+  [[nodiscard]] std::size_t step() const noexcept { return are_many_ ? sample : 1; }
   /// The corner of greatest value of those below by that depth, or one that is less by no more than `not_greater`.
-  template <class Value, class Bounds>
-  [[nodiscard]] std::uint32_t best(double least_depth, double not_greater, const Value& value,
-                                   const Bounds& bounds) const noexcept;
-  /// Of one in `step` of those that were gathered.
-  template <class Value>
-  [[nodiscard]] std::uint32_t best_gathered(double least_depth, std::size_t step, const Value& value) const noexcept;
   template <class Value, class Bounds, class MayGoOn>
   [[nodiscard]] std::uint32_t search(double least_depth, double not_greater, const Value& value, const Bounds& bounds,
                                      const MayGoOn& may_go_on) const noexcept;
+
+  static constexpr std::size_t sample = 4;
 
   const tree::WideTree& tree_;
   const double size_;  ///< of the mesh, metres

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "ode/collide/convex_patch.hpp"
+#include "ode/collide/nearest_in_time.hpp"
 #include "ode/collide/sieve.hpp"
 #include "ode/collide/surface_above.hpp"
 #include "query/shape/near_segment.hpp"
@@ -17,8 +18,8 @@ using Visit = Sieve::Visit;
 constexpr std::size_t octants = 8;
 constexpr std::size_t each = Pieces::most / (2 * octants);  // twice, from both ends of the tree
 constexpr std::size_t any_octant = octants;
-/// At the clock; in nodes: about a microsecond.
-constexpr std::uint64_t work_between_looks = 16;
+/// At the clock; in nodes: about half a microsecond, where the cache does not hold them.
+constexpr std::uint64_t work_between_looks = 8;
 
 /// Those of a tetrahedron first: any face of the body has two of them, opposite each other.
 constexpr std::array<std::size_t, octants> in_order = {0, 3, 5, 6, 7, 4, 2, 1};
@@ -32,6 +33,12 @@ std::size_t octant_of(const Piece& piece, const Vec3& box_center) noexcept {
 /// Towards an octant's corner of the box.
 Vec3 signs_of(std::size_t octant) noexcept {
   return {(octant & 1U) != 0 ? 1.0 : -1.0, (octant & 2U) != 0 ? 1.0 : -1.0, (octant & 4U) != 0 ? 1.0 : -1.0};
+}
+
+/// Between the middle of a body's box and a corner of it.
+Vec3 inner_point(const ConvexBody& body, std::size_t octant) noexcept {
+  constexpr double outwards = 0.7;  // of the half extents
+  return body.box_center() + outwards * signs_of(octant).cwiseProduct(body.box_half_extents());
 }
 
 /// How many pieces there will be time for, and is room for.
@@ -53,6 +60,7 @@ class Gathering {
         nodes_a_cut_(1 + body.sides().size() / 32) {}
 
   void run() noexcept {
+    if (limit_.nodes_in_time(time_for_pieces) < from_all_octants) return from_inner_points();
     if (!seem_more_than(room_in_time(limit_))) {
       end_share_ = time_for_pieces;
       const Way way = turn_ % 2 == 0 ? Way::forwards : Way::backwards;
@@ -72,13 +80,19 @@ class Gathering {
 
  private:
   using Way = query::ConvexRegion::Way;
+  static constexpr std::uint64_t from_all_octants = 40;  ///< nodes: from the root to some triangles of each
 
   /// Whether more triangles are in the body, as far as a part of the tree tells.
   [[nodiscard]] bool seem_more_than(std::size_t room) noexcept {
     constexpr std::size_t below_leaves = 40;  // of a node above them, as they usually are
+    constexpr double counting_share = 0.5 * time_for_pieces;
     if (mesh_.mesh().triangles().size() <= Pieces::most) return false;
     std::size_t about = 0;
     const auto node = [&](tree::ChildRef child, Sieve::Sides sides) {
+      if (is_late_for(counting_share)) {  // so many nodes, so many triangles
+        about = room + 1;
+        return Visit::end;
+      }
       if (!child.is_leaf() && sides != 0) return Visit::open;
       const std::size_t half = child.is_leaf()       ? (child.count() + 1) / 2
                                : child.height() == 1 ? below_leaves
@@ -102,11 +116,10 @@ class Gathering {
     std::uint64_t left = nodes;
     // Without any piece a body falls through what it has just found.
     const auto is_late = [&](std::uint64_t work) {
-      if ((since_look_ += work) < work_between_looks) return false;
-      since_look_ = 0;
-      const double share = pieces_.count == 0 ? time_for_exits : pieces_.count == before ? time_for_pieces : end_share_;
-      used_ = limit_.used();
-      return used_ >= share;
+      return is_late_for(pieces_.count == 0        ? time_for_exits
+                         : pieces_.count == before ? time_for_pieces
+                                                   : end_share_,
+                         work);
     };
     const auto node = [&](tree::ChildRef, Sieve::Sides) { return is_late(1) ? Visit::end : Visit::open; };
     bool full = false;
@@ -134,6 +147,13 @@ class Gathering {
     limit_.spend(nodes - left);
     pieces_.cut_off = pieces_.cut_off || !(all || full);
     return all;
+  }
+  /// Looks at the clock after some work.
+  [[nodiscard]] bool is_late_for(double share, std::uint64_t work = 1) noexcept {
+    if ((since_look_ += work) < work_between_looks) return false;
+    since_look_ = 0;
+    used_ = limit_.used();
+    return used_ >= share;
   }
   [[nodiscard]] bool has(std::uint32_t triangle) const noexcept {
     const auto end = pieces_.all.begin() + static_cast<std::ptrdiff_t>(pieces_.count);
@@ -165,6 +185,40 @@ class Gathering {
     }
     pieces_.complete = hungry_count == 0 && !pieces_.cut_off;
   }
+  /// Where there is time for some nodes of each octant only: those nearest to the body's middle, or, in other turns, to
+  /// another inner point, then those nearest to two more, which lie opposite each other.
+  void from_inner_points() noexcept {
+    const std::size_t of_turns = turn_ % (octants + 1);
+    const Vec3 first = of_turns == 0 ? body_.center() : inner_point(body_, in_order[of_turns - 1]);
+    const Vec3 farthest = body_.box_half_extents() + (first - body_.box_center()).cwiseAbs();
+    pieces_.complete = add_nearest(first, farthest.norm(), 0.5 * time_for_pieces, EndOfShare::to_a_triangle);
+    pieces_.cut_off = !pieces_.complete;
+    constexpr double reach = 0.8;  // of the half diagonal: farther ones are nearer to other such points
+    for (std::size_t i = 0; i < 2 && pieces_.cut_off; ++i) {
+      const double share = time_for_pieces * (i == 0 ? 0.75 : 1.0);
+      if (pieces_.count == 0 || pieces_.count == Pieces::most || limit_.time_is_up(share)) continue;
+      const Vec3 next = inner_point(body_, in_order[(of_turns + i) % octants]);
+      static_cast<void>(add_nearest(next, reach * body_.box_half_extents().norm(), share, 0));
+    }
+  }
+  /// Those nearest to a point of the body come first. True if there are no more within `reach`.
+  [[nodiscard]] bool add_nearest(const Vec3& point, double reach, double share, int sure_nodes) noexcept {
+    const Vec3 from = mesh_in_body_.inverse() * point;
+    EndOfShare late(limit_, time_for_exits, sure_nodes);
+    EndOfShare end(limit_, share, 0);
+    const auto may_go_on = [&] { return pieces_.count == 0 ? !late.is_there() : !end.is_there(); };
+    const std::uint64_t nodes = limit_.nodes_left() / (pieces_.count == 0 ? 2 : 1);
+    std::uint64_t left = nodes;
+    const auto take = [&](std::uint32_t triangle) {
+      if (pieces_.count == Pieces::most) return false;
+      if (has(triangle)) return true;
+      if (cut_triangle(mesh_, triangle, mesh_in_body_, body_, all_sides, pieces_.all[pieces_.count])) ++pieces_.count;
+      return may_go_on();
+    };
+    const bool all = query::NearSegment(*mesh_.wide_tree, from, from).all_within(reach, take, may_go_on, left);
+    limit_.spend(nodes - left);
+    return all;
+  }
   [[nodiscard]] bool find(std::size_t octant, Way way, std::size_t most, std::size_t turns) noexcept {
     constexpr std::uint64_t least_nodes = 64;  // down to some triangles
     const std::uint64_t nodes = std::min(limit_.nodes_left(), std::max(least_nodes, limit_.nodes_left() / turns));
@@ -193,18 +247,17 @@ class Gathering {
 /// point.
 void gather_from_within(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const ConvexBody& body,
                         std::uint32_t turn, Limit& limit, Pieces& pieces) noexcept {
-  constexpr double outwards = 0.7;  // of the half extents
   const math::Pose mesh_in_body = body_in_mesh.inverse();
-  Vec3 middle = body.center();
-  if (const std::uint32_t of_turns = turn % (octants + 1); of_turns > 0) {
-    middle = body.box_center() + outwards * signs_of(in_order[of_turns - 1]).cwiseProduct(body.box_half_extents());
-  }
+  const std::uint32_t of_turns = turn % (octants + 1);
+  const Vec3 middle = of_turns == 0 ? body.center() : inner_point(body, in_order[of_turns - 1]);
   const Vec3 farthest = body.box_half_extents() + (middle - body.box_center()).cwiseAbs();
   const Vec3 from = body_in_mesh * middle;
   const query::NearSegment about(*mesh.wide_tree, from, from);
   const std::uint64_t nodes = limit.nodes_left();
   std::uint64_t left = nodes;
-  const auto may_go_on = [&] { return !limit.time_is_up(pieces.count == 0 ? time_for_exits : time_for_pieces); };
+  EndOfShare late(limit, time_for_exits, EndOfShare::to_a_triangle, 1);
+  EndOfShare end(limit, time_for_pieces, 0, 1);
+  const auto may_go_on = [&] { return pieces.count == 0 ? !late.is_there() : !end.is_there(); };
   const auto take = [&](std::uint32_t triangle) {
     if (!may_go_on() || pieces.count == Pieces::most) return false;
     if (cut_triangle(mesh, triangle, mesh_in_body, body, all_sides, pieces.all[pieces.count])) ++pieces.count;

@@ -8,6 +8,7 @@
 #include "odds/realtime/clock.hpp"
 #include "ode/budget_clock.hpp"
 #include "ode/frame/frame_share.hpp"
+#include "ode/geom/geom_data.hpp"
 #include "ode/statistics.hpp"
 
 namespace odds::ode {
@@ -15,7 +16,11 @@ namespace odds::ode {
 /// Work units and wall time of one collision; starts when it is made.
 class Limit {
  public:
-  explicit Limit(const Settings& own) noexcept : clock_(realtime::without_waiting(budget_clock())) {
+  /// `geom_class`: of the partner of the geom with the mesh. `choosing_us`: what is kept, of a short or a long
+  /// time a share, for choosing contacts among what was found in the time that others ask about.
+  Limit(GeomData& data, int geom_class, double choosing_us = 0.0) noexcept
+      : clock_(realtime::without_waiting(budget_clock())), endings_(data.endings), geom_class_(geom_class) {
+    const Settings& own = data.settings;
     const Settings settings = within_share(own);
     shared_time_ = settings.budget_us < own.budget_us;
     shared_units_ = settings.work_units != own.work_units;
@@ -25,7 +30,10 @@ class Limit {
     const double ns = settings.budget_us * 1e3;
     timed_ = ns < 9e18;
     if (!timed_) return;
-    time_ns_ = ns - std::min(ending_ns, longest_ending * ns);
+    time_ns_ = whole_ns_ = ns - std::min(static_cast<double>(endings_.of(geom_class)), longest_ending * ns);
+    if (choosing_us > 0.0) {
+      time_ns_ -= std::clamp(1e3 * choosing_us, shortest_choice * whole_ns_, longest_choice * whole_ns_);
+    }
     start_ns_ = clock_();
     const auto units_of_time = static_cast<std::uint64_t>(std::ceil(settings.budget_us * nodes_per_us));
     if (units_of_time < units) shared_units_ = shared_time_;
@@ -35,6 +43,9 @@ class Limit {
 
   /// `share` of the time, in (0, 1]: less for what has to be worked on afterwards.
   [[nodiscard]] bool time_is_up(double share = 1.0) const noexcept { return timed_ && clock_() >= end_ns(share); }
+
+  /// Whether nothing may be begun any more: contacts that are chosen have to do.
+  [[nodiscard]] bool is_over() const noexcept { return timed_ && clock_() >= over_ns(); }
 
   /// The share of the time that is gone; 0 where there is no limit.
   [[nodiscard]] double used() const noexcept {
@@ -62,6 +73,7 @@ class Limit {
 
   /// The collision's end: counts it if it was cut off, tells the frame. Gives `contacts` back.
   [[nodiscard]] int finish(bool complete, int contacts) const noexcept {
+    note_ending();
     if (!complete) count(statistics().primitive_cut_off);
     if (current_share != nullptr) {
       const bool more_would_help = !complete && (units == 0 ? shared_units_ : shared_time_);
@@ -89,18 +101,30 @@ class Limit {
  private:
   // Searches in a tree do not read the clock at each node; a node takes 10 to 50 ns where the cache holds it.
   static constexpr double nodes_per_us = 30.0;
-  // What choosing and writing contacts takes after the last look; of a short time no more than a share.
-  static constexpr double ending_ns = 800.0;
-  static constexpr double longest_ending = 0.2;
+  // Of a short time no more than this share is kept for the ending.
+  static constexpr double longest_ending = 0.4;
+  static constexpr double longest_choice = 0.3;
+  static constexpr double shortest_choice = 0.12;
+  // A collision that ended before so much of its time was gone tells nothing of endings.
+  static constexpr double pressed = 0.9;
   static constexpr std::uint64_t most_units = std::uint64_t{1} << 40;
   [[nodiscard]] std::int64_t end_ns(double share) const noexcept {
     return start_ns_ + static_cast<std::int64_t>(share * time_ns_);
   }
+  [[nodiscard]] std::int64_t over_ns() const noexcept { return start_ns_ + static_cast<std::int64_t>(whole_ns_); }
+  void note_ending() const noexcept {
+    if (!timed_) return;
+    const std::int64_t now = clock_();
+    if (now > end_ns(pressed)) endings_.note(geom_class_, now - over_ns());
+  }
   [[nodiscard]] std::uint64_t spent() const noexcept { return begun_with_ - units + beside_; }
 
   realtime::Clock clock_;
+  EndingTimes& endings_;
+  int geom_class_;
   std::int64_t start_ns_ = 0;
-  double time_ns_ = 0.0;
+  double whole_ns_ = 0.0;
+  double time_ns_ = 0.0;  ///< of it, until contacts are chosen
   bool timed_ = false;
   bool shared_time_ = false;  // the frame's, not the geoms' own
   bool shared_units_ = false;

@@ -21,10 +21,12 @@ constexpr double deeper_at_one_place = 1e-9;
 /// first, the farthest from it, then always the point that adds the largest triangle to the polygon so far. Points
 /// closer to the polygon than `separation` (metres, in the plane across `normal`, a unit vector) add nothing and end
 /// the choice. Returns how many were written. A Source has, of its items: `first()`, `farthest(point)` (in that plane),
-/// `extreme(direction)`, each an item or no_item, and `position(item)`.
-template <class Source>
+/// `extreme(direction)`, each an item or no_item, and `position(item)`. Of more than `enough` items those that there is
+/// time for: until `may_go_on()` says no.
+template <class Source, class MayGoOn>
 std::size_t select_manifold(const Source& source, const Vec3& normal, double separation,
-                            std::span<std::uint32_t> chosen) noexcept {
+                            std::span<std::uint32_t> chosen, const MayGoOn& may_go_on) noexcept {
+  constexpr std::size_t enough = 3;  // to stand on
   const std::size_t limit = chosen.size() < most_contacts ? chosen.size() : most_contacts;
   const auto across = [&normal](const Vec3& v) -> Vec3 { return v - v.dot(normal) * normal; };
   std::size_t count = 0;
@@ -70,14 +72,15 @@ std::size_t select_manifold(const Source& source, const Vec3& normal, double sep
     for (std::size_t i = 1; i < corners; ++i) {
       if (polygon[i].area > polygon[best].area) best = i;
     }
-    if (!(polygon[best].area > 0.0)) return count;
+    if (!(polygon[best].area > 0.0) || (count >= enough && !may_go_on())) return count;
     const std::uint32_t added = polygon[best].outermost;
+    take(added);
+    if (count == limit) return count;
     const std::uint32_t to = polygon[(best + 1) % corners].from;
     for (std::size_t i = corners; i > best + 1; --i) polygon[i] = polygon[i - 1];
     polygon[best] = side(polygon[best].from, added);
     polygon[best + 1] = side(added, to);
     ++corners;
-    take(added);
     // A corner may lie within what the others span: the deepest, or one that a Source gave for another a little farther
     // out. Pointing inwards it would have sides beyond which other corners lie, which would be taken again.
     for (std::size_t i = 0; i < corners && corners > 3; ++i) {

@@ -5,8 +5,10 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <span>
 
 #include "ode/collide/manifold.hpp"
+#include "query/wide/searches.hpp"
 
 namespace odds::ode {
 
@@ -16,12 +18,11 @@ struct ManifoldPoint {
   std::uint32_t triangle;
 };
 
-// The points of one manifold as a source for select_manifold; only those with a depth worth having.
+// The points of one manifold; only those with a depth worth having.
 struct ManifoldPoints {
   static constexpr std::size_t most_points = 256;
   static constexpr std::size_t most_tips = 4;
   static constexpr double least_depth = 1e-3;  // of the deepest point of a manifold
-  static constexpr double equally_deep = 1.0 - 1e-6;
   static constexpr double clearly_shallower = 0.99;
 
   std::array<ManifoldPoint, most_points + most_tips> all;
@@ -38,58 +39,78 @@ struct ManifoldPoints {
     const auto shallow = [deepest](const ManifoldPoint& p) { return p.depth < least_depth * deepest; };
     count = static_cast<std::size_t>(std::remove_if(all.begin(), all.begin() + count, shallow) - all.begin());
   }
-  // Drops points that are nearer than `distance` to one that is clearly deeper.
-  void keep_apart(double distance) noexcept {
+  // Drops points that are nearer than `distance` to one that is clearly deeper. When `may_go_on()` says no, the deepest
+  // have been looked at, and are kept.
+  template <class MayGoOn>
+  void keep_apart(double distance, const MayGoOn& may_go_on) noexcept {
+    constexpr std::size_t between_looks = 8;
     if (!(distance > 0.0)) return;
-    std::sort(all.begin(), all.begin() + count,
-              [](const ManifoldPoint& a, const ManifoldPoint& b) { return a.depth > b.depth; });
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < count; ++i) {
+    struct Ranked {  // points are too long to be moved about themselves
+      double depth;
+      std::uint32_t index;
+    };
+    std::array<Ranked, most_points + most_tips> ranked;
+    for (std::uint32_t i = 0; i < count; ++i) ranked[i] = {all[i].depth, i};
+    std::sort(ranked.begin(), ranked.begin() + count, [](const Ranked& a, const Ranked& b) {
+      return a.depth != b.depth ? a.depth > b.depth : a.index < b.index;
+    });
+    std::array<ManifoldPoint, most_points + most_tips> kept;
+    std::size_t kept_count = 0;
+    for (std::size_t i = 0; i < count && (i % between_looks != 0 || i == 0 || may_go_on()); ++i) {
+      const ManifoldPoint& point = all[ranked[i].index];
       bool hidden = false;
-      for (std::size_t k = 0; k < kept && !hidden; ++k) {
-        if (!(all[k].depth * clearly_shallower > all[i].depth)) break;  // nor is any after it
-        hidden = (all[k].position - all[i].position).norm() < distance;
+      for (std::size_t k = 0; k < kept_count && !hidden; ++k) {
+        if (!(kept[k].depth * clearly_shallower > point.depth)) break;  // nor is any after it
+        hidden = (kept[k].position - point.position).squaredNorm() < distance * distance;
       }
-      if (!hidden) all[kept++] = all[i];
+      if (!hidden) kept[kept_count++] = point;
     }
-    count = kept;
+    std::copy_n(kept.begin(), kept_count, all.begin());
+    count = kept_count;
   }
-  [[nodiscard]] const Vec3& position(std::uint32_t i) const noexcept { return all[i].position; }
-  template <class Value>
-  [[nodiscard]] std::uint32_t greatest(const Value& value) const noexcept {
-    std::uint32_t best = no_item;
-    double best_value = -std::numeric_limits<double>::infinity();
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const double v = value(all[i]);
-      if (v > best_value) {
-        best_value = v;
-        best = i;
-      }
+};
+
+// Finished points as a source for select_manifold, which asks for the outermost of them up to seventeen times.
+class ManifoldSource {
+ public:
+  explicit ManifoldSource(const ManifoldPoints& points) noexcept : points_(points) {
+    for (std::size_t i = 0; i < points.count; ++i) {
+      const ManifoldPoint& point = points.all[i];
+      eights_[i / Eight::count].set(i % Eight::count, point.position, point.depth);
+      deepest_ = std::max(deepest_, point.depth);
     }
-    return best;
+    for (std::size_t i = points.count; i % Eight::count != 0; ++i)
+      eights_[i / Eight::count].leave_out(i % Eight::count);
   }
+  [[nodiscard]] const Vec3& position(std::uint32_t i) const noexcept { return points_.all[i].position; }
   // Of the deepest the outermost: stable where a whole face lies on the surface.
   [[nodiscard]] std::uint32_t first() const noexcept {
-    double deepest = 0.0;
+    constexpr double equally_deep = 1.0 - 1e-6;
     Vec3 middle = Vec3::Zero();
-    for (std::size_t i = 0; i < count; ++i) {
-      deepest = std::max(deepest, all[i].depth);
-      middle += all[i].position / static_cast<double>(count);
-    }
-    return greatest([&](const ManifoldPoint& p) {
-      return p.depth < equally_deep * deepest ? -1.0 : (p.position - middle).squaredNorm();
-    });
+    for (std::size_t i = 0; i < points_.count; ++i) middle += points_.all[i].position;
+    middle /= static_cast<double>(std::max<std::size_t>(points_.count, 1));
+    return kernels_.outermost_from(used(), middle, Vec3::Zero(), 0.0, equally_deep * deepest_, 1);
   }
   [[nodiscard]] std::uint32_t farthest(const Vec3& from) const noexcept {
-    return greatest([&](const ManifoldPoint& p) {
-      const Vec3 d = p.position - from;
-      return (d - d.dot(normal) * normal).squaredNorm() + deeper_at_one_place * p.depth * p.depth;
-    });
+    return kernels_.outermost_from(used(), from, points_.normal, deeper_at_one_place * deepest_, any_depth, 1);
   }
   [[nodiscard]] std::uint32_t extreme(const Vec3& direction) const noexcept {
-    const double for_depth = deeper_at_one_place * direction.norm();
-    return greatest([&](const ManifoldPoint& p) { return direction.dot(p.position) + for_depth * p.depth; });
+    return kernels_.outermost_along(used(), direction, deeper_at_one_place * direction.norm(), any_depth, 1);
   }
+
+ private:
+  using Eight = query::wide::EightPoints;
+  static constexpr double any_depth = std::numeric_limits<double>::lowest();
+  static constexpr std::size_t most = ManifoldPoints::most_points + ManifoldPoints::most_tips;
+
+  [[nodiscard]] std::span<const Eight> used() const noexcept {
+    return std::span(eights_).first((points_.count + Eight::count - 1) / Eight::count);
+  }
+
+  const ManifoldPoints& points_;
+  const query::wide::Searches& kernels_ = *query::wide::searches_for(query::InstructionSet::best);
+  double deepest_ = 0.0;
+  std::array<Eight, (most + Eight::count - 1) / Eight::count> eights_;
 };
 
 }  // namespace odds::ode

@@ -1,6 +1,7 @@
 // The nearest surface, within what a collision may spend.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "ode/collide/limit.hpp"
@@ -8,15 +9,52 @@
 
 namespace odds::ode {
 
+/// The end of that share of a collision's time, as searches ask for it at each node.
+class EndOfShare {
+ public:
+  /// From a tree's root to a triangle; a search that may be a collision's only one goes so far in any case.
+  static constexpr int to_a_triangle = 8;
+
+  /// Looks at the clock when it is asked for the `every`-th time.
+  EndOfShare(const Limit& limit, double share, int sure_nodes, int every = 2) noexcept
+      : limit_(limit), share_(share), sure_nodes_(sure_nodes), every_(every) {}
+  [[nodiscard]] bool is_there() noexcept {
+    return ++asked_ > sure_nodes_ && asked_ % every_ == 0 && limit_.time_is_up(share_);
+  }
+  [[nodiscard]] query::Deadline deadline() noexcept {
+    return {[](void* self) noexcept { return static_cast<EndOfShare*>(self)->is_there(); }, this};
+  }
+
+ private:
+  const Limit& limit_;
+  double share_;
+  int sure_nodes_;
+  int every_;
+  int asked_ = 0;
+};
+
+/// What of a search that its time ends is of use.
+enum class Wanted : std::uint8_t {
+  nothing,      ///< only what is surely the nearest
+  what_is_met,  ///< also what was met until then
+  something,    ///< the same, and a little longer if it takes that to meet anything
+};
+
+/// For the ray that tells the side of what may not be the nearest.
+constexpr std::uint64_t nodes_of_a_ray = 32;
+
 /// As nearest_surface, until that share of the time. Not `finished`: there may be a nearer one. noexcept, no
 /// allocation.
-inline std::optional<NearestSurface> nearest_in_time(const PreparedMesh& mesh, const Vec3& point, double reach,
-                                                     double share, Limit& limit, bool& finished) noexcept {
-  const std::uint64_t nodes = limit.nodes_in_time(share);
+[[nodiscard]] inline std::optional<NearestSurface> nearest_in_time(const PreparedMesh& mesh, const Vec3& point,
+                                                                   double reach, double share, Wanted wanted,
+                                                                   Limit& limit, bool& finished,
+                                                                   std::uint32_t guess = query::no_feature) noexcept {
+  const std::uint64_t nodes = limit.nodes_left();
   std::uint64_t left = nodes;
-  const std::optional<NearestSurface> nearest = nearest_surface(mesh, point, reach, left);
+  EndOfShare end(limit, share, wanted == Wanted::something ? EndOfShare::to_a_triangle : 0);
+  const auto nearest = nearest_surface(mesh, point, reach, guess, end.deadline(),
+                                       wanted == Wanted::nothing ? 0 : nodes_of_a_ray, left, finished);
   limit.spend(nodes - left);
-  finished = left > 0;
   return nearest;
 }
 

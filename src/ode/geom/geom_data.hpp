@@ -10,6 +10,8 @@
 #include "odds/math/tolerances.hpp"
 #include "odds/ode/odds_ode.h"
 #include "odds/query/request.hpp"
+#include "ode/geom/ending_times.hpp"
+#include "ode/geom/last_places.hpp"
 #include "ode/geom/resting_contacts.hpp"
 #include "ode/mesh/prepared_mesh.hpp"
 
@@ -45,6 +47,8 @@ struct GeomData {
   std::uint64_t number = 0;       ///< unique for the process, in order of creation: never reused, unlike addresses
   std::vector<PairEntry*> pairs;  ///< workspaces that this geom takes part in
   RestingContacts resting;        ///< with bodies that are no meshes
+  LastPlaces met;                 ///< by those
+  EndingTimes endings;            ///< of collisions with those
   math::Pose seen_at;             ///< where it stood in the last broad phase that noted it
   std::uint64_t seen_in = 0;      ///< the number of that; 0: none
 };

@@ -6,8 +6,8 @@
 #include <limits>
 #include <numbers>
 
-#include "odds/query/ray.hpp"
 #include "ode/mesh/triangle_corners.hpp"
+#include "query/counted_ray.hpp"
 #include "query/shape/near_segment.hpp"
 
 namespace odds::ode {
@@ -61,31 +61,42 @@ Vec3 outward_at(const PreparedMesh& mesh, const Vec3& point, std::uint32_t trian
 }
 
 std::optional<NearestSurface> nearest_surface(const PreparedMesh& mesh, const Vec3& point, double reach,
-                                              std::uint64_t& units) noexcept {
+                                              std::uint32_t guess, const query::Deadline& deadline,
+                                              std::uint64_t nodes_of_a_ray, std::uint64_t& units,
+                                              bool& finished) noexcept {
   const auto distance = [&](std::uint32_t t) { return (closest_point(mesh.corners(t), point) - point).norm(); };
-  bool finished = false;
-  const std::uint32_t triangle = query::NearSegment(*mesh.wide_tree, point, point)
-                                     .nearest(
-                                         reach, 0.0, distance, [] { return true; }, units, finished);
-  if (triangle == query::no_feature) return std::nullopt;
+  const double guessed =
+      guess < mesh.mesh().triangles().size() ? distance(guess) : std::numeric_limits<double>::infinity();
+  std::uint32_t triangle =
+      query::NearSegment(*mesh.wide_tree, point, point)
+          .nearest(
+              std::min(reach, guessed), 0.0, distance, [&] { return !deadline(); }, units, finished);
+  if (triangle == query::no_feature) {
+    if (!(guessed <= reach) || guess >= mesh.mesh().triangles().size()) return std::nullopt;
+    triangle = guess;
+  }
   NearestSurface nearest;
   nearest.triangle = triangle;
   nearest.point = closest_point(mesh.corners(triangle), point);
   nearest.distance = (nearest.point - point).norm();
-  nearest.outward = outward_at(mesh, nearest.point, triangle, point);
-  nearest.inside = mesh.closed && nearest.outward.dot(point - nearest.point) < 0.0;
-  if (finished || nearest.distance == 0.0) return nearest;
   // There may be nearer triangles, and of one that is not the nearest the side tells nothing: a ball in a cavity would
   // be pushed out through its walls.
-  return surface_towards(mesh, point, nearest.point, triangle);
+  if (!finished && nearest.distance > 0.0) {
+    return surface_towards(mesh, point, nearest.point, triangle, nodes_of_a_ray);
+  }
+  nearest.outward = outward_at(mesh, nearest.point, triangle, point);
+  nearest.inside = mesh.closed && nearest.outward.dot(point - nearest.point) < 0.0;
+  return nearest;
 }
 
-NearestSurface surface_towards(const PreparedMesh& mesh, const Vec3& point, const Vec3& place,
-                               std::uint32_t triangle) noexcept {
-  constexpr std::uint64_t most_nodes = 256;
+std::optional<NearestSurface> surface_towards(const PreparedMesh& mesh, const Vec3& point, const Vec3& place,
+                                              std::uint32_t triangle, std::uint64_t most_nodes) noexcept {
+  if (most_nodes == 0) return std::nullopt;
   const double distance = (place - point).norm();
   const Vec3 direction = (place - point) / distance;
-  const auto hit = query::cast_ray(*mesh.shape, point, direction, distance * (1.0 + 1e-9), most_nodes);
+  query::RayEffort effort;
+  const auto hit = query::cast_counted_ray(*mesh.shape, point, direction, distance * (1.0 + 1e-9), most_nodes, effort);
+  if (!effort.finished) return std::nullopt;
   NearestSurface met = {place, distance, triangle, unit_normal(mesh.corners(triangle)), false};
   if (hit) {
     const Vec3 normal = unit_normal(mesh.corners(hit->triangle));

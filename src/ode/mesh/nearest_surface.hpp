@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "odds/query/contact_patch.hpp"
 #include "ode/mesh/prepared_mesh.hpp"
 
 namespace odds::ode {
@@ -16,15 +17,21 @@ struct NearestSurface {
   bool inside;   ///< behind the surface; only ever true for a closed mesh
 };
 
-/// Nothing if the surface is farther than `reach` (metres; infinity allowed) or `units` ran out before any triangle was
-/// seen. Each visited node takes one from `units`; if they run out later, a place that may not be the nearest is given,
-/// which is the first one in its direction, so that the side is right. noexcept, no allocation.
+/// Nothing if the surface is farther than `reach` (metres; infinity allowed), or the limits ended the search before any
+/// triangle was seen. Each visited node takes one from `units`; if they run out later, or `deadline` says that the time
+/// is up, it is not `finished`: what surface_towards gives for the nearest place so far, within `nodes_of_a_ray`.
+/// `guess`: a triangle that may be near, the first of those places; no_feature, or no triangle of the mesh: none.
+/// noexcept, no allocation.
 [[nodiscard]] std::optional<NearestSurface> nearest_surface(const PreparedMesh& mesh, const Vec3& point, double reach,
-                                                            std::uint64_t& units) noexcept;
+                                                            std::uint32_t guess, const query::Deadline& deadline,
+                                                            std::uint64_t nodes_of_a_ray, std::uint64_t& units,
+                                                            bool& finished) noexcept;
 
-/// What a ray from `point` to a place of `triangle` meets first; its plane tells the side.
-[[nodiscard]] NearestSurface surface_towards(const PreparedMesh& mesh, const Vec3& point, const Vec3& place,
-                                             std::uint32_t triangle) noexcept;
+/// What a ray from `point` to a place of `triangle` meets first, which need not be the nearest; its plane tells the
+/// side. Nothing if that takes more than `most_nodes`; of a length that a search has shortened some dozen do.
+[[nodiscard]] std::optional<NearestSurface> surface_towards(const PreparedMesh& mesh, const Vec3& point,
+                                                            const Vec3& place, std::uint32_t triangle,
+                                                            std::uint64_t most_nodes) noexcept;
 
 /// The pseudo-normal, as in NearestSurface, at a point of `triangle` that is nearest to `seen_from`.
 [[nodiscard]] Vec3 outward_at(const PreparedMesh& mesh, const Vec3& point, std::uint32_t triangle,

@@ -9,6 +9,7 @@
 #include "odds/math/types.hpp"
 #include "odds/tree/topology.hpp"
 #include "odds/tree/wide_tree.hpp"
+#include "query/shape/prefetch.hpp"
 #include "query/wide/searches.hpp"
 
 namespace odds::query {
@@ -66,6 +67,7 @@ class ConvexRegion {
         lanes &= ~(1U << lane);
         const Vec3f center(opened.center[0][lane], opened.center[1][lane], opened.center[2][lane]);
         stack[size++] = {opened.child[lane], center, within.sides[lane]};
+        prefetch(tree_, opened.child[lane]);
       }
     };
     searches.children_within(tree_.nodes()[0], spaces_, spaces_.all(), within);

@@ -9,6 +9,7 @@
 #include "odds/math/types.hpp"
 #include "odds/tree/topology.hpp"
 #include "odds/tree/wide_tree.hpp"
+#include "query/shape/prefetch.hpp"
 #include "query/wide/searches.hpp"
 
 namespace odds::query {
@@ -95,6 +96,7 @@ class NearSegment {
           std::size_t at = size++;
           for (; at > first && stack[at - 1].bound < child.bound; --at) stack[at] = stack[at - 1];
           stack[at] = child;
+          prefetch(tree_, child.child);
         }
         continue;
       }

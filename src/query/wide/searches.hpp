@@ -20,6 +20,7 @@
 #include "query/wide/known_faces.hpp"
 #include "query/wide/many_sides.hpp"
 #include "query/wide/near_segment.hpp"
+#include "query/wide/outermost.hpp"
 #include "query/wide/sweep.hpp"
 
 namespace odds::query::wide {
@@ -117,6 +118,11 @@ struct Searches {
   bool (*sides_near)(std::span<const EightSides> sides, const Vec3& center, double radius,
                      std::uint8_t* lanes) noexcept;
   double (*way_out)(std::span<const EightSides> sides, const Vec3& point, const Vec3& direction) noexcept;
+  /// The outermost of points along a direction, from a point across a direction.
+  std::uint32_t (*outermost_along)(std::span<const EightPoints> points, const Vec3& direction, double per_depth,
+                                   double least_depth, std::size_t step) noexcept;
+  std::uint32_t (*outermost_from)(std::span<const EightPoints> points, const Vec3& from, const Vec3& normal,
+                                  double per_depth, double least_depth, std::size_t step) noexcept;
   patch::Kernels patch;
 };
 

@@ -9,6 +9,7 @@
 #include "query/wide/many_sides.hpp"
 #include "query/wide/near_segment.hpp"
 #include "query/wide/nearest.hpp"
+#include "query/wide/outermost.hpp"
 #include "query/wide/patch_kernel.hpp"
 #include "query/wide/ray_cast.hpp"
 #include "query/wide/time_critical.hpp"
@@ -35,6 +36,8 @@ constexpr Searches searches_of() noexcept {
           &NearSegmentKernel<L>::triangles,
           &ManySidesKernel<L>::near,
           &ManySidesKernel<L>::way_out,
+          &OutermostKernel<L>::along,
+          &OutermostKernel<L>::from,
           PatchKernel<L>::table()};
 }
 
