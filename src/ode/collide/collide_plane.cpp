@@ -37,7 +37,7 @@ int collide_plane(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int
   std::array<std::uint32_t, LastPlaces::most> met;
   const std::size_t met_count = remembers ? data.met.of(o2, met) : 0;
   const CornersBelow below(*data.mesh, local_normal, plane[3] - normal.dot(pose->translation),
-                           std::span(met).first(met_count), limit);
+                           {std::span(met).first(met_count), remembers ? data.met.turn(o2) : 0}, limit);
   std::array<std::uint32_t, most_contacts> chosen;
   const int room = room_for(flags, data.settings.max_contacts);
   const std::size_t found =

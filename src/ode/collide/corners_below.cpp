@@ -169,8 +169,8 @@ class BoundOver {
 
 }  // namespace
 
-CornersBelow::CornersBelow(const PreparedMesh& mesh, const Vec3& normal, double offset,
-                           std::span<const std::uint32_t> known, Limit& limit) noexcept
+CornersBelow::CornersBelow(const PreparedMesh& mesh, const Vec3& normal, double offset, const Known& known,
+                           Limit& limit) noexcept
     : tree_(*mesh.wide_tree),
       size_(mesh.mesh().size()),
       search_(mesh.mesh(), tree_),
@@ -179,16 +179,20 @@ CornersBelow::CornersBelow(const PreparedMesh& mesh, const Vec3& normal, double 
       rounding_(4e-15 * (std::abs(offset) + tree_.origin().norm())),
       limit_(limit) {
   is_gathered_ = gather();
-  if (!is_gathered_) add_known(known);
+  if (!is_gathered_) look_for_more(known);
   deepest_ = deepest_gathered();
-  if (!is_gathered_) {
-    const std::uint32_t deeper = find_deeper(deepest_ == no_item ? -offset_ : -normal_.dot(position(deepest_)));
-    if (deeper != no_item) {
-      add(deeper);  // one more than there is room for
-      deepest_ = deepest_gathered();
-    }
-  }
   if (are_many_) rough_ = std::min(rough_share * gathered_.size(), deepest_ == no_item ? 0.0 : depth(deepest_));
+}
+
+void CornersBelow::look_for_more(const Known& known) noexcept {
+  add_known(known.corners);
+  const std::uint32_t deepest = deepest_gathered();
+  const std::uint32_t deeper = find_deeper(deepest == no_item ? -offset_ : -normal_.dot(position(deepest)));
+  if (deeper != no_item) add(deeper);  // one more than there is room for
+  // What lies beside each other holds no body that has a broad bottom. The search was short if the deepest was known.
+  if (gathered_.is_full() || !has_some_left()) return;
+  const std::uint32_t farther_out = find_farther_out(known.turn);
+  if (farther_out != no_item) add(farther_out);
 }
 
 void CornersBelow::add_known(std::span<const std::uint32_t> known) noexcept {
@@ -202,20 +206,41 @@ std::uint32_t CornersBelow::deepest_gathered() const noexcept {
   return corner_of(search_.kernels().outermost_along(gathered_.all(), -normal_, 0.0, 0.0, 1));
 }
 
-std::uint32_t CornersBelow::find_deeper(double least) const noexcept {
-  const BoundAlong bound(search_, -normal_);
+template <class Value, class Bounds>
+std::uint32_t CornersBelow::search_over(double least, double excess, const Value& value,
+                                        const Bounds& bounds) const noexcept {
   int looks = 0;
   const std::uint64_t nodes = limit_.nodes_left();
   std::uint64_t left = nodes;
   const std::uint32_t found = search_.greatest(
-      bound.excess(),
+      excess,
       [&](const Vec3& x) {
-        const double value = -normal_.dot(x);
-        return value > least ? value : nothing;
+        const double v = value(x);
+        return v > least ? v : nothing;
       },
-      BoundOver(bound, least + bound.excess()), [&] { return ++looks <= sure_looks || has_time_to_search(); }, left);
+      BoundOver(bounds, least + excess), [&] { return ++looks <= sure_looks || has_time_to_search(); }, left);
   limit_.spend(nodes - left);
   return found;
+}
+
+std::uint32_t CornersBelow::find_deeper(double least) const noexcept {
+  const BoundAlong bound(search_, -normal_);
+  return search_over(
+      least, bound.excess(), [&](const Vec3& x) { return -normal_.dot(x); }, bound);
+}
+
+std::uint32_t CornersBelow::find_farther_out(std::uint32_t turn) const noexcept {
+  constexpr double golden_angle = 2.399963229728653;  // radians: no two turns look the same way
+  const Vec3 across = normal_.unitOrthogonal();
+  const double angle = golden_angle * static_cast<double>(turn);
+  const Vec3 outwards = std::cos(angle) * across + std::sin(angle) * normal_.cross(across);
+  const std::uint32_t known = search_.kernels().outermost_along(gathered_.all(), outwards, 0.0, 0.0, 1);
+  if (known == no_item) return no_item;
+  const BoundAlong bound(search_, outwards);
+  return search_over(
+      outwards.dot(position(corner_of(known))), bound.excess(),
+      [&](const Vec3& x) { return normal_.dot(x) <= offset_ ? outwards.dot(x) : nothing; },
+      BoundBelow(bound, search_, normal_, offset_ + rounding_));
 }
 
 bool CornersBelow::gather() noexcept {

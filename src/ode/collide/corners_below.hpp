@@ -78,10 +78,15 @@ class GatheredVertices {
 /// were gathered have to do. No allocation.
 class CornersBelow {
  public:
-  /// Normal, unit, and offset in the mesh's frame. `known`: corners that may be below, as those chosen from the last
-  /// time; they count only where not all were gathered. Mesh and limit must outlive it.
-  CornersBelow(const PreparedMesh& mesh, const Vec3& normal, double offset, std::span<const std::uint32_t> known,
-               Limit& limit) noexcept;
+  /// Corners that may be below, as those chosen from the last time; they count only where not all were gathered. With
+  /// another `turn`, others are looked for beside them then.
+  struct Known {
+    std::span<const std::uint32_t> corners;
+    std::uint32_t turn = 0;
+  };
+
+  /// Normal, unit, and offset in the mesh's frame. Mesh and limit must outlive it.
+  CornersBelow(const PreparedMesh& mesh, const Vec3& normal, double offset, const Known& known, Limit& limit) noexcept;
 
   /// Whether nothing was left out for want of work or time.
   [[nodiscard]] bool is_complete() const noexcept { return is_gathered_ || (are_many_ && has_some_left()); }
@@ -105,12 +110,20 @@ class CornersBelow {
     const Vec3 place = position(corner);
     gathered_.add(search_.vertex_of(corner), corner, place, offset_ - normal_.dot(place));
   }
+  /// Beside what was gathered, if that is not all.
+  void look_for_more(const Known& known) noexcept;
   /// Of those that the mesh has, what is below.
   void add_known(std::span<const std::uint32_t> known) noexcept;
   /// The deepest of those that were gathered.
   [[nodiscard]] std::uint32_t deepest_gathered() const noexcept;
   /// The deepest of those with -normal . x greater than `least`, as far as there is work and time.
   [[nodiscard]] std::uint32_t find_deeper(double least) const noexcept;
+  /// One farther out than those that were gathered, across the normal, another way in each turn.
+  [[nodiscard]] std::uint32_t find_farther_out(std::uint32_t turn) const noexcept;
+  /// With the greatest value of those that exceed `least`, as far as there is work and time, but down to a leaf.
+  template <class Value, class Bounds>
+  [[nodiscard]] std::uint32_t search_over(double least, double excess, const Value& value,
+                                          const Bounds& bounds) const noexcept;
   [[nodiscard]] std::uint32_t farthest_below(const Vec3& from, double least_depth) const noexcept;
   /// Its corner, of the item of those that were gathered.
   [[nodiscard]] std::uint32_t corner_of(std::uint32_t item) const noexcept {

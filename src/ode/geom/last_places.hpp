@@ -31,8 +31,13 @@ class LastPlaces {
     }
     return count;
   }
+  /// Another number after each note.
+  [[nodiscard]] std::uint32_t turn(dGeomID partner) const noexcept {
+    return entries_[index_of(partner)].turn.load(std::memory_order_relaxed);
+  }
   void note(dGeomID partner, std::span<const std::uint32_t> places) noexcept {
     Entry& entry = entries_[index_of(partner)];
+    entry.turn.store(entry.turn.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
     for (std::size_t i = 0; i < most; ++i) {
       entry.places[i].store(i < places.size() ? places[i] + 1 : 0, std::memory_order_relaxed);
     }
@@ -42,6 +47,7 @@ class LastPlaces {
  private:
   struct Entry {
     std::atomic<dGeomID> partner{nullptr};
+    std::atomic<std::uint32_t> turn{0};
     std::array<std::atomic<std::uint32_t>, most> places{};  ///< plus one; 0: no more
   };
   static constexpr int bits = 6;

@@ -1,0 +1,138 @@
+// Where balls and planes were met last: within so little work that a search alone finds next to nothing, they hold.
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "ode/geom/last_places.hpp"
+#include "ode/world_fixture.hpp"
+
+namespace odds::test {
+namespace {
+
+class RememberedPlaces : public WorldTest {
+ protected:
+  /// A body at rest that holds `geom`.
+  dBodyID body_of(dGeomID geom, const dMass& mass, const Vec3& at) {
+    const dBodyID body = dBodyCreate(world);
+    dBodySetMass(body, &mass);
+    dGeomSetBody(geom, body);
+    dBodySetPosition(body, at.x(), at.y(), at.z());
+    return body;
+  }
+};
+
+TEST_F(RememberedPlaces, ABallLiesOnFineGround) {
+  constexpr double radius = 0.05;
+  for (const unsigned long units : {8UL, 12UL, 20UL}) {
+    const dGeomID ground = mesh_geom(box_shape(1.0, 1.0, 0.2, 120), space);
+    dGeomSetPosition(ground, 0, 0, -0.1);
+    ASSERT_EQ(dGeomOddsMeshSetWorkBudget(ground, units), 1);
+    const dGeomID ball = dCreateSphere(space, radius);
+    dMass mass;
+    dMassSetSphere(&mass, 500, radius);
+    const dBodyID body = body_of(ball, mass, Vec3(0.113, 0.071, radius + 1e-3));
+    for (int i = 0; i < 3000; ++i) {
+      step();
+      const dReal* const at = dBodyGetPosition(body);
+      ASSERT_GT(at[2], 0.98 * radius) << "step " << i << ", units " << units;
+      ASSERT_LT(at[2], 1.03 * radius) << "step " << i << ", units " << units;
+    }
+    dGeomDestroy(ball);
+    dGeomDestroy(ground);
+  }
+  EXPECT_GT(stats().primitive_cut_off, 1000u) << "there was time for all";
+}
+
+TEST_F(RememberedPlaces, AFineBallLiesOnAPlane) {
+  constexpr double radius = 0.1;
+  dCreatePlane(space, 0, 0, 1, 0);
+  for (const unsigned long units : {8UL, 16UL, 40UL}) {
+    const dGeomID ball = mesh_geom(sphere_shape(radius, 60), space);
+    ASSERT_EQ(dGeomOddsMeshSetWorkBudget(ball, units), 1);
+    dMass mass;
+    dMassSetSphere(&mass, 500, radius);
+    const dBodyID body = body_of(ball, mass, Vec3(0, 0, radius + 1e-3));
+    for (int i = 0; i < 2000; ++i) {
+      step();
+      ASSERT_GT(dBodyGetPosition(body)[2], 0.98 * radius) << "step " << i << ", units " << units;
+    }
+    dGeomDestroy(ball);
+  }
+}
+
+/// Each collision alone finds corners that lie beside each other.
+TEST_F(RememberedPlaces, AFineBottomIsHeldAllAround) {
+  const dGeomID plane = dCreatePlane(space, 0, 0, 1, 0);
+  const dGeomID box = mesh_geom(box_shape(0.2, 0.2, 0.2, 60), space);
+  dGeomSetPosition(box, 0, 0, 0.1 - 1e-4);
+  ASSERT_EQ(dGeomOddsMeshSetWorkBudget(box, 24), 1);
+  std::vector<dContactGeom> contacts;
+  for (int i = 0; i < 20; ++i) contacts = collide(box, plane);
+  Vec3 lower = Vec3::Constant(1.0);
+  Vec3 upper = Vec3::Constant(-1.0);
+  for (const dContactGeom& contact : contacts) {
+    EXPECT_NEAR(contact.depth, 1e-4, 1e-9);
+    lower = lower.cwiseMin(position_of(contact));
+    upper = upper.cwiseMax(position_of(contact));
+  }
+  EXPECT_GT((upper - lower).x(), 0.18);
+  EXPECT_GT((upper - lower).y(), 0.18);
+}
+
+/// The same contacts wherever there is work for all, whatever was met before.
+TEST_F(RememberedPlaces, WhereThereIsWorkForAllNothingIsTakenFromThem) {
+  const dGeomID mesh = mesh_geom(sphere_shape(1.0, 30), space);
+  const dGeomID ball = dCreateSphere(space, 0.2);
+  const dGeomID plane = dCreatePlane(space, 0, 0, 1, -0.99);
+  dGeomOddsMeshSetCarryMotion(mesh, 0);
+  dGeomSetPosition(ball, 0.3, 0.4, 1.0);
+  const auto of_ball = collide(mesh, ball);
+  const auto of_plane = collide(mesh, plane);
+  ASSERT_FALSE(of_ball.empty());
+  ASSERT_FALSE(of_plane.empty());
+  dGeomOddsMeshSetCarryMotion(mesh, 1e-3);
+  const auto expect_the_same = [](const auto& a, const auto& b) {
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      EXPECT_EQ(position_of(a[i]), position_of(b[i]));
+      EXPECT_EQ(a[i].depth, b[i].depth);
+    }
+  };
+  for (int i = 0; i < 5; ++i) {
+    dGeomSetPosition(ball, 0.9, -0.1 * i, 0.5);  // elsewhere
+    static_cast<void>(collide(mesh, ball));
+    dGeomSetPosition(ball, 0.3, 0.4, 1.0);
+    expect_the_same(collide(mesh, ball), of_ball);
+    dGeomPlaneSetParams(plane, 0, 1, 0, -0.98);
+    static_cast<void>(collide(mesh, plane));
+    dGeomPlaneSetParams(plane, 0, 0, 1, -0.99);
+    expect_the_same(collide(mesh, plane), of_plane);
+  }
+}
+
+TEST(LastPlaces, OfOnePartnerAreNotThoseOfAnother) {
+  ode::LastPlaces met;
+  std::array<std::uint32_t, ode::LastPlaces::most> places;
+  std::vector<char> geoms(1000);
+  const auto geom = [&](std::size_t i) { return reinterpret_cast<dGeomID>(&geoms[i]); };
+  EXPECT_EQ(met.of(geom(0), places), 0U);
+  const std::array<std::uint32_t, 3> some = {7, 0, 12};
+  met.note(geom(0), some);
+  ASSERT_EQ(met.of(geom(0), places), 3U);
+  EXPECT_TRUE(std::equal(some.begin(), some.end(), places.begin()));
+  EXPECT_EQ(met.of(geom(1), places), 0U);
+  met.note(geom(0), std::span(some).first(1));
+  EXPECT_EQ(met.of(geom(0), places), 1U);
+  for (std::uint32_t i = 0; i < geoms.size(); ++i) met.note(geom(i), std::span(&i, 1));
+  std::size_t known = 0;
+  for (std::size_t i = 0; i < geoms.size(); ++i) {
+    if (met.of(geom(i), places) == 0) continue;
+    EXPECT_EQ(places[0], i);
+    ++known;
+  }
+  EXPECT_GT(known, 20U);
+}
+
+}  // namespace
+}  // namespace odds::test
