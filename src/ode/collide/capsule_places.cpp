@@ -27,7 +27,7 @@ CapsulePlace place_of(const PreparedMesh& mesh, const Capsule& capsule, std::uin
 }
 
 // The nearest triangle, of those that are nearer than `within`; if the limit is reached first, the nearest of those
-// seen. no_feature: there is none.
+// seen, the guess among them. no_feature: there is none.
 std::uint32_t find_nearest(const PreparedMesh& mesh, const Capsule& capsule, const query::NearSegment& axis,
                            double within, Limit& limit, bool& finished) noexcept {
   // Along one that lies on flat ground all are as near as each other, but for rounding.
@@ -36,13 +36,16 @@ std::uint32_t find_nearest(const PreparedMesh& mesh, const Capsule& capsule, con
     const double d = place_of(mesh, capsule, t).distance;
     return d < capsule.radius ? d : std::numeric_limits<double>::infinity();
   };
+  const std::uint32_t guess = capsule.guess.to_axis;
+  const bool is_guessed = guess < mesh.mesh().triangles().size() && distance(guess) < within;
+  if (is_guessed) within = distance(guess);
   const std::uint64_t nodes = limit.nodes_left();
   std::uint64_t left = nodes;
   const std::uint32_t nearest = axis.nearest(
       within, axis.margin() + not_nearer * capsule.radius, distance, [&] { return !limit.time_is_up(); }, left,
       finished);
   limit.spend(nodes - left);
-  return nearest;
+  return nearest == query::no_feature && is_guessed ? guess : nearest;
 }
 
 // All triangles within the radius, the nearest nodes first: the box around a capsule has many that are farther. False

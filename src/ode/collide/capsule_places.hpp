@@ -10,6 +10,12 @@
 
 namespace odds::ode {
 
+/// Triangles nearest to the axis of a capsule and to its ends, or what was when they were looked for; no_feature: none.
+struct NearestToCapsule {
+  std::uint32_t to_axis = query::no_feature;
+  std::array<std::uint32_t, 2> to_end = {query::no_feature, query::no_feature};
+};
+
 /// In the mesh's frame, metres: all points at most `radius` from the segment between the two ends.
 struct Capsule {
   /// Of the radius: nearer places are one place, and an axis this near to the surface is on it.
@@ -17,7 +23,8 @@ struct Capsule {
 
   std::array<Vec3, 2> ends;
   double radius;
-  Mat3 axes;  ///< columns; the third leads from the first end to the second
+  Mat3 axes;               ///< columns; the third leads from the first end to the second
+  NearestToCapsule guess;  ///< searches start from these
 
   [[nodiscard]] Vec3 middle() const noexcept { return 0.5 * (ends[0] + ends[1]); }
 };

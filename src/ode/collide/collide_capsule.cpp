@@ -42,6 +42,7 @@ struct CapsuleContact {
 struct CapsuleContacts {
   std::array<CapsuleContact, 2 * most_contacts> all;
   std::size_t count = 0;
+  NearestToCapsule met;
 
   void add(const CapsuleContact& contact) noexcept {
     if (count < all.size() && contact.depth >= 0.0) all[count++] = contact;
@@ -160,7 +161,9 @@ void add_minima(const PreparedMesh& mesh, const Capsule& capsule, const CapsuleP
   for (std::size_t i = begin; i < end && contacts.count < contacts.all.size(); ++i) {
     const CapsulePlace& place = places.all[i];
     if (place.distance <= same_place * capsule.radius) continue;
-    const Vec3 out = (place.on_axis - place.on_surface) / place.distance;
+    const Vec3 out = places.nearest_is_sure
+                         ? Vec3((place.on_axis - place.on_surface) / place.distance)
+                         : way_from_any(place.on_surface, unit_normal(mesh.corners(place.triangle)), place.on_axis);
     if (apart_from && out.dot(*apart_from) > same_patch) continue;
     // Where triangles were left out, a rim of one of them would pass for a minimum.
     if (contacts.count > 0 && (!places.complete || limit.time_is_up())) return;
@@ -182,14 +185,18 @@ void add_minima(const PreparedMesh& mesh, const Capsule& capsule, const CapsuleP
 }
 
 // An end as a ball, within that share of the time. A capsule that lies needs both, whichever is a little deeper.
-void add_end_ball(const PreparedMesh& mesh, const Capsule& capsule, const Vec3& end, double share, Limit& limit,
+void add_end_ball(const PreparedMesh& mesh, const Capsule& capsule, std::size_t which, double share, Limit& limit,
                   CapsuleContacts& contacts) noexcept {
+  const Vec3& end = capsule.ends[which];
   bool finished = false;  // what is not the nearest place of an end is a place all the same
-  const auto nearest = nearest_in_time(mesh, end, capsule.radius, share, Wanted::what_is_met, limit, finished);
+  const auto nearest = nearest_in_time(mesh, end, capsule.radius, share, Wanted::what_is_met, limit, finished,
+                                       capsule.guess.to_end[which]);
+  if (nearest) contacts.met.to_end[which] = nearest->triangle;
   if (!nearest || nearest->inside || nearest->distance <= same_place * capsule.radius) return;
   if (contacts.near(nearest->point, separate_end * capsule.radius)) return;
-  contacts.add({nearest->point, (end - nearest->point) / nearest->distance, capsule.radius - nearest->distance,
-                nearest->triangle});
+  const Vec3 out =
+      finished ? Vec3((end - nearest->point) / nearest->distance) : way_from_any(nearest->point, nearest->outward, end);
+  contacts.add({nearest->point, out, capsule.radius - nearest->distance, nearest->triangle});
 }
 
 // The surface at the first place, as it is seen from the axis. The nearest point of the surface to the axis is the
@@ -230,7 +237,7 @@ void add_beside(const PreparedMesh& mesh, const Capsule& capsule, CapsulePlaces&
   }
   // The nearest place and both ends hold it, if there is no time for more.
   add_minima(mesh, capsule, places, 0, std::min<std::size_t>(places.count, 1), std::nullopt, limit, contacts);
-  for (const Vec3& end : capsule.ends) {
+  for (std::size_t end = 0; end < capsule.ends.size(); ++end) {
     if (!limit.time_is_up()) add_end_ball(mesh, capsule, end, 1.0, limit, contacts);
   }
   add_minima(mesh, capsule, places, 1, places.count, std::nullopt, limit, contacts);
@@ -238,6 +245,7 @@ void add_beside(const PreparedMesh& mesh, const Capsule& capsule, CapsulePlaces&
 
 void add_contacts(const PreparedMesh& mesh, const Capsule& capsule, CapsulePlaces& places, Limit& limit,
                   CapsuleContacts& contacts) noexcept {
+  if (places.count > 0) contacts.met.to_axis = places.all[0].triangle;
   if (places.count == 0 || places.all[0].distance > same_place * capsule.radius) {
     return add_beside(mesh, capsule, places, limit, contacts);
   }
@@ -252,7 +260,7 @@ Seen find_few_contacts(const PreparedMesh& mesh, const Capsule& capsule, std::ui
                        CapsuleContacts& found) noexcept {
   constexpr std::uint32_t turns = 3;
   CapsulePlaces places;
-  if (turn % turns > 0) add_end_ball(mesh, capsule, capsule.ends[turn % turns - 1], time_for_few, limit, found);
+  if (turn % turns > 0) add_end_ball(mesh, capsule, turn % turns - 1, time_for_few, limit, found);
   find_nearest_place(mesh, capsule, limit, places);
   add_contacts(mesh, capsule, places, limit, found);
   return places.complete && limit.units > 0 ? Seen::all : Seen::cut_off;
@@ -300,6 +308,12 @@ void write(CapsuleContacts& contacts, const math::Pose& pose, ContactWriter& wri
   }
 }
 
+NearestToCapsule met_last(const GeomData& data, dGeomID capsule) noexcept {
+  std::array<std::uint32_t, LastPlaces::most> places;
+  if (data.met.of(capsule, places) < 3) return {};
+  return {places[0], {places[1], places[2]}};
+}
+
 }  // namespace
 
 int collide_capsule(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int skip) noexcept {
@@ -317,12 +331,14 @@ int collide_capsule(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, i
   }
   Limit limit(data, dCapsuleClass);
   const int room = room_for(flags, data.settings.max_contacts);
+  const bool remembers = data.settings.carry_motion > 0.0;
   const math::Pose capsule_in_mesh = mesh_in_world->inverse() * *capsule_in_world;
   const Vec3 half_axis = 0.5 * length * capsule_in_mesh.rotation.col(2);
   const Capsule capsule = {{capsule_in_mesh.translation - half_axis, capsule_in_mesh.translation + half_axis},
                            radius,
-                           capsule_in_mesh.rotation};
-  const bool is_kept = data.settings.carry_motion > 0.0 && data.settings.undecided_policy == ODDS_UNDECIDED_HIT;
+                           capsule_in_mesh.rotation,
+                           remembers ? met_last(data, o2) : NearestToCapsule()};
+  const bool is_kept = remembers && data.settings.undecided_policy == ODDS_UNDECIDED_HIT;
   const RestingContacts::Question question{o2, dCapsuleClass, 0, Vec3(radius, radius, 0.5 * length), room};
   const double size = std::min(mesh.mesh().size(), length + 2.0 * radius);
   ContactWriter writer(o1, o2, room, contacts, skip);
@@ -330,8 +346,10 @@ int collide_capsule(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, i
     return is_kept ? give_kept(*mesh_in_world, capsule_in_mesh, size, question, data.resting, writer) : 0;
   }
   CapsuleContacts found;
+  found.met = capsule.guess;
   const std::uint32_t turn = is_kept ? data.resting.turn(question, capsule_in_mesh) : 0;
   const Seen seen = find_contacts(mesh, capsule, turn, limit, found);
+  if (remembers) data.met.note(o2, std::array{found.met.to_axis, found.met.to_end[0], found.met.to_end[1]});
   write(found, *mesh_in_world, writer);
   if (is_kept) {
     const bool finished = seen != Seen::cut_off && !limit.time_is_up();

@@ -111,8 +111,9 @@ int collide_sphere(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, in
     // Towards the mesh seen from outside; from the pseudo-normal where the centre is on the surface itself.
     const bool on_surface = nearest->distance <= same_place * radius;
     const double side = nearest->inside ? -1.0 : 1.0;
-    const Vec3 into_mesh =
-        on_surface ? Vec3(-nearest->outward) : Vec3(side / nearest->distance * (nearest->point - center));
+    const Vec3 into_mesh = on_surface ? Vec3(-nearest->outward)
+                           : complete ? Vec3(side / nearest->distance * (nearest->point - center))
+                                      : Vec3(-side * way_from_any(nearest->point, nearest->outward, center));
     writer.add(*pose * nearest->point, pose->rotation * into_mesh, radius - side * nearest->distance, nearest->triangle,
                query::no_feature);
     if (!nearest->inside && !on_surface && !writer.full()) {

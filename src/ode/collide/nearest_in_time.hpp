@@ -1,6 +1,7 @@
 // The nearest surface, within what a collision may spend.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
@@ -42,6 +43,16 @@ enum class Wanted : std::uint8_t {
 
 /// For the ray that tells the side of what may not be the nearest.
 constexpr std::uint64_t nodes_of_a_ray = 32;
+
+/// The way, unit, to a point from a place of the surface that may not be the nearest: that of the surface there, if it
+/// faces the point, and straight from the place if it does so from its side only. On a smooth surface the former is
+/// nearly right, where the latter leads aside and would push so.
+[[nodiscard]] inline Vec3 way_from_any(const Vec3& place, const Vec3& normal, const Vec3& point) noexcept {
+  constexpr double faces = 0.7;  // cosine
+  const Vec3 straight = (point - place).normalized();
+  const double facing = normal.dot(straight);
+  return std::abs(facing) > faces ? Vec3(std::copysign(1.0, facing) * normal) : straight;
+}
 
 /// As nearest_surface, until that share of the time. Not `finished`: there may be a nearer one. noexcept, no
 /// allocation.

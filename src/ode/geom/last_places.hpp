@@ -3,6 +3,7 @@
 
 #include <ode/ode.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstddef>
@@ -23,12 +24,8 @@ class LastPlaces {
   [[nodiscard]] std::size_t of(dGeomID partner, std::span<std::uint32_t, most> places) const noexcept {
     const Entry& entry = entries_[index_of(partner)];
     if (entry.partner.load(std::memory_order_relaxed) != partner) return 0;
-    std::size_t count = 0;
-    for (const std::atomic<std::uint32_t>& place : entry.places) {
-      const std::uint32_t number = place.load(std::memory_order_relaxed);
-      if (number == 0) break;
-      places[count++] = number - 1;
-    }
+    const std::size_t count = std::min<std::size_t>(entry.count.load(std::memory_order_relaxed), most);
+    for (std::size_t i = 0; i < count; ++i) places[i] = entry.places[i].load(std::memory_order_relaxed);
     return count;
   }
   /// Another number after each note.
@@ -38,9 +35,9 @@ class LastPlaces {
   void note(dGeomID partner, std::span<const std::uint32_t> places) noexcept {
     Entry& entry = entries_[index_of(partner)];
     entry.turn.store(entry.turn.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
-    for (std::size_t i = 0; i < most; ++i) {
-      entry.places[i].store(i < places.size() ? places[i] + 1 : 0, std::memory_order_relaxed);
-    }
+    const std::size_t count = std::min(places.size(), most);
+    for (std::size_t i = 0; i < count; ++i) entry.places[i].store(places[i], std::memory_order_relaxed);
+    entry.count.store(static_cast<std::uint32_t>(count), std::memory_order_relaxed);
     entry.partner.store(partner, std::memory_order_relaxed);
   }
 
@@ -48,7 +45,8 @@ class LastPlaces {
   struct Entry {
     std::atomic<dGeomID> partner{nullptr};
     std::atomic<std::uint32_t> turn{0};
-    std::array<std::atomic<std::uint32_t>, most> places{};  ///< plus one; 0: no more
+    std::atomic<std::uint32_t> count{0};
+    std::array<std::atomic<std::uint32_t>, most> places{};
   };
   static constexpr int bits = 6;
 
