@@ -43,7 +43,15 @@ struct CapsuleContacts {
   std::array<CapsuleContact, 2 * most_contacts> all;
   std::size_t count = 0;
   NearestToCapsule met;
+  // Whether what is nearest to the axis and to each end is surely known.
+  bool axis_is_sure = false;
+  std::array<bool, 2> end_is_sure = {false, false};
+  std::array<bool, 2> end_touches = {false, false};
 
+  // One that lies on both ends and in between: there may be more, but nothing that it needs.
+  [[nodiscard]] bool hold_surely() const noexcept {
+    return axis_is_sure && end_is_sure[0] && end_is_sure[1] && end_touches[0] && end_touches[1];
+  }
   void add(const CapsuleContact& contact) noexcept {
     if (count < all.size() && contact.depth >= 0.0) all[count++] = contact;
   }
@@ -187,12 +195,15 @@ void add_minima(const PreparedMesh& mesh, const Capsule& capsule, const CapsuleP
 // An end as a ball, within that share of the time. A capsule that lies needs both, whichever is a little deeper.
 void add_end_ball(const PreparedMesh& mesh, const Capsule& capsule, std::size_t which, double share, Limit& limit,
                   CapsuleContacts& contacts) noexcept {
+  if (contacts.end_is_sure[which]) return;
   const Vec3& end = capsule.ends[which];
   bool finished = false;  // what is not the nearest place of an end is a place all the same
   const auto nearest = nearest_in_time(mesh, end, capsule.radius, share, Wanted::what_is_met, limit, finished,
                                        capsule.guess.to_end[which]);
+  contacts.end_is_sure[which] = finished;
   if (nearest) contacts.met.to_end[which] = nearest->triangle;
   if (!nearest || nearest->inside || nearest->distance <= same_place * capsule.radius) return;
+  contacts.end_touches[which] = true;
   if (contacts.near(nearest->point, separate_end * capsule.radius)) return;
   const Vec3 out =
       finished ? Vec3((end - nearest->point) / nearest->distance) : way_from_any(nearest->point, nearest->outward, end);
@@ -246,6 +257,7 @@ void add_beside(const PreparedMesh& mesh, const Capsule& capsule, CapsulePlaces&
 void add_contacts(const PreparedMesh& mesh, const Capsule& capsule, CapsulePlaces& places, Limit& limit,
                   CapsuleContacts& contacts) noexcept {
   if (places.count > 0) contacts.met.to_axis = places.all[0].triangle;
+  contacts.axis_is_sure = places.nearest_is_sure;
   if (places.count == 0 || places.all[0].distance > same_place * capsule.radius) {
     return add_beside(mesh, capsule, places, limit, contacts);
   }
@@ -277,6 +289,7 @@ Seen find_contacts(const PreparedMesh& mesh, const Capsule& capsule, std::uint32
   find_places(mesh, capsule, limit, places);
   if (has_few && places.cut_off) return Seen::cut_off;
   found.count = 0;
+  found.end_is_sure = {false, false};  // they are to be added again
   add_contacts(mesh, capsule, places, limit, found);
   if (places.cut_off || limit.units == 0) return Seen::cut_off;
   return places.complete ? Seen::all : Seen::what_has_room;
@@ -352,7 +365,8 @@ int collide_capsule(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, i
   if (remembers) data.met.note(o2, std::array{found.met.to_axis, found.met.to_end[0], found.met.to_end[1]});
   write(found, *mesh_in_world, writer);
   if (is_kept) {
-    const bool finished = seen != Seen::cut_off && !limit.time_is_up();
+    // Of a capsule that rolls what is kept lies behind it, and would drive it on.
+    const bool finished = found.hold_surely() || (seen != Seen::cut_off && !limit.time_is_up());
     settle_contacts(*mesh_in_world, capsule_in_mesh, finished, size, question, data.resting, writer);
   }
   return limit.finish(seen == Seen::all, writer.count());
