@@ -18,8 +18,8 @@ namespace {
 constexpr double least_facing = 0.05;
 // A relative margin, so that among equal ways the first one considered wins whatever the rounding.
 constexpr double clearly_shorter = 1.0 - 1e-6;
-// What it takes to refine an exit, and to list those of a body with many sides.
-constexpr double refining_us = 15.0;
+// What it takes to refine an exit, with what comes after it; and to list those of a body with many sides.
+constexpr double refining_us = 24.0;
 constexpr double listing_us = 3.0;
 // More normals than these are compared one by one without asking whether they were tried.
 constexpr std::size_t most_remembered = 8;

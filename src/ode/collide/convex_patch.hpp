@@ -15,8 +15,8 @@ namespace odds::ode {
 
 /// Shares of a collision's time after which a part of its work ends, so that what it found can be worked on: pieces are
 /// gathered, ways out are looked for, points are made; then contacts are chosen.
-constexpr double time_for_pieces = 0.6;
-constexpr double time_for_exits = 0.8;
+constexpr double time_for_pieces = 0.55;
+constexpr double time_for_exits = 0.72;
 constexpr double time_for_points = 1.0;
 
 /// A body of which nodes of a mesh, and its own corners, take long.
