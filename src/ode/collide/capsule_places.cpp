@@ -14,8 +14,10 @@ namespace {
 
 // Where more triangles are near than there is room for, so many that the axis goes through are enough.
 constexpr std::size_t most_crossings = CapsulePlaces::most / 2;
-// The share of the time after which places are no longer looked for.
+// The share of the time after which places are no longer looked for, and after which the nearest is not, whose side is
+// then to be told.
 constexpr double time_for_places = 0.6;
+constexpr double time_for_nearest = 0.8;
 
 CapsulePlace place_of(const PreparedMesh& mesh, const Capsule& capsule, std::uint32_t triangle) noexcept {
   const Corners corners = mesh.corners(triangle);
@@ -42,8 +44,8 @@ std::uint32_t find_nearest(const PreparedMesh& mesh, const Capsule& capsule, con
   const std::uint64_t nodes = limit.nodes_left();
   std::uint64_t left = nodes;
   const std::uint32_t nearest = axis.nearest(
-      within, axis.margin() + not_nearer * capsule.radius, distance, [&] { return !limit.time_is_up(); }, left,
-      finished);
+      within, axis.margin() + not_nearer * capsule.radius, distance,
+      [&] { return !limit.time_is_up(time_for_nearest); }, left, finished);
   limit.spend(nodes - left);
   return nearest == query::no_feature && is_guessed ? guess : nearest;
 }

@@ -42,7 +42,7 @@ enum class Wanted : std::uint8_t {
 };
 
 /// For the ray that tells the side of what may not be the nearest.
-constexpr std::uint64_t nodes_of_a_ray = 32;
+constexpr std::uint64_t nodes_of_a_ray = 24;
 
 /// The way, unit, to a point from a place of the surface that may not be the nearest: that of the surface there, if it
 /// faces the point, and straight from the place if it does so from its side only. On a smooth surface the former is
