@@ -145,7 +145,8 @@ int dGeomOddsMeshGetMaxContacts(dGeomID geom) ODDS_NOTHROW;
  * while nothing near them has moved farther than this part of the smaller body's size, 0 .. 1, since they were made
  * with care: bodies at rest cost next to nothing, and their contacts stand still. A pair of triangles that still meets,
  * or a triangle that still is inside, proves the hit. Default 1e-5; 0: always made anew, and collisions with a box,
- * cylinder, capsule or convex that a budget ends keep nothing of earlier ones. */
+ * cylinder, capsule or convex that a budget ends keep nothing of earlier ones, nor do searches for what is nearest to a
+ * sphere or capsule, or below a plane, start from where that was last. */
 int dGeomOddsMeshSetCarryMotion(dGeomID geom, dReal part) ODDS_NOTHROW;
 dReal dGeomOddsMeshGetCarryMotion(dGeomID geom) ODDS_NOTHROW;
 
