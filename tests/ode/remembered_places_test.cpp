@@ -134,5 +134,39 @@ TEST(LastPlaces, OfOnePartnerAreNotThoseOfAnother) {
   EXPECT_GT(known, 20U);
 }
 
+/// Addresses differ from run to run; within work units contacts may not.
+TEST(LastPlaces, DoNotDependOnAddresses) {
+  for (const std::size_t apart : {8U, 16U, 112U, 4096U}) {
+    ode::LastPlaces met;
+    std::array<std::uint32_t, ode::LastPlaces::most> places;
+    std::vector<char> geoms(ode::LastPlaces::most_partners * apart);
+    const auto geom = [&](std::size_t i) { return reinterpret_cast<dGeomID>(&geoms[i * apart]); };
+    for (int round = 0; round < 2; ++round) {
+      for (std::uint32_t i = 0; i < ode::LastPlaces::most_partners; ++i) met.note(geom(i), std::span(&i, 1));
+    }
+    for (std::uint32_t i = 0; i < ode::LastPlaces::most_partners; ++i) {
+      ASSERT_EQ(met.of(geom(i), places), 1U) << i << ", " << apart << " apart";
+      EXPECT_EQ(places[0], i);
+      EXPECT_EQ(met.turn(geom(i)), 2U);
+    }
+  }
+}
+
+TEST(LastPlaces, OfMorePartnersThanThereIsRoomForSomeAreKnown) {
+  ode::LastPlaces met;
+  std::array<std::uint32_t, ode::LastPlaces::most> places;
+  std::vector<char> geoms(3 * ode::LastPlaces::most_partners);
+  std::size_t known = 0;
+  constexpr int rounds = 50;
+  for (int round = 0; round < rounds; ++round) {
+    for (std::uint32_t i = 0; i < geoms.size(); ++i) {
+      const auto geom = reinterpret_cast<dGeomID>(&geoms[i]);
+      if (round > 0) known += met.of(geom, places);
+      met.note(geom, std::span(&i, 1));
+    }
+  }
+  EXPECT_GT(known, rounds * geoms.size() / 5);
+}
+
 }  // namespace
 }  // namespace odds::test
