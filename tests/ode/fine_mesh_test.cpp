@@ -218,6 +218,27 @@ TEST_F(FineMeshTest, ACapsuleAcrossTheSurfaceHasAContactHoweverEarlyItsSearchEnd
   }
 }
 
+// What is nearest to the middle of a plate that leans is beside it: with some ten nodes for all, nothing else was seen.
+TEST_F(FineMeshTest, APlateThatLeansHasAContactHoweverEarlyItsSearchEnds) {
+  const Vec3 half(0.4, 0.4, 0.04);
+  const dGeomID plate = dCreateBox(space, 2.0 * half.x(), 2.0 * half.y(), 2.0 * half.z());
+  const auto lean_into_floor = [&] {
+    const Quat about(Eigen::AngleAxisd(3.0 * uniform(random), Vec3::UnitZ()));
+    const Quat turn = about * Quat(Eigen::AngleAxisd(0.6 + 0.4 * uniform(random), Vec3::UnitX()));
+    return put(plate, turn, -turn.toRotationMatrix().row(2).cwiseAbs().dot(half), 0.08);
+  };
+  for (std::uint64_t units = 24; units < 100; ++units) {
+    ASSERT_EQ(dGeomOddsMeshSetWorkBudget(floor, units), 1);
+    for (int i = 0; i < 5; ++i) EXPECT_FALSE(lean_into_floor().empty()) << units << " units";
+  }
+  dGeomOddsMeshSetWorkBudget(floor, 0);
+  for (double microseconds = 5.0; microseconds < 30.0; microseconds += 0.5) {
+    const SlowLooks slow(150);  // about one at each node
+    ASSERT_EQ(dGeomOddsMeshSetBudget(floor, microseconds), 1);
+    for (int i = 0; i < 5; ++i) EXPECT_FALSE(lean_into_floor().empty()) << microseconds << " us";
+  }
+}
+
 TEST_F(FineMeshTest, WhatAShortTimeEndedIsCounted) {
   const dGeomID solid = mesh_geom(sphere_shape(1.0, 60), space);
   dGeomOddsMeshSetCarryMotion(solid, 0);

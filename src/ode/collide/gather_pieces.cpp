@@ -186,17 +186,25 @@ class Gathering {
     pieces_.complete = hungry_count == 0 && !pieces_.cut_off;
   }
   /// Where there is time for some nodes of each octant only: those nearest to the body's middle, or, in other turns, to
-  /// another inner point, then those nearest to two more, which lie opposite each other.
+  /// another inner point, then those nearest to two more, which lie opposite each other. All that is near may be beside
+  /// a flat or long body: then what is in it is looked for.
   void from_inner_points() noexcept {
     const std::size_t of_turns = turn_ % (octants + 1);
     const Vec3 first = of_turns == 0 ? body_.center() : inner_point(body_, in_order[of_turns - 1]);
     const Vec3 farthest = body_.box_half_extents() + (first - body_.box_center()).cwiseAbs();
     pieces_.complete = add_nearest(first, farthest.norm(), 0.5 * time_for_pieces, EndOfShare::to_a_triangle);
+    if (!pieces_.complete && pieces_.count == 0) {
+      const std::uint64_t nodes = limit_.nodes_left() - limit_.nodes_left() / 4;  // the rest may have to push it out
+      const Way way = turn_ % 2 == 0 ? Way::forwards : Way::backwards;
+      pieces_.complete = sift(any_octant, way, nodes, Pieces::most);
+      pieces_.cut_off = !pieces_.complete;
+      return;
+    }
     pieces_.cut_off = !pieces_.complete;
     constexpr double reach = 0.8;  // of the half diagonal: farther ones are nearer to other such points
     for (std::size_t i = 0; i < 2 && pieces_.cut_off; ++i) {
       const double share = time_for_pieces * (i == 0 ? 0.75 : 1.0);
-      if (pieces_.count == 0 || pieces_.count == Pieces::most || limit_.time_is_up(share)) continue;
+      if (pieces_.count == Pieces::most || limit_.time_is_up(share)) continue;
       const Vec3 next = inner_point(body_, in_order[(of_turns + i) % octants]);
       static_cast<void>(add_nearest(next, reach * body_.box_half_extents().norm(), share, 0));
     }
@@ -204,15 +212,17 @@ class Gathering {
   /// Those nearest to a point of the body come first. True if there are no more within `reach`.
   [[nodiscard]] bool add_nearest(const Vec3& point, double reach, double share, int sure_nodes) noexcept {
     const Vec3 from = mesh_in_body_.inverse() * point;
-    EndOfShare late(limit_, time_for_exits, sure_nodes);
+    EndOfShare late(limit_, time_for_pieces, sure_nodes);
     EndOfShare end(limit_, share, 0);
     const auto may_go_on = [&] { return pieces_.count == 0 ? !late.is_there() : !end.is_there(); };
     const std::uint64_t nodes = limit_.nodes_left() / (pieces_.count == 0 ? 2 : 1);
     std::uint64_t left = nodes;
     const auto take = [&](std::uint32_t triangle) {
-      if (pieces_.count == Pieces::most) return false;
+      if (pieces_.count == Pieces::most || (left == 0 && pieces_.count > 0)) return false;
       if (has(triangle)) return true;
-      if (cut_triangle(mesh_, triangle, mesh_in_body_, body_, all_sides, pieces_.all[pieces_.count])) ++pieces_.count;
+      const bool is_in = cut_triangle(mesh_, triangle, mesh_in_body_, body_, all_sides, pieces_.all[pieces_.count]);
+      if (is_in) ++pieces_.count;
+      if (pieces_.count > 0) left -= std::min(left, nodes_a_cut_);  // until then, what is cut in vain is no work
       return may_go_on();
     };
     const bool all = query::NearSegment(*mesh_.wide_tree, from, from).all_within(reach, take, may_go_on, left);
