@@ -61,6 +61,26 @@ TEST_F(RememberedPlaces, AFineBallLiesOnAPlane) {
   }
 }
 
+/// Held where it was met last, which is behind it by then, it would roll faster and faster.
+TEST_F(RememberedPlaces, AFineBallThatRollsOnAPlaneIsNotDriven) {
+  constexpr double radius = 0.1;
+  constexpr double speed = 0.05;
+  dCreatePlane(space, 0, 0, 1, 0);
+  for (const unsigned long units : {24UL, 40UL, 60UL}) {
+    const dGeomID ball = mesh_geom(sphere_shape(radius, 60), space);
+    ASSERT_EQ(dGeomOddsMeshSetWorkBudget(ball, units), 1);
+    dMass mass;
+    dMassSetSphere(&mass, 500, radius);
+    const dBodyID body = body_of(ball, mass, Vec3(0, 0, radius));
+    dBodySetLinearVel(body, speed, 0, 0);
+    dBodySetAngularVel(body, 0, speed / radius, 0);
+    for (int i = 0; i < 3000; ++i) step();
+    const dReal* const velocity = dBodyGetLinearVel(body);
+    EXPECT_LT(Vec3(velocity[0], velocity[1], velocity[2]).norm(), 1.2 * speed) << units;
+    dGeomDestroy(ball);
+  }
+}
+
 /// Each collision alone finds corners that lie beside each other.
 TEST_F(RememberedPlaces, AFineBottomIsHeldAllAround) {
   const dGeomID plane = dCreatePlane(space, 0, 0, 1, 0);

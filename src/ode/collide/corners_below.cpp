@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "query/shape/convex_region.hpp"
+#include "query/shape/near_segment.hpp"
 #include "query/wide/searches.hpp"
 
 namespace odds::ode {
@@ -20,6 +21,8 @@ constexpr double time_for_deepest = 1.0;
 constexpr double time_for_each = 0.006;
 // One unit of work in so many is kept likewise.
 constexpr std::uint64_t work_share_for_rest = 3;
+// To what lies beside a corner, nodes.
+constexpr std::uint64_t nodes_beside = 16;
 // Of the search for the deepest, each eight nodes: it is to come to a leaf, or a body would sink in unnoticed.
 constexpr int sure_looks = 2;
 // Of the size of what has been gathered: by so much one of many corners may be less far out than another, though by no
@@ -178,7 +181,7 @@ CornersBelow::CornersBelow(const PreparedMesh& mesh, const Vec3& normal, double 
       offset_(offset - normal.dot(tree_.origin())),
       rounding_(4e-15 * (std::abs(offset) + tree_.origin().norm())),
       limit_(limit) {
-  is_gathered_ = gather();
+  is_gathered_ = gather(known.corners.empty() ? 0 : nodes_beside);
   if (!is_gathered_) look_for_more(known);
   deepest_ = deepest_gathered();
   if (are_many_) rough_ = std::min(rough_share * gathered_.size(), deepest_ == no_item ? 0.0 : depth(deepest_));
@@ -186,6 +189,7 @@ CornersBelow::CornersBelow(const PreparedMesh& mesh, const Vec3& normal, double 
 
 void CornersBelow::look_for_more(const Known& known) noexcept {
   add_known(known.corners);
+  if (!known.corners.empty()) add_beside(deepest_gathered());
   const std::uint32_t deepest = deepest_gathered();
   const std::uint32_t deeper = find_deeper(deepest == no_item ? -offset_ : -normal_.dot(position(deepest)));
   if (deeper != no_item) add(deeper);  // one more than there is room for
@@ -200,6 +204,24 @@ void CornersBelow::add_known(std::span<const std::uint32_t> known) noexcept {
     const bool exists = query::CornerSearch::triangle_of(corner) < tree_.triangle_count();
     if (exists && !gathered_.is_full() && depth(corner) >= 0.0) add(corner);
   }
+}
+
+void CornersBelow::add_beside(std::uint32_t corner) noexcept {
+  if (corner == no_item || gathered_.is_full() || !has_some_left()) return;
+  const Vec3 place = position(corner) + tree_.origin();
+  const std::uint64_t nodes = limit_.nodes_left();
+  std::uint64_t left = nodes;
+  const auto take = [this](std::uint32_t triangle) {
+    for (std::uint32_t beside = 3 * triangle; beside < 3 * triangle + 3; ++beside) {
+      if (!(depth(beside) >= 0.0)) continue;
+      if (gathered_.is_full()) return false;
+      add(beside);
+    }
+    return true;
+  };
+  const auto may_go_on = [this] { return has_time_to_search(); };
+  static_cast<void>(query::NearSegment(tree_, place, place).all_within(0.0, take, may_go_on, left));
+  limit_.spend(nodes - left);
 }
 
 std::uint32_t CornersBelow::deepest_gathered() const noexcept {
@@ -243,11 +265,12 @@ std::uint32_t CornersBelow::find_farther_out(std::uint32_t turn) const noexcept 
       BoundBelow(bound, search_, normal_, offset_ + rounding_));
 }
 
-bool CornersBelow::gather() noexcept {
+bool CornersBelow::gather(std::uint64_t kept) noexcept {
   using Region = query::ConvexRegion;
   Region below(tree_, rounding_);
   below.add(normal_, offset_ + normal_.dot(tree_.origin()));
-  const std::uint64_t nodes = limit_.nodes_left() - limit_.nodes_left() / work_share_for_rest;
+  const std::uint64_t all = limit_.nodes_left();
+  const std::uint64_t nodes = all - std::max(all / work_share_for_rest, std::min(all / 2, kept));
   std::uint64_t left = nodes;
   const bool gathered_all = below.search(
       [this](tree::ChildRef, Region::Sides) {

@@ -104,8 +104,8 @@ class CornersBelow {
   [[nodiscard]] double time_to_choose() const noexcept;
   [[nodiscard]] bool has_time_to_search() const noexcept;
   [[nodiscard]] bool has_some_left() const noexcept { return limit_.nodes_left() > 0 && has_time_to_search(); }
-  /// False if they are too many, or it was ended.
-  [[nodiscard]] bool gather() noexcept;
+  /// False if they are too many, or it was ended. `kept`: nodes that are wanted afterwards, of few up to a half.
+  [[nodiscard]] bool gather(std::uint64_t kept) noexcept;
   void add(std::uint32_t corner) noexcept {
     const Vec3 place = position(corner);
     gathered_.add(search_.vertex_of(corner), corner, place, offset_ - normal_.dot(place));
@@ -114,6 +114,9 @@ class CornersBelow {
   void look_for_more(const Known& known) noexcept;
   /// Of those that the mesh has, what is below.
   void add_known(std::span<const std::uint32_t> known) noexcept;
+  /// What is below of the triangles that meet at a corner. What rolls has come on to one of theirs, and if it were held
+  /// where it was met last, which is behind it by now, it would roll faster and faster.
+  void add_beside(std::uint32_t corner) noexcept;
   /// The deepest of those that were gathered.
   [[nodiscard]] std::uint32_t deepest_gathered() const noexcept;
   /// The deepest of those with -normal . x greater than `least`, as far as there is work and time.
