@@ -43,9 +43,8 @@ class OutermostKernel {
     });
   }
 
-  /// With the greatest square of the distance from a point, across a unit vector or, if that is zero, anyhow, +
-  /// per_depth
-  /// * depth.
+  /// With the greatest square of the distance from a point plus per_depth * depth; the distance is taken across a unit
+  /// vector or, if that is zero, as it is.
   static std::uint32_t from(std::span<const EightPoints> points, const Vec3& from, const Vec3& normal, double per_depth,
                             double least_depth, std::size_t step) noexcept {
     const D from_x = D::all(from.x());
