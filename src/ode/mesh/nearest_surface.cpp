@@ -92,13 +92,18 @@ std::optional<NearestSurface> nearest_surface(const PreparedMesh& mesh, const Ve
 std::optional<NearestSurface> surface_towards(const PreparedMesh& mesh, const Vec3& point, const Vec3& place,
                                               std::uint32_t triangle, std::uint64_t most_nodes) noexcept {
   if (most_nodes == 0) return std::nullopt;
-  const double distance = (place - point).norm();
-  const Vec3 direction = (place - point) / distance;
+  // Aimed a little into the triangle: at its rim the ray might meet a neighbour that faces the other way, at the tip of
+  // a spike for one.
+  constexpr double inwards = 1e-3;  // of the way to its middle
+  const Corners corners = mesh.corners(triangle);
+  const Vec3 target = place + inwards * ((corners[0] + corners[1] + corners[2]) / 3.0 - place);
+  const double length = (target - point).norm();
+  const Vec3 direction = (target - point) / length;
   query::RayEffort effort;
-  const auto hit = query::cast_counted_ray(*mesh.shape, point, direction, distance * (1.0 + 1e-9), most_nodes, effort);
+  const auto hit = query::cast_counted_ray(*mesh.shape, point, direction, length * (1.0 + 1e-9), most_nodes, effort);
   if (!effort.finished) return std::nullopt;
-  NearestSurface met = {place, distance, triangle, unit_normal(mesh.corners(triangle)), false};
-  if (hit) {
+  NearestSurface met = {place, (place - point).norm(), triangle, unit_normal(corners), false};
+  if (hit && hit->triangle != triangle) {
     const Vec3 normal = unit_normal(mesh.corners(hit->triangle));
     met = {point + hit->distance * direction, hit->distance, hit->triangle, normal, false};
   }
