@@ -7,12 +7,11 @@
 #include <array>
 #include <cstdint>
 #include <limits>
-#include <set>
 #include <vector>
 
 #include "odds/math/random.hpp"
 #include "query/wide/searches.hpp"
-#include "support/instruction_sets.hpp"
+#include "support/each_kernel.hpp"
 
 namespace odds::query {
 namespace {
@@ -37,13 +36,7 @@ class ManySides : public ::testing::Test {
   }
   template <class Check>
   static void for_each_set(const Check& check) {
-    std::set<double (*)(std::span<const EightSides>, const Vec3&, const Vec3&) noexcept> kernels;
-    for (const InstructionSet set : testing::instruction_sets) {
-      const wide::Searches* const searches = wide::searches_for(set);
-      if (searches == nullptr) continue;  // not on this processor
-      EXPECT_TRUE(kernels.insert(searches->way_out).second);
-      check(*searches);
-    }
+    testing::for_each_instruction_set(&wide::Searches::way_out, check);
   }
 
   math::Random random{6, 1};

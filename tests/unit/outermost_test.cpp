@@ -5,13 +5,12 @@
 
 #include <cstdint>
 #include <limits>
-#include <set>
 #include <span>
 #include <vector>
 
 #include "odds/math/random.hpp"
 #include "query/wide/searches.hpp"
-#include "support/instruction_sets.hpp"
+#include "support/each_kernel.hpp"
 
 namespace odds::query {
 namespace {
@@ -50,13 +49,7 @@ class Outermost : public ::testing::Test {
   }
   template <class Check>
   static void for_each_set(const Check& check) {
-    std::set<decltype(wide::Searches::outermost_along)> kernels;
-    for (const InstructionSet set : testing::instruction_sets) {
-      const wide::Searches* const searches = wide::searches_for(set);
-      if (searches == nullptr) continue;  // not on this processor
-      EXPECT_TRUE(kernels.insert(searches->outermost_along).second);
-      check(*searches);
-    }
+    testing::for_each_instruction_set(&wide::Searches::outermost_along, check);
   }
 
   math::Random random{9, 1};
