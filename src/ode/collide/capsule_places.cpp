@@ -17,7 +17,7 @@ constexpr std::size_t most_crossings = CapsulePlaces::most / 2;
 // The share of the time after which places are no longer looked for, and after which the nearest is not, whose side is
 // then to be told.
 constexpr double time_for_places = 0.6;
-constexpr double time_for_nearest = 0.8;
+constexpr double time_for_nearest_place = 0.8;
 
 CapsulePlace place_of(const PreparedMesh& mesh, const Capsule& capsule, std::uint32_t triangle) noexcept {
   const Corners corners = mesh.corners(triangle);
@@ -39,13 +39,15 @@ std::uint32_t find_nearest(const PreparedMesh& mesh, const Capsule& capsule, con
     return d < capsule.radius ? d : std::numeric_limits<double>::infinity();
   };
   const std::uint32_t guess = capsule.guess.to_axis;
-  const bool is_guessed = guess < mesh.mesh().triangles().size() && distance(guess) < within;
-  if (is_guessed) within = distance(guess);
+  const double guessed =
+      guess < mesh.mesh().triangles().size() ? distance(guess) : std::numeric_limits<double>::infinity();
+  const bool is_guessed = guessed < within;
+  within = std::min(within, guessed);
   const std::uint64_t nodes = limit.nodes_left();
   std::uint64_t left = nodes;
   const std::uint32_t nearest = axis.nearest(
       within, axis.margin() + not_nearer * capsule.radius, distance,
-      [&] { return !limit.time_is_up(time_for_nearest); }, left, finished);
+      [&] { return !limit.time_is_up(time_for_nearest_place); }, left, finished);
   limit.spend(nodes - left);
   return nearest == query::no_feature && is_guessed ? guess : nearest;
 }

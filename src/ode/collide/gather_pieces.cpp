@@ -41,6 +41,17 @@ Vec3 inner_point(const ConvexBody& body, std::size_t octant) noexcept {
   return body.box_center() + outwards * signs_of(octant).cwiseProduct(body.box_half_extents());
 }
 
+/// From where pieces are looked for in a turn, and how far it is from there to the farthest corner of the body's box.
+struct Start {
+  Start(const ConvexBody& body, std::uint32_t turn) noexcept {
+    const std::uint32_t of_turns = turn % (octants + 1);
+    point = of_turns == 0 ? body.center() : inner_point(body, in_order[of_turns - 1]);
+    reach = (body.box_half_extents() + (point - body.box_center()).cwiseAbs()).norm();
+  }
+  Vec3 point;
+  double reach;
+};
+
 /// How many pieces there will be time for, and is room for.
 std::size_t room_in_time(const Limit& limit) noexcept {
   return static_cast<std::size_t>(std::min<std::uint64_t>(Pieces::most, limit.nodes_in_time(time_for_pieces)));
@@ -189,10 +200,8 @@ class Gathering {
   /// another inner point, then those nearest to two more, which lie opposite each other. All that is near may be beside
   /// a flat or long body: then what is in it is looked for.
   void from_inner_points() noexcept {
-    const std::size_t of_turns = turn_ % (octants + 1);
-    const Vec3 first = of_turns == 0 ? body_.center() : inner_point(body_, in_order[of_turns - 1]);
-    const Vec3 farthest = body_.box_half_extents() + (first - body_.box_center()).cwiseAbs();
-    pieces_.complete = add_nearest(first, farthest.norm(), 0.5 * time_for_pieces, EndOfShare::to_a_triangle);
+    const Start start(body_, turn_);
+    pieces_.complete = add_nearest(start.point, start.reach, 0.5 * time_for_pieces, EndOfShare::to_a_triangle);
     if (!pieces_.complete && pieces_.count == 0) {
       const std::uint64_t nodes = limit_.nodes_left() - limit_.nodes_left() / 4;  // the rest may have to push it out
       const Way way = turn_ % 2 == 0 ? Way::forwards : Way::backwards;
@@ -205,7 +214,7 @@ class Gathering {
     for (std::size_t i = 0; i < 2 && pieces_.cut_off; ++i) {
       const double share = time_for_pieces * (i == 0 ? 0.75 : 1.0);
       if (pieces_.count == Pieces::most || limit_.time_is_up(share)) continue;
-      const Vec3 next = inner_point(body_, in_order[(of_turns + i) % octants]);
+      const Vec3 next = inner_point(body_, in_order[(turn_ % (octants + 1) + i) % octants]);
       static_cast<void>(add_nearest(next, reach * body_.box_half_extents().norm(), share, 0));
     }
   }
@@ -258,10 +267,8 @@ class Gathering {
 void gather_from_within(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const ConvexBody& body,
                         std::uint32_t turn, Limit& limit, Pieces& pieces) noexcept {
   const math::Pose mesh_in_body = body_in_mesh.inverse();
-  const std::uint32_t of_turns = turn % (octants + 1);
-  const Vec3 middle = of_turns == 0 ? body.center() : inner_point(body, in_order[of_turns - 1]);
-  const Vec3 farthest = body.box_half_extents() + (middle - body.box_center()).cwiseAbs();
-  const Vec3 from = body_in_mesh * middle;
+  const Start start(body, turn);
+  const Vec3 from = body_in_mesh * start.point;
   const query::NearSegment about(*mesh.wide_tree, from, from);
   const std::uint64_t nodes = limit.nodes_left();
   std::uint64_t left = nodes;
@@ -274,7 +281,7 @@ void gather_from_within(const PreparedMesh& mesh, const math::Pose& body_in_mesh
     return true;
   };
   pieces.nearest_first = true;
-  pieces.complete = about.all_within(farthest.norm(), take, may_go_on, left);
+  pieces.complete = about.all_within(start.reach, take, may_go_on, left);
   pieces.cut_off = !pieces.complete;  // where only the room ends it, too: other turns have others
   limit.spend(nodes - left);
 }

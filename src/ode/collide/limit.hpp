@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 
 #include "odds/realtime/clock.hpp"
@@ -35,10 +34,6 @@ class Limit {
       time_ns_ -= std::clamp(1e3 * choosing_us, shortest_choice * whole_ns_, longest_choice * whole_ns_);
     }
     start_ns_ = clock_();
-    const auto units_of_time = static_cast<std::uint64_t>(std::ceil(settings.budget_us * nodes_per_us));
-    if (units_of_time < units) shared_units_ = shared_time_;
-    units = std::min(units, units_of_time);
-    begun_with_ = units;
   }
 
   /// `share` of the time, in (0, 1]: less for what has to be worked on afterwards.
@@ -99,8 +94,6 @@ class Limit {
   }
 
  private:
-  // Searches in a tree do not read the clock at each node; a node takes 10 to 50 ns where the cache holds it.
-  static constexpr double nodes_per_us = 30.0;
   // Of a short time no more than this share is kept for the ending.
   static constexpr double longest_ending = 0.4;
   static constexpr double longest_choice = 0.3;
