@@ -14,7 +14,8 @@
 namespace odds::ode {
 
 /// Shares of a collision's time after which a part of its work ends, so that what it found can be worked on: pieces are
-/// gathered, ways out are looked for, points are made; then contacts are chosen.
+/// gathered, ways out are looked for, points are made; then contacts are chosen, for which the limit keeps time of its
+/// own.
 constexpr double time_for_pieces = 0.55;
 constexpr double time_for_exits = 0.72;
 constexpr double time_for_points = 1.0;

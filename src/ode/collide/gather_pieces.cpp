@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "ode/collide/convex_patch.hpp"
-#include "ode/collide/nearest_in_time.hpp"
+#include "ode/collide/end_of_share.hpp"
 #include "ode/collide/sieve.hpp"
 #include "ode/collide/surface_above.hpp"
 #include "query/shape/near_segment.hpp"

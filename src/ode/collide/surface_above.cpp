@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "ode/collide/convex_patch.hpp"
+#include "ode/collide/end_of_share.hpp"
 #include "ode/mesh/triangle_corners.hpp"
 #include "query/shape/near_segment.hpp"
 
@@ -29,10 +30,9 @@ std::optional<Above> surface_above(const PreparedMesh& mesh, const math::Pose& b
   const Vec3 from = body_in_mesh * point;
   const Vec3 along = body_in_mesh.rotation * up;
   const double tolerance = 1e-9 * body.box_half_extents().norm();
-  constexpr int sure_nodes = 8;  // a body without any piece has nothing else
+  EndOfShare end(limit, time_for_exits, EndOfShare::to_a_triangle);  // a body without any piece has nothing else
   const std::uint64_t nodes = limit.nodes_left();
   std::uint64_t left = nodes;
-  int visited = 0;
   std::optional<Above> nearest;
   const auto take = [&](std::uint32_t triangle) {
     const double way = way_out(mesh.corners(triangle), from, along, tolerance);
@@ -41,7 +41,7 @@ std::optional<Above> surface_above(const PreparedMesh& mesh, const math::Pose& b
   };
   const query::NearSegment line(*mesh.wide_tree, from, from + most * along);
   static_cast<void>(line.all_within(
-      tolerance, take, [&] { return ++visited <= sure_nodes || !limit.time_is_up(time_for_exits); }, left));
+      tolerance, take, [&] { return !end.is_there(); }, left));
   limit.spend(nodes - left);
   return nearest;
 }
