@@ -156,6 +156,13 @@ TEST(TriangleDistanceProperty, PointsAreClosestAndZeroMeansMeeting) {
       const ClosestPoints s = closest_points_segment_triangle(b[0], b[1], a.data());
       RC_ASSERT((s.squared_distance == 0.0) == triangles_intersect(flat.data(), a.data()));
       if (s.squared_distance > 0.0) RC_ASSERT(certified(flat, a, s, size_of(a, flat)));
+      if (s.squared_distance == 0.0) {
+        RC_ASSERT(s.on_a == s.on_b);
+        // On both, but for rounding.
+        const double off = (closest_point_on_triangle(s.on_a, a.data()) - s.on_a).norm();
+        RC_ASSERT(off <= 1e-11 * size_of(a, flat));
+        RC_ASSERT((closest_point_on_triangle(s.on_a, flat.data()) - s.on_a).norm() <= 1e-11 * size_of(a, flat));
+      }
       RC_ASSERT(c.squared_distance <= s.squared_distance * (1.0 + 1e-9) + 1e-28);
     }
   }));
