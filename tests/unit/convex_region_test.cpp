@@ -52,7 +52,7 @@ TEST_P(ConvexRegions, HaveAllTrianglesThatAreNotBeyondASideAndWhatMayCutThem) {
   std::size_t whole = 0;
   for (int round = 0; round < 200; ++round) {
     const std::vector<HalfSpace> sides = any_half_spaces(random, 1 + static_cast<std::size_t>(round) % 20);
-    ConvexRegion region(*tree, rounding);
+    ConvexRegion region(*mesh, *tree, rounding);
     for (const HalfSpace& side : sides) region.add(side.normal, side.offset);
     std::vector<Sides> found(mesh->triangles().size());
     std::vector<int> times(found.size(), 0);
@@ -85,7 +85,7 @@ TEST_P(ConvexRegions, HaveAllTrianglesThatAreNotBeyondASideAndWhatMayCutThem) {
 }
 
 TEST_P(ConvexRegions, ChangeAndEndWhereTheyAreTold) {
-  ConvexRegion region(*tree, 1e-9);
+  ConvexRegion region(*mesh, *tree, 1e-9);
   region.add(Vec3::UnitX(), middle.x() + 0.3);
   region.add(Vec3::UnitX(), middle.x() - 1e300);  // nothing is within
   const auto open = [](tree::ChildRef, Sides) { return ConvexRegion::Visit::open; };

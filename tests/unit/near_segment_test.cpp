@@ -40,7 +40,7 @@ TEST_P(NearSegments, FindWhatLookingAtEachTriangleFinds) {
     std::vector<double> distances(mesh->triangles().size());
     for (std::uint32_t t = 0; t < distances.size(); ++t) distances[t] = distance(t, begin, end);
     const double least = *std::min_element(distances.begin(), distances.end());
-    const NearSegment near(*tree, begin, end);
+    const NearSegment near(*mesh, *tree, begin, end);
     std::size_t asked = 0;
     const auto counted = [&](std::uint32_t t) {
       ++asked;
@@ -88,7 +88,7 @@ TEST_P(NearSegments, FindWhatLookingAtEachTriangleFinds) {
 
 TEST_P(NearSegments, EndWhereTheyAreTold) {
   const Vec3 from = middle + Vec3(2.0, 0.3, 0.1);
-  const NearSegment near(*tree, from, from);
+  const NearSegment near(*mesh, *tree, from, from);
   const auto far = [&](std::uint32_t t) { return distance(t, from, from); };
   bool finished = true;
   std::uint64_t nodes = 2;

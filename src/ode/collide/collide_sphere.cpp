@@ -56,7 +56,7 @@ void find_places(const PreparedMesh& mesh, const Vec3& center, double radius, Li
   const auto add = [&](std::uint32_t triangle) { return add_place(mesh, center, radius, triangle, limit, places); };
   const std::uint64_t nodes = limit.nodes_left();
   std::uint64_t left = nodes;
-  places.complete = query::NearSegment(*mesh.wide_tree, center, center)
+  places.complete = query::NearSegment(mesh.mesh(), *mesh.wide_tree, center, center)
                         .all_within(
                             radius, add, [&] { return !limit.time_is_up(); }, left);
   limit.spend(nodes - left);

@@ -234,7 +234,8 @@ class Gathering {
       if (pieces_.count > 0) left -= std::min(left, nodes_a_cut_);  // until then, what is cut in vain is no work
       return may_go_on();
     };
-    const bool all = query::NearSegment(*mesh_.wide_tree, from, from).all_within(reach, take, may_go_on, left);
+    const bool all =
+        query::NearSegment(mesh_.mesh(), *mesh_.wide_tree, from, from).all_within(reach, take, may_go_on, left);
     limit_.spend(nodes - left);
     return all;
   }
@@ -269,7 +270,7 @@ void gather_from_within(const PreparedMesh& mesh, const math::Pose& body_in_mesh
   const math::Pose mesh_in_body = body_in_mesh.inverse();
   const Start start(body, turn);
   const Vec3 from = body_in_mesh * start.point;
-  const query::NearSegment about(*mesh.wide_tree, from, from);
+  const query::NearSegment about(mesh.mesh(), *mesh.wide_tree, from, from);
   const std::uint64_t nodes = limit.nodes_left();
   std::uint64_t left = nodes;
   EndOfShare late(limit, time_for_exits, EndOfShare::to_a_triangle, 1);

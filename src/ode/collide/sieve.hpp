@@ -22,7 +22,7 @@ class Sieve {
   Sieve(const PreparedMesh& mesh, const ConvexBody& body, const math::Pose& body_in_mesh) noexcept
       : box_center_(body.box_center()),
         body_in_mesh_(body_in_mesh),
-        region_(*mesh.wide_tree, rounding * body.box_half_extents().norm()) {
+        region_(mesh.mesh(), *mesh.wide_tree, rounding * body.box_half_extents().norm()) {
     // Those of an octant are asked first: they turn most away. At first they hold everything.
     for (int axis = 0; axis < 3; ++axis) region_.add(Vec3::Unit(axis), std::numeric_limits<double>::max());
     const std::span<const HalfSpace> sides = body.sides();

@@ -39,7 +39,7 @@ std::optional<Above> surface_above(const PreparedMesh& mesh, const math::Pose& b
     if (way > 0.0 && way <= (nearest ? nearest->way : most)) nearest = {triangle, way};
     return true;
   };
-  const query::NearSegment line(*mesh.wide_tree, from, from + most * along);
+  const query::NearSegment line(mesh.mesh(), *mesh.wide_tree, from, from + most * along);
   static_cast<void>(line.all_within(
       tolerance, take, [&] { return !end.is_there(); }, left));
   limit.spend(nodes - left);

@@ -32,7 +32,7 @@ Vec3 pseudo_normal(const PreparedMesh& mesh, const Vec3& point, std::uint32_t at
     touching[count++] = triangle;
     return count < touching.size();
   };
-  const query::NearSegment about(*mesh.wide_tree, point, point);
+  const query::NearSegment about(mesh.mesh(), *mesh.wide_tree, point, point);
   static_cast<void>(about.all_within(
       tolerance, take, [] { return true; }, nodes));
   if (count == touching.size()) {
@@ -68,7 +68,7 @@ std::optional<NearestSurface> nearest_surface(const PreparedMesh& mesh, const Ve
   const double guessed =
       guess < mesh.mesh().triangles().size() ? distance(guess) : std::numeric_limits<double>::infinity();
   std::uint32_t triangle =
-      query::NearSegment(*mesh.wide_tree, point, point)
+      query::NearSegment(mesh.mesh(), *mesh.wide_tree, point, point)
           .nearest(
               std::min(reach, guessed), 0.0, distance, [&] { return !deadline(); }, units, finished);
   if (triangle == query::no_feature) {

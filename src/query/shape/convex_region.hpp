@@ -7,14 +7,16 @@
 #include <cstdint>
 
 #include "odds/math/types.hpp"
+#include "odds/mesh/triangle_mesh.hpp"
 #include "odds/tree/topology.hpp"
 #include "odds/tree/wide_tree.hpp"
-#include "query/shape/prefetch.hpp"
+#include "query/wide/prefetch.hpp"
 #include "query/wide/searches.hpp"
 
 namespace odds::query {
 
-/// At most wide::HalfSpaces::most half-spaces. Not for sharing while it is changed; searching changes nothing.
+/// At most wide::HalfSpaces::most half-spaces. Mesh and tree must outlive it. Not for sharing while it is changed;
+/// searching changes nothing.
 class ConvexRegion {
  public:
   using Sides = wide::HalfSpaces::Sides;  ///< a bit for each half-space, in the order of `add`
@@ -22,7 +24,8 @@ class ConvexRegion {
   enum class Way : std::uint8_t { forwards, backwards };
 
   /// `rounding`: what half-spaces and the mesh may be off against each other, metres.
-  ConvexRegion(const tree::WideTree& tree, double rounding) noexcept : tree_(tree) {
+  ConvexRegion(const mesh::TriangleMesh& mesh, const tree::WideTree& tree, double rounding) noexcept
+      : mesh_(mesh), tree_(tree) {
     constexpr double of_floats = 64.0 * 0x1p-24;  // a sum of eight products
     spaces_.margin = static_cast<float>(of_floats * tree.reach() + rounding);
     spaces_.well_within = 2.0F * spaces_.margin;
@@ -85,7 +88,9 @@ class ConvexRegion {
         continue;
       }
       const tree::WideLeaf& leaf = tree_.leaves()[top.child.index()];
+      prefetch_triangles(mesh_, leaf, top.child.count());
       searches.triangles_within(leaf, top.child.count(), top.center, spaces_, top.sides, within);
+      prefetch_corners(mesh_, leaf, within.lanes);
       for (unsigned lanes = within.lanes; lanes != 0;) {
         const unsigned lane = end_of(lanes, forwards);
         lanes &= ~(1U << lane);
@@ -96,6 +101,7 @@ class ConvexRegion {
   }
 
  private:
+  const mesh::TriangleMesh& mesh_;
   const tree::WideTree& tree_;
   wide::HalfSpaces spaces_;
 };

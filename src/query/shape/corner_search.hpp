@@ -11,6 +11,7 @@
 #include "odds/query/answer.hpp"
 #include "odds/tree/topology.hpp"
 #include "odds/tree/wide_tree.hpp"
+#include "query/wide/prefetch.hpp"
 #include "query/wide/searches.hpp"
 
 namespace odds::query {
@@ -33,6 +34,7 @@ class CornerSearch {
   [[nodiscard]] Vec3 place(std::uint32_t corner) const noexcept {
     return mesh_.vertices()[vertex_of(corner)] - tree_.origin();
   }
+  [[nodiscard]] const mesh::TriangleMesh& mesh() const noexcept { return mesh_; }
   /// Of the best instruction set.
   [[nodiscard]] const wide::Searches& kernels() const noexcept { return kernels_; }
   /// By so much, times a direction's length, extents along it may be off, metres.
@@ -41,8 +43,8 @@ class CornerSearch {
   /// The corner with the greatest `value(place)`, or no_feature if each is -infinity. What no value in the box of a
   /// child exceeds, or of a triangle, is said by `bounds.of(node, most)` and `bounds.of(leaf, center, most)`; -infinity
   /// leaves it out. One that is less by no more than `not_greater` may be given in its place. Each node and leaf opened
-  /// takes one from `nodes_left`; where that is 0, or `may_go_on()` is false, which the first and every eighth asks,
-  /// the best so far is given. noexcept, no allocation.
+  /// takes one from `nodes_left`; where that is 0, or `may_go_on()` is false, the best so far is given. noexcept, no
+  /// allocation.
   template <class Value, class Bounds, class MayGoOn>
   [[nodiscard]] std::uint32_t greatest(double not_greater, const Value& value, const Bounds& bounds,
                                        const MayGoOn& may_go_on, std::uint64_t& nodes_left) const noexcept;
@@ -66,8 +68,6 @@ std::uint32_t CornerSearch::greatest(double not_greater, const Value& value, con
   std::uint32_t best_corner = no_feature;
   std::array<Open, (tree::wide_lanes - 1) * (tree::deepest_level + 2)> stack;
   std::size_t size = 0;
-  constexpr std::uint64_t between_looks = 8;
-  std::uint64_t opened = 0;
   OfLanes most;
   const auto push = [&](const tree::WideNode& node) {
     bounds.of(node, most);
@@ -78,22 +78,28 @@ std::uint32_t CornerSearch::greatest(double not_greater, const Value& value, con
       std::size_t at = size++;
       for (; at > first && stack[at - 1].bound > most[lane]; --at) stack[at] = stack[at - 1];
       stack[at] = {most[lane], node.child[lane], {node.center[0][lane], node.center[1][lane], node.center[2][lane]}};
+      prefetch(tree_, node.child[lane]);
     }
   };
   push(tree_.nodes()[0]);
   while (size != 0) {
     const Open top = stack[--size];
     if (!(static_cast<double>(top.bound) > best + not_greater)) continue;
-    if (nodes_left == 0 || (opened++ % between_looks == 0 && !may_go_on())) break;
+    if (nodes_left == 0 || !may_go_on()) break;
     --nodes_left;
     if (!top.child.is_leaf()) {
       push(tree_.nodes()[top.child.node_index()]);
       continue;
     }
     const tree::WideLeaf& leaf = tree_.leaves()[top.child.index()];
+    prefetch_triangles(mesh_, leaf, top.child.count());
     bounds.of(leaf, top.center, most);
+    const auto is_greater = [&](std::uint32_t t) { return static_cast<double>(most[t]) > best + not_greater; };
+    unsigned lanes = 0;
+    for (std::uint32_t t = 0; t < top.child.count(); ++t) lanes |= is_greater(t) ? 1U << t : 0U;
+    prefetch_corners(mesh_, leaf, lanes);
     for (std::uint32_t t = 0; t < top.child.count(); ++t) {
-      if (!(static_cast<double>(most[t]) > best + not_greater)) continue;
+      if (!is_greater(t)) continue;
       for (std::uint32_t corner = 3 * leaf.triangle[t]; corner < 3 * leaf.triangle[t] + 3; ++corner) {
         const double v = value(place(corner));
         if (!(v > best)) continue;

@@ -7,17 +7,19 @@
 #include <limits>
 
 #include "odds/math/types.hpp"
+#include "odds/mesh/triangle_mesh.hpp"
 #include "odds/tree/topology.hpp"
 #include "odds/tree/wide_tree.hpp"
-#include "query/shape/prefetch.hpp"
+#include "query/wide/prefetch.hpp"
 #include "query/wide/searches.hpp"
 
 namespace odds::query {
 
-/// Made for one segment, in the mesh's frame, metres. Searching changes nothing.
+/// Made for one segment, in the mesh's frame, metres. Mesh and tree must outlive it; searching changes nothing.
 class NearSegment {
  public:
-  NearSegment(const tree::WideTree& tree, const Vec3& begin, const Vec3& end) noexcept : tree_(tree) {
+  NearSegment(const mesh::TriangleMesh& mesh, const tree::WideTree& tree, const Vec3& begin, const Vec3& end) noexcept
+      : mesh_(mesh), tree_(tree) {
     constexpr double of_floats = 16.0 * 0x1p-24;  // what the bounds of distances may be off
     const Vec3 middle = 0.5 * begin + 0.5 * end - tree.origin();
     const Vec3 half = 0.5 * end - 0.5 * begin;
@@ -102,7 +104,11 @@ class NearSegment {
       }
       const tree::WideLeaf& leaf = tree_.leaves()[top.child.index()];
       const std::uint32_t count = top.child.count();
+      prefetch_triangles(mesh_, leaf, count);
       searches.triangles_near(leaf, count, top.center, segment_, least);
+      unsigned near = 0;
+      for (std::uint32_t lane = 0; lane < count; ++lane) near |= is_near(least[lane]) ? 1U << lane : 0U;
+      prefetch_corners(mesh_, leaf, near);
       for (std::uint32_t lane = 0; lane < count; ++lane) {
         if (is_near(least[lane]) && !take(leaf.triangle[lane])) return false;
       }
@@ -110,6 +116,7 @@ class NearSegment {
     return true;
   }
 
+  const mesh::TriangleMesh& mesh_;
   const tree::WideTree& tree_;
   wide::SegmentInTree segment_;
   double margin_;

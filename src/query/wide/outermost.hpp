@@ -23,6 +23,7 @@ struct alignas(64) EightPoints {
     for (int axis = 0; axis < 3; ++axis) at[axis][lane] = point[axis];
     depth[lane] = to_depth;
   }
+  [[nodiscard]] Vec3 point(std::size_t lane) const noexcept { return {at[0][lane], at[1][lane], at[2][lane]}; }
   /// It counts nowhere.
   void leave_out(std::size_t lane) noexcept { set(lane, Vec3::Zero(), -std::numeric_limits<double>::infinity()); }
 };
