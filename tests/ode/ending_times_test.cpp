@@ -36,6 +36,28 @@ TEST(EndingTimes, AboutOneInTwentyIsLonger) {
   EXPECT_LT(longer, rounds / 5);
 }
 
+TEST(EndingTimes, AFewInAThousandAreLaterByAMicrosecond) {
+  EndingTimes times;
+  math::Random random(4, 2);
+  int later = 0;
+  constexpr int rounds = 200000;
+  for (int i = 0; i < 2 * rounds; ++i) {
+    const bool is_rare = random.uniform() < 0.03;
+    const auto took = static_cast<std::int64_t>(500.0 + (is_rare ? 2000.0 : 200.0) * random.uniform());
+    if (i >= rounds) later += took > times.of(dBoxClass) + 1000 ? 1 : 0;
+    times.note(dBoxClass, took);
+  }
+  EXPECT_GT(later, 0);
+  EXPECT_LT(later, rounds / 150) << "of which a hundredth would be, by what is usual";
+}
+
+TEST(EndingTimes, WhatIsUsualAtFirstIsNotLate) {
+  EndingTimes times;
+  for (int i = 0; i < 64; ++i) times.note(dBoxClass, 3500);
+  for (int i = 0; i < 1000; ++i) times.note(dBoxClass, 1000);
+  EXPECT_LT(times.of(dBoxClass), 1200);
+}
+
 TEST(EndingTimes, AreShortAgainWhereEndingsAre) {
   EndingTimes times;
   for (int i = 0; i < 100; ++i) times.note(dBoxClass, 3000);
