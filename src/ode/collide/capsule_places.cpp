@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "ode/mesh/triangle_corners.hpp"
 #include "query/ray/crossings.hpp"
@@ -28,28 +29,34 @@ CapsulePlace place_of(const PreparedMesh& mesh, const Capsule& capsule, std::uin
   return {closest.on_a, closest.on_b, std::sqrt(closest.squared_distance), std::sqrt(square), triangle};
 }
 
-// The nearest triangle, of those that are nearer than `within`; if the limit is reached first, the nearest of those
-// seen, the guess among them. no_feature: there is none.
-std::uint32_t find_nearest(const PreparedMesh& mesh, const Capsule& capsule, const query::NearSegment& axis,
-                           double within, Limit& limit, bool& finished) noexcept {
+// The place of the nearest triangle, of those that are nearer than `within`; if the limit is reached first, of the
+// nearest of those seen, the guess among them.
+std::optional<CapsulePlace> find_nearest(const PreparedMesh& mesh, const Capsule& capsule,
+                                         const query::NearSegment& axis, double within, Limit& limit,
+                                         bool& finished) noexcept {
   // Along one that lies on flat ground all are as near as each other, but for rounding.
   constexpr double not_nearer = 1e-12;
+  std::optional<CapsulePlace> nearest;
+  bool passed_over = false;
   const auto distance = [&](std::uint32_t t) {
-    const double d = place_of(mesh, capsule, t).distance;
-    return d < capsule.radius ? d : std::numeric_limits<double>::infinity();
+    // A leaf's triangles take as long as all that is above it.
+    passed_over = passed_over || (nearest && limit.time_is_up(time_for_nearest_place));
+    if (passed_over) return std::numeric_limits<double>::infinity();
+    const CapsulePlace place = place_of(mesh, capsule, t);
+    if (place.distance < (nearest ? nearest->distance : within)) nearest = place;
+    return place.distance;
   };
-  const std::uint32_t guess = capsule.guess.to_axis;
-  const double guessed =
-      guess < mesh.mesh().triangles().size() ? distance(guess) : std::numeric_limits<double>::infinity();
-  const bool is_guessed = guessed < within;
-  within = std::min(within, guessed);
+  if (capsule.guess.to_axis < mesh.mesh().triangles().size()) {
+    within = std::min(within, distance(capsule.guess.to_axis));
+  }
   const std::uint64_t nodes = limit.nodes_left();
   std::uint64_t left = nodes;
-  const std::uint32_t nearest = axis.nearest(
+  static_cast<void>(axis.nearest(
       within, axis.margin() + not_nearer * capsule.radius, distance,
-      [&] { return !limit.time_is_up(time_for_nearest_place); }, left, finished);
+      [&] { return !limit.time_is_up(time_for_nearest_place); }, left, finished));
+  finished = finished && !passed_over;
   limit.spend(nodes - left);
-  return nearest == query::no_feature && is_guessed ? guess : nearest;
+  return nearest;
 }
 
 // All triangles within the radius, the nearest nodes first: the box around a capsule has many that are farther. False
@@ -103,16 +110,14 @@ void add_of_many(const PreparedMesh& mesh, const Capsule& capsule, const query::
                  CapsulePlaces& places) noexcept {
   double least = capsule.radius;
   for (const CapsulePlace& place : places.span()) least = std::min(least, place.distance);
-  const std::uint32_t nearest = find_nearest(mesh, capsule, axis, least, limit, places.nearest_is_sure);
+  const std::optional<CapsulePlace> nearest = find_nearest(mesh, capsule, axis, least, limit, places.nearest_is_sure);
   places.cut_off = places.cut_off || !places.nearest_is_sure;
   // Each crossing of the axis is a way out; beside the axis, places are of use only if they are all there.
-  const bool crosses =
-      std::min(least, nearest == query::no_feature ? least : place_of(mesh, capsule, nearest).distance) <=
-      Capsule::same_place * capsule.radius;
+  const bool crosses = (nearest ? nearest->distance : least) <= Capsule::same_place * capsule.radius;
   if (crosses && !limit.time_is_up()) keep_crossings(mesh, capsule, limit, places);
-  if (nearest == query::no_feature) return;
+  if (!nearest) return;
   if (places.count == CapsulePlaces::most) --places.count;  // another of many
-  places.all[places.count++] = place_of(mesh, capsule, nearest);
+  places.all[places.count++] = *nearest;
 }
 
 void sort_nearest_first(CapsulePlaces& places) noexcept {
@@ -129,7 +134,7 @@ bool has_little_time(const Limit& limit) noexcept {
 }
 
 void find_places(const PreparedMesh& mesh, const Capsule& capsule, Limit& limit, CapsulePlaces& places) noexcept {
-  const query::NearSegment axis(*mesh.wide_tree, capsule.ends[0], capsule.ends[1]);
+  const query::NearSegment axis(mesh.mesh(), *mesh.wide_tree, capsule.ends[0], capsule.ends[1]);
   places.complete = add_all_within(mesh, capsule, axis, limit, places);
   if (!places.complete) add_of_many(mesh, capsule, axis, limit, places);
   sort_nearest_first(places);
@@ -137,7 +142,7 @@ void find_places(const PreparedMesh& mesh, const Capsule& capsule, Limit& limit,
 
 void find_nearest_place(const PreparedMesh& mesh, const Capsule& capsule, Limit& limit,
                         CapsulePlaces& places) noexcept {
-  const query::NearSegment axis(*mesh.wide_tree, capsule.ends[0], capsule.ends[1]);
+  const query::NearSegment axis(mesh.mesh(), *mesh.wide_tree, capsule.ends[0], capsule.ends[1]);
   add_of_many(mesh, capsule, axis, limit, places);
   places.complete = places.count == 0 && places.nearest_is_sure;
   sort_nearest_first(places);

@@ -1,10 +1,12 @@
 // Our class against ODE's convex geoms, which tell nothing about themselves: their arrays must be given once more.
 #include <algorithm>
+#include <cstdint>
 #include <exception>
 #include <string_view>
 #include <vector>
 
 #include "ode/collide/convex_contacts.hpp"
+#include "ode/collide/limit.hpp"
 #include "ode/geom/colliders.hpp"
 #include "ode/geom/partners.hpp"
 #include "ode/last_error.hpp"
@@ -28,13 +30,14 @@ void renew_bounds(dGeomID geom) noexcept {
 }  // namespace
 
 int collide_convex(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int skip) noexcept {
+  const std::int64_t begun_ns = Limit::now();  // to ask whether it is unchanged takes time, too
   Partner* const partner = partner_table().find(o2);
   if (partner == nullptr || partner->convex == nullptr) return collide_unsupported(o1, o2, flags, contacts, skip);
   if (!is_unchanged(*partner)) {
     count(statistics().changed_partners);
     return collide_unsupported(o1, o2, flags, contacts, skip);
   }
-  return collide_convex_body(o1, o2, *partner->convex, flags, contacts, skip);
+  return collide_convex_body(o1, o2, *partner->convex, flags, contacts, skip, begun_ns);
 }
 
 }  // namespace odds::ode

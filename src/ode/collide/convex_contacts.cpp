@@ -25,12 +25,14 @@ constexpr std::size_t most_patches = 6;
 constexpr double same_patch = 0.85;       // cosine of the largest angle to a patch's first normal, 32 degrees
 constexpr double same_direction = 0.999;  // patches that leave the same way are one manifold
 constexpr double same_place = 1e-6;       // of the body's size
-// What it takes to look for the surface over a body's lowest point, and for the lowest corners of a body with many
-// sides in all pieces.
+// What it takes to look for the surface over a body's lowest point.
 constexpr double looking_us = 3.0;
-constexpr double for_features_us = 4.0;
-// What it takes to choose eight contacts.
+// And for the lowest corners of a body with many sides in pieces, beside the pieces' own.
+constexpr double for_features_us = 8.0;
+constexpr double for_each_piece_us = 0.4;
+// What it takes to choose eight contacts; among the fewer points that there is time for of a body with many sides.
 constexpr double choosing_us = 4.0;
+constexpr double choosing_of_few_us = 0.8;
 
 struct Patch {
   std::array<const Piece*, most_pieces> pieces;
@@ -39,14 +41,20 @@ struct Patch {
   [[nodiscard]] std::span<const Piece* const> span() const noexcept { return {pieces.data(), count}; }
 };
 
-// Pieces, the largest first. They are too long to be moved about themselves.
+// Pieces, the largest first. They are too long to be moved about, or looked at again and again, themselves.
 class BySize {
  public:
   explicit BySize(const Pieces& pieces) noexcept : count_(pieces.count) {
-    for (std::size_t i = 0; i < count_; ++i) all_[i] = &pieces.all[i];
-    std::sort(all_.begin(), all_.begin() + static_cast<std::ptrdiff_t>(count_), [](const Piece* a, const Piece* b) {
-      return a->area != b->area ? a->area > b->area : a->triangle < b->triangle;
-    });
+    struct Key {
+      double area;
+      std::uint32_t triangle;
+      std::uint32_t index;
+    };
+    std::array<Key, most_pieces> keys;
+    for (std::uint32_t i = 0; i < count_; ++i) keys[i] = {pieces.all[i].area, pieces.all[i].triangle, i};
+    std::sort(keys.begin(), keys.begin() + static_cast<std::ptrdiff_t>(count_),
+              [](const Key& a, const Key& b) { return a.area != b.area ? a.area > b.area : a.triangle < b.triangle; });
+    for (std::size_t i = 0; i < count_; ++i) all_[i] = &pieces.all[keys[i].index];
   }
   [[nodiscard]] std::span<const Piece* const> span() const noexcept { return {all_.data(), count_}; }
 
@@ -93,7 +101,8 @@ bool add_corners(const Piece& piece, const Vec3& direction, const ConvexBody& bo
 void add_points(const Patch& patch, const Vec3& direction, const ConvexBody& body, bool ridges, const Limit& limit,
                 ManifoldPoints& points) noexcept {
   Features features;
-  if (has_many_sides(body) && !limit.has_time_left(for_features_us, time_for_points)) {
+  const double takes_us = for_features_us + for_each_piece_us * static_cast<double>(patch.count);
+  if (has_many_sides(body) && !limit.has_time_left(takes_us, time_for_points)) {
     features.add_corner(body.farthest(-direction));  // only the deepest, if it is below a face
     ridges = false;
   } else {
@@ -113,7 +122,7 @@ void add_points(const Patch& patch, const Vec3& direction, const ConvexBody& bod
   }
   if (!is_late) return;
   // Neighbours stand beside each other: a few from all over hold the body, the next ones on one side only.
-  constexpr std::size_t few = 8;
+  const std::size_t few = std::min<std::size_t>(8, pieces.size());
   for (std::size_t i = 0; i < few; ++i) {
     if (!add_corners(*pieces[i * pieces.size() / few], direction, body, limit, points)) return;
   }
@@ -410,7 +419,7 @@ Seen write_convex_contacts(const PreparedMesh& mesh, const math::Pose& mesh_in_w
 }
 
 int collide_convex_body(dGeomID mesh, dGeomID partner, const ConvexBody& body, int flags, dContactGeom* contacts,
-                        int skip) noexcept {
+                        int skip, std::optional<std::int64_t> begun_ns) noexcept {
   count(statistics().primitive_queries);
   GeomData& data = own_data(mesh);
   const std::optional<math::Pose> mesh_in_world = world_pose(mesh);
@@ -419,7 +428,7 @@ int collide_convex_body(dGeomID mesh, dGeomID partner, const ConvexBody& body, i
     count(statistics().bad_poses);
     return 0;
   }
-  Limit limit(data, dGeomGetClass(partner), choosing_us);
+  Limit limit(data, dGeomGetClass(partner), has_many_sides(body) ? choosing_of_few_us : choosing_us, begun_ns);
   const int room = room_for(flags, data.settings.max_contacts);
   ContactWriter writer(mesh, partner, room, contacts, skip);
   const RestingContacts::Question question{partner, dGeomGetClass(partner), body.number(), body.box_half_extents(),

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "odds/math/pose.hpp"
 #include "ode/collide/contact_writer.hpp"
@@ -26,9 +27,9 @@ enum class Seen : std::uint8_t {
                                          const math::Pose& body_in_world, const ConvexBody& body, std::uint32_t turn,
                                          Limit& limit, ContactWriter& writer, int room) noexcept;
 
-/// The whole of a collider function: the mesh's pose and settings, the limit, the counters. `body_in_world` may be
-/// empty (a bad pose).
+/// The whole of a collider function: the mesh's pose and settings, the limit, the counters. `begun_ns`: as of Limit.
 [[nodiscard]] int collide_convex_body(dGeomID mesh, dGeomID partner, const ConvexBody& body, int flags,
-                                      dContactGeom* contacts, int skip) noexcept;
+                                      dContactGeom* contacts, int skip,
+                                      std::optional<std::int64_t> begun_ns = std::nullopt) noexcept;
 
 }  // namespace odds::ode

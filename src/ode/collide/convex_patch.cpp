@@ -80,10 +80,23 @@ void cut_by_many(Piece& piece, const ConvexBody& body) noexcept {
   }
 }
 
-// Ways out of a patch. What bars one way bars most others that are no shorter: it is asked first.
+// Ways out of a patch. What bars one way bars most others that are no shorter: it is asked first, then the piece that
+// seems to be the deepest.
 class Ways {
  public:
-  Ways(std::span<const Piece* const> patch, const ConvexBody& body) noexcept : patch_(patch), body_(body) {}
+  Ways(std::span<const Piece* const> patch, const ConvexBody& body) noexcept
+      : patch_(patch),
+        body_(body),
+        used_((std::min(patch.size(), most_samples) + EightPoints::count - 1) / EightPoints::count) {
+    for (std::size_t i = 0; i < EightPoints::count * used_; ++i) {
+      EightPoints& eight = samples_[i / EightPoints::count];
+      if (i < patch.size()) {
+        eight.set(i % EightPoints::count, patch[i]->corners[0], 0.0);
+      } else {
+        eight.leave_out(i % EightPoints::count);
+      }
+    }
+  }
 
   // How far the body must go along `direction` to be clear of the patch; infinity if it is not less than `enough`.
   double depth_along(const Vec3& direction, double enough) noexcept {
@@ -92,6 +105,11 @@ class Ways {
     if (barring_ < patch_.size() && bars(*patch_[barring_], direction.dot(low_))) return no_way;
     low_ = body_.farthest(-direction);
     const double lowest = direction.dot(low_);
+    const std::uint32_t deepest = kernels_.outermost_along(std::span(samples_).first(used_), direction, 0.0, 0.0, 1);
+    if (deepest != query::no_feature && bars(*patch_[deepest], lowest)) {
+      barring_ = deepest;
+      return no_way;
+    }
     double depth = 0.0;
     for (std::size_t i = 0; i < patch_.size(); ++i) {
       depth = std::max(depth, depth_of(*patch_[i], direction, lowest));
@@ -103,6 +121,8 @@ class Ways {
   }
 
  private:
+  using EightPoints = query::wide::EightPoints;
+  static constexpr std::size_t most_samples = 128;
   static constexpr double no_way = std::numeric_limits<double>::infinity();
   [[nodiscard]] double depth_of(const Piece& piece, const Vec3& direction, double lowest) const noexcept {
     double depth = 0.0;
@@ -122,6 +142,9 @@ class Ways {
   const ConvexBody& body_;
   std::size_t barring_ = std::numeric_limits<std::size_t>::max();
   Vec3 low_ = Vec3::Zero();  // a point of the body
+  const query::wide::Searches& kernels_ = *query::wide::searches_for(query::InstructionSet::best);
+  std::array<EightPoints, most_samples / EightPoints::count> samples_;  // a corner of each piece, the largest first
+  std::size_t used_;
 };
 
 // Zero where they nearly cancel each other, as those of a mesh wholly within the body do, or of a plate that goes
@@ -195,8 +218,9 @@ Exit shortest_exit(std::span<const Piece* const> patch, const ConvexBody& body, 
     const double facing = direction.dot(mean);
     if (!faces_all_ways && facing < least_facing) return;
     const double enough = best.depth * clearly_shorter;
-    double depth = ways.depth_along(direction, enough);
-    if (beyond > 0.0) depth = std::max(depth, beyond / facing);
+    const double least = beyond > 0.0 ? beyond / facing : 0.0;
+    if (!(least < enough)) return;
+    const double depth = std::max(least, ways.depth_along(direction, enough));
     if (depth < enough) best = {direction, depth};
   };
   // The surface's own normals first: they win every tie.

@@ -15,16 +15,17 @@ constexpr double nothing = -std::numeric_limits<double>::infinity();
 // Relative to the mesh's size: vertices this close count as equally deep. Far above rounding, far below what a contact
 // can feel; without it the deepest corner of a flat face would jump about with the last bit.
 constexpr double same_depth = 1e-6;
-// What is kept of the time when gathering is ended by it, microseconds: for the deepest of all, and for choosing,
-// which looks at each some fifteen times, beside what the limit keeps for that.
+// What is kept of the time when gathering is ended by it, microseconds: for the deepest of all, more if there may be
+// nothing else, and for choosing, which looks at each some fifteen times, beside what the limit keeps for that.
+constexpr double time_for_any = 2.8;
 constexpr double time_for_deepest = 1.0;
 constexpr double time_for_each = 0.006;
 // One unit of work in so many is kept likewise.
 constexpr std::uint64_t work_share_for_rest = 3;
 // To what lies beside a corner, nodes.
 constexpr std::uint64_t nodes_beside = 16;
-// Of the search for the deepest, each eight nodes: it is to come to a leaf, or a body would sink in unnoticed.
-constexpr int sure_looks = 2;
+// Of the search for the deepest: it is to come to a leaf, or a body would sink in unnoticed.
+constexpr int sure_nodes = 12;
 // Of the size of what has been gathered: by so much one of many corners may be less far out than another, though by no
 // more than the depth. A body that rests is held at its corners, always the same.
 constexpr double rough_share = 0.03;
@@ -181,7 +182,7 @@ CornersBelow::CornersBelow(const PreparedMesh& mesh, const Vec3& normal, double 
       offset_(offset - normal.dot(tree_.origin())),
       rounding_(4e-15 * (std::abs(offset) + tree_.origin().norm())),
       limit_(limit) {
-  is_gathered_ = gather(known.corners.empty() ? 0 : nodes_beside);
+  is_gathered_ = gather(!known.corners.empty());
   if (!is_gathered_) look_for_more(known);
   deepest_ = deepest_gathered();
   if (are_many_) rough_ = std::min(rough_share * gathered_.size(), deepest_ == no_item ? 0.0 : depth(deepest_));
@@ -220,7 +221,7 @@ void CornersBelow::add_beside(std::uint32_t corner) noexcept {
     return true;
   };
   const auto may_go_on = [this] { return has_time_to_search(); };
-  static_cast<void>(query::NearSegment(tree_, place, place).all_within(0.0, take, may_go_on, left));
+  static_cast<void>(query::NearSegment(search_.mesh(), tree_, place, place).all_within(0.0, take, may_go_on, left));
   limit_.spend(nodes - left);
 }
 
@@ -231,7 +232,7 @@ std::uint32_t CornersBelow::deepest_gathered() const noexcept {
 template <class Value, class Bounds>
 std::uint32_t CornersBelow::search_over(double least, double excess, const Value& value,
                                         const Bounds& bounds) const noexcept {
-  int looks = 0;
+  int asked = 0;
   const std::uint64_t nodes = limit_.nodes_left();
   std::uint64_t left = nodes;
   const std::uint32_t found = search_.greatest(
@@ -240,7 +241,7 @@ std::uint32_t CornersBelow::search_over(double least, double excess, const Value
         const double v = value(x);
         return v > least ? v : nothing;
       },
-      BoundOver(bounds, least + excess), [&] { return ++looks <= sure_looks || has_time_to_search(); }, left);
+      BoundOver(bounds, least + excess), [&] { return ++asked <= sure_nodes || has_time_to_search(); }, left);
   limit_.spend(nodes - left);
   return found;
 }
@@ -265,16 +266,18 @@ std::uint32_t CornersBelow::find_farther_out(std::uint32_t turn) const noexcept 
       BoundBelow(bound, search_, normal_, offset_ + rounding_));
 }
 
-bool CornersBelow::gather(std::uint64_t kept) noexcept {
+bool CornersBelow::gather(bool is_any_known) noexcept {
   using Region = query::ConvexRegion;
-  Region below(tree_, rounding_);
+  Region below(search_.mesh(), tree_, rounding_);
   below.add(normal_, offset_ + normal_.dot(tree_.origin()));
   const std::uint64_t all = limit_.nodes_left();
-  const std::uint64_t nodes = all - std::max(all / work_share_for_rest, std::min(all / 2, kept));
+  const std::uint64_t nodes =
+      all - std::max(all / work_share_for_rest, std::min(all / 2, is_any_known ? nodes_beside : 0));
   std::uint64_t left = nodes;
   const bool gathered_all = below.search(
-      [this](tree::ChildRef, Region::Sides) {
-        return limit_.has_time_left(time_for_deepest + time_to_choose()) ? Region::Visit::open : Region::Visit::end;
+      [&](tree::ChildRef, Region::Sides) {
+        const double for_deepest = is_any_known || gathered_.count() > 0 ? time_for_deepest : time_for_any;
+        return limit_.has_time_left(for_deepest + time_to_choose()) ? Region::Visit::open : Region::Visit::end;
       },
       [this](std::uint32_t triangle, Region::Sides) {
         for (std::uint32_t corner = 3 * triangle; corner < 3 * triangle + 3; ++corner) {

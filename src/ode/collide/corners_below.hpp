@@ -104,8 +104,9 @@ class CornersBelow {
   [[nodiscard]] double time_to_choose() const noexcept;
   [[nodiscard]] bool has_time_to_search() const noexcept;
   [[nodiscard]] bool has_some_left() const noexcept { return limit_.nodes_left() > 0 && has_time_to_search(); }
-  /// False if they are too many, or it was ended. `kept`: nodes that are wanted afterwards, of few up to a half.
-  [[nodiscard]] bool gather(std::uint64_t kept) noexcept;
+  /// False if they are too many, or it was ended. `is_any_known`: then what lies beside is looked for afterwards, which
+  /// takes up to a half of few nodes; else there may be nothing but the deepest.
+  [[nodiscard]] bool gather(bool is_any_known) noexcept;
   void add(std::uint32_t corner) noexcept {
     const Vec3 place = position(corner);
     gathered_.add(search_.vertex_of(corner), corner, place, offset_ - normal_.dot(place));

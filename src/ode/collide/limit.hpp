@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 
 #include "odds/realtime/clock.hpp"
 #include "ode/budget_clock.hpp"
@@ -16,8 +17,10 @@ namespace odds::ode {
 class Limit {
  public:
   /// `geom_class`: of the partner of the geom with the mesh. `choosing_us`: what is kept, of a short or a long
-  /// time a share, for choosing contacts among what was found in the time that others ask about.
-  Limit(GeomData& data, int geom_class, double choosing_us = 0.0) noexcept
+  /// time a share, for choosing contacts among what was found in the time that others ask about. `begun_ns`: when, by
+  /// now(), if that was before.
+  Limit(GeomData& data, int geom_class, double choosing_us = 0.0,
+        std::optional<std::int64_t> begun_ns = std::nullopt) noexcept
       : clock_(realtime::without_waiting(budget_clock())), endings_(data.endings), geom_class_(geom_class) {
     const Settings& own = data.settings;
     const Settings settings = within_share(own);
@@ -33,8 +36,10 @@ class Limit {
     if (choosing_us > 0.0) {
       time_ns_ -= std::clamp(1e3 * choosing_us, shortest_choice * whole_ns_, longest_choice * whole_ns_);
     }
-    start_ns_ = clock_();
+    start_ns_ = begun_ns ? *begun_ns : clock_();
   }
+
+  [[nodiscard]] static std::int64_t now() noexcept { return realtime::without_waiting(budget_clock())(); }
 
   /// `share` of the time, in (0, 1]: less for what has to be worked on afterwards.
   [[nodiscard]] bool time_is_up(double share = 1.0) const noexcept { return timed_ && clock_() >= end_ns(share); }

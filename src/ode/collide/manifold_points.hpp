@@ -51,13 +51,16 @@ struct ManifoldPoints {
     };
     std::array<Ranked, most_points + most_tips> ranked;
     for (std::uint32_t i = 0; i < count; ++i) ranked[i] = {all[i].depth, i};
-    std::sort(ranked.begin(), ranked.begin() + count, [](const Ranked& a, const Ranked& b) {
-      return a.depth != b.depth ? a.depth > b.depth : a.index < b.index;
-    });
+    // A heap, the deepest on top: where time ends it, most need not be sorted.
+    const auto comes_later = [](const Ranked& a, const Ranked& b) {
+      return a.depth != b.depth ? a.depth < b.depth : a.index > b.index;
+    };
+    std::make_heap(ranked.begin(), ranked.begin() + count, comes_later);
     std::array<ManifoldPoint, most_points + most_tips> kept;
     std::size_t kept_count = 0;
     for (std::size_t i = 0; i < count && (i % between_looks != 0 || i == 0 || may_go_on()); ++i) {
-      const ManifoldPoint& point = all[ranked[i].index];
+      std::pop_heap(ranked.begin(), ranked.begin() + (count - i), comes_later);
+      const ManifoldPoint& point = all[ranked[count - i - 1].index];
       bool hidden = false;
       for (std::size_t k = 0; k < kept_count && !hidden; ++k) {
         if (!(kept[k].depth * clearly_shallower > point.depth)) break;  // nor is any after it

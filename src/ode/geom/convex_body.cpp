@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "query/wide/searches.hpp"
+
 namespace odds::ode {
 namespace {
 
@@ -18,8 +20,10 @@ constexpr double refinement_tolerance = 1e-7;  // of the body's size
 // A hull of more corners takes longer to search than its direction is worth.
 constexpr std::size_t most_hull_corners = 256;
 
+using query::wide::EightPoints;
+
 struct Hull {
-  std::span<const Piece* const> patch;
+  std::span<const EightPoints> corners;
   Vec3 middle;
   double scale;
 };
@@ -55,18 +59,12 @@ void body_center(const void* self, ccd_vec3_t* center) noexcept {
 
 void hull_support(const void* self, const ccd_vec3_t* direction, ccd_vec3_t* point) noexcept {
   const auto& hull = *static_cast<const Hull*>(self);
-  const Vec3 along = from_ccd(*direction);
-  const Vec3* best = &hull.middle;
-  double greatest = -std::numeric_limits<double>::infinity();
-  for (const Piece* piece : hull.patch) {
-    for (std::size_t i = 0; i < piece->count; ++i) {
-      const double value = along.dot(piece->corners[i]);
-      if (value <= greatest) continue;
-      greatest = value;
-      best = &piece->corners[i];
-    }
-  }
-  to_ccd(hull.scale * *best, point);
+  const query::wide::Searches& kernels = *query::wide::searches_for(query::InstructionSet::best);
+  const std::uint32_t best = kernels.outermost_along(hull.corners, from_ccd(*direction), 0.0, 0.0, 1);
+  const Vec3 corner = best == query::no_feature
+                          ? hull.middle
+                          : hull.corners[best / EightPoints::count].point(best % EightPoints::count);
+  to_ccd(hull.scale * corner, point);
 }
 
 void hull_center(const void* self, ccd_vec3_t* center) noexcept {
@@ -88,16 +86,25 @@ double ConvexBody::way_through(const Vec3& point, const Vec3& direction) const n
 }
 
 void add_refined_exit(const ConvexBody& body, std::span<const Piece* const> patch, ExitList& exits) noexcept {
+  std::array<EightPoints, most_hull_corners / EightPoints::count> eights;
   std::size_t corners = 0;
   Vec3 sum = Vec3::Zero();
   for (const Piece* piece : patch) {
-    for (std::size_t i = 0; i < piece->count; ++i) sum += piece->corners[i];
-    corners += piece->count;
+    if (corners + piece->count > most_hull_corners) return;
+    for (const Vec3& corner : std::span(piece->corners).first(piece->count)) {
+      sum += corner;
+      eights[corners / EightPoints::count].set(corners % EightPoints::count, corner, 0.0);
+      ++corners;
+    }
   }
-  if (corners == 0 || corners > most_hull_corners) return;
+  if (corners == 0) return;
+  for (std::size_t i = corners; i % EightPoints::count != 0; ++i) {
+    eights[i / EightPoints::count].leave_out(i % EightPoints::count);
+  }
   const double size = body.box_half_extents().norm();
   const double scale = scale_of(size);
-  const Hull hull = {patch, sum / static_cast<double>(corners), scale};
+  const Hull hull = {std::span(eights).first((corners + EightPoints::count - 1) / EightPoints::count),
+                     sum / static_cast<double>(corners), scale};
   ccd_t settings;
   CCD_INIT(&settings);
   settings.support1 = &body_support;

@@ -17,18 +17,18 @@ struct HalfSpace {
 };
 
 /// A triangle cut by the sides of a body, in the body's frame. Not set at first: a collision has room for more than a
-/// hundred, and little time.
+/// hundred, and little time. What most have comes first, and so from few lines of the cache.
 struct Piece {
   static constexpr std::size_t most_corners = 24;  ///< further corners are left out
   static constexpr std::int16_t own_edge = -1;
-  std::array<Vec3, most_corners> corners;
-  std::array<std::int16_t, most_corners> side;  ///< of the edge from corner i on: the side of the body that cut it, or
-                                                ///< own_edge for an edge of the triangle
-  std::size_t count;
   Vec3 normal;         ///< unit, of the triangle
   double area;         ///< of the piece
   double plane_depth;  ///< of the body's lowest point below the plane of the triangle
+  std::size_t count;
   std::uint32_t triangle;
+  std::array<std::int16_t, most_corners> side;  ///< of the edge from corner i on: the side of the body that cut it, or
+                                                ///< own_edge for an edge of the triangle
+  std::array<Vec3, most_corners> corners;
 };
 
 /// Directions in which a body may leave a patch of surface.
