@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -111,6 +112,53 @@ TEST_P(NearSegments, EndWhereTheyAreTold) {
 
 INSTANTIATE_TEST_SUITE_P(About, NearSegments, ::testing::Values(0.0, 1e3, -1e6));
 
+// Slivers, whose normals are rounding; sizes the squares of whose squares underflow or overflow.
+TEST(NearSegmentKernels, BoundsOfTrianglesAreNoMoreThanDistances) {
+  math::Random random(9, 3);
+  double sum_of_bounds = 0.0;
+  double sum_of_distances = 0.0;
+  for (int round = 0; round < 4000; ++round) {
+    const double scale = std::pow(10.0, round % 2 == 0 ? 0.0 : random.uniform(-16.0, 12.0));
+    const Vec3 from = scale * random.uniform(0.0, 10.0) * random.direction();
+    const Vec3 middle = from + scale * random.uniform(0.0, 4.0) * random.direction();
+    const Vec3 half = (round % 3 == 0 ? 0.0 : scale * random.uniform()) * random.direction();
+    wide::SegmentInTree segment;
+    segment.middle = middle.cast<float>();
+    segment.half = half.cast<float>();
+    const float square = segment.half.squaredNorm();
+    segment.inverse_square = square > 0.0F ? 1.0F / square : 0.0F;
+    segment.inverse_length = square > 0.0F ? 1.0F / std::sqrt(square) : 0.0F;
+    alignas(64) tree::WideLeaf leaf;
+    Vec3 corners[tree::wide_lanes][3];
+    for (unsigned t = 0; t < tree::wide_lanes; ++t) {
+      const double width = t % 2 == 0 ? 1.0 : std::pow(10.0, random.uniform(-9.0, 0.0));
+      const Vec3 along = random.direction();
+      const Vec3 across = along.cross(random.direction());
+      const Vec3 first = random.uniform() * random.direction();
+      const Vec3 all[3] = {first, first + along, first + random.uniform() * along + width * across};
+      for (int c = 0; c < 3; ++c) {
+        for (int axis = 0; axis < 3; ++axis) leaf.corner[c][axis][t] = static_cast<float>(scale * all[c][axis]);
+        corners[t][c] =
+            from.cast<float>().cast<double>() + Vec3(leaf.corner[c][0][t], leaf.corner[c][1][t], leaf.corner[c][2][t]);
+      }
+    }
+    float least[tree::wide_lanes];
+    wide::searches_for(InstructionSet::portable)
+        ->triangles_near(leaf, tree::wide_lanes, from.cast<float>(), segment, least);
+    const Vec3 begin = (segment.middle - segment.half).cast<double>();
+    const Vec3 end = (segment.middle + segment.half).cast<double>();
+    for (unsigned t = 0; t < tree::wide_lanes; ++t) {
+      const double d = std::sqrt(primitive::closest_points_segment_triangle(begin, end, corners[t]).squared_distance);
+      const double bound = static_cast<double>(least[t]);
+      ASSERT_FALSE(bound > d + 16.0 * 0x1p-24 * 20.0 * scale)
+          << bound << " of " << d << " scale " << scale << ", lane " << t << ", round " << round;
+      if (round % 2 == 0) sum_of_bounds += std::max(bound, 0.0);
+      if (round % 2 == 0) sum_of_distances += d;
+    }
+  }
+  EXPECT_GT(sum_of_bounds, 0.9 * sum_of_distances);
+}
+
 TEST(NearSegmentKernels, OfEachInstructionSetGiveTheSame) {
   const wide::Searches& portable = *wide::searches_for(InstructionSet::portable);
   math::Random random(9, 1);
@@ -125,6 +173,7 @@ TEST(NearSegmentKernels, OfEachInstructionSetGiveTheSame) {
         segment.half = (nodes++ % 4 == 0 ? 0.0 : 0.4) * random.direction().cast<float>();
         const float square = segment.half.squaredNorm();
         segment.inverse_square = square > 0.0F ? 1.0F / square : 0.0F;
+        segment.inverse_length = square > 0.0F ? 1.0F / std::sqrt(square) : 0.0F;
         portable.children_near(node, segment, expected);
         searches.children_near(node, segment, own);
         for (unsigned lane = 0; lane < tree::wide_lanes; ++lane) {

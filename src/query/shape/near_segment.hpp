@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 
@@ -27,6 +28,7 @@ class NearSegment {
     segment_.half = half.cast<float>();
     const float square = segment_.half.squaredNorm();
     segment_.inverse_square = square > 0.0F ? 1.0F / square : 0.0F;
+    segment_.inverse_length = square > 0.0F ? 1.0F / std::sqrt(square) : 0.0F;
     margin_ = of_floats * (tree.reach() + middle.norm() + half.norm());
   }
 
