@@ -140,10 +140,15 @@ void find_places(const PreparedMesh& mesh, const Capsule& capsule, Limit& limit,
   sort_nearest_first(places);
 }
 
-void find_nearest_place(const PreparedMesh& mesh, const Capsule& capsule, Limit& limit,
+void find_nearest_place(const PreparedMesh& mesh, const Capsule& capsule, PartOfAxis part, Limit& limit,
                         CapsulePlaces& places) noexcept {
-  const query::NearSegment axis(mesh.mesh(), *mesh.wide_tree, capsule.ends[0], capsule.ends[1]);
+  const Vec3 step = (capsule.ends[1] - capsule.ends[0]) / part.of;
+  const Vec3 begin = capsule.ends[0] + part.number * step;
+  const Vec3 end = part.number + 1 == part.of ? capsule.ends[1] : Vec3(begin + step);
+  const query::NearSegment axis(mesh.mesh(), *mesh.wide_tree, begin, end);
   add_of_many(mesh, capsule, axis, limit, places);
+  places.nearest_is_sure = places.nearest_is_sure && part.of == 1;
+  places.cut_off = places.cut_off || part.of > 1;
   places.complete = places.count == 0 && places.nearest_is_sure;
   sort_nearest_first(places);
 }

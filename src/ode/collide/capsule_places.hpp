@@ -55,8 +55,16 @@ struct CapsulePlaces {
 /// One place for each triangle that is nearer to the axis than the radius, nearest first. noexcept, no allocation.
 void find_places(const PreparedMesh& mesh, const Capsule& capsule, Limit& limit, CapsulePlaces& places) noexcept;
 
-/// The nearest of those only, or where the axis goes through: `complete` if there is none. noexcept, no allocation.
-void find_nearest_place(const PreparedMesh& mesh, const Capsule& capsule, Limit& limit, CapsulePlaces& places) noexcept;
+/// One of several equal parts of an axis, counted from its first end.
+struct PartOfAxis {
+  std::uint32_t number = 0;
+  std::uint32_t of = 1;
+};
+
+/// The nearest of those only, or where the axis goes through: `complete` if there is none. Less than the whole axis:
+/// what is nearest to that part, or the guess, but surely neither. noexcept, no allocation.
+void find_nearest_place(const PreparedMesh& mesh, const Capsule& capsule, PartOfAxis part, Limit& limit,
+                        CapsulePlaces& places) noexcept;
 
 /// Whether no nearer triangle of `places` touches the place: otherwise it is only the rim of a neighbour, and its
 /// normal would be that of an internal edge.

@@ -39,19 +39,20 @@ struct CapsuleContact {
   std::uint32_t triangle;
 };
 
+// Which of several looks this collision is to have.
+struct Turn {
+  std::uint32_t number = 0;
+  bool others_are_known = false;  // what was found in others
+};
+
 struct CapsuleContacts {
   std::array<CapsuleContact, 2 * most_contacts> all;
   std::size_t count = 0;
   NearestToCapsule met;
-  // Whether what is nearest to the axis and to each end is surely known.
-  bool axis_is_sure = false;
+  // Of each end: whether what is nearest to it is surely known, and whether something that touches it is.
   std::array<bool, 2> end_is_sure = {false, false};
   std::array<bool, 2> end_touches = {false, false};
 
-  // One that lies on both ends and in between: there may be more, but nothing that it needs.
-  [[nodiscard]] bool hold_surely() const noexcept {
-    return axis_is_sure && end_is_sure[0] && end_is_sure[1] && end_touches[0] && end_touches[1];
-  }
   void add(const CapsuleContact& contact) noexcept {
     if (count < all.size() && contact.depth >= 0.0) all[count++] = contact;
   }
@@ -210,6 +211,22 @@ void add_end_ball(const PreparedMesh& mesh, const Capsule& capsule, std::size_t 
   contacts.add({nearest->point, out, capsule.radius - nearest->distance, nearest->triangle});
 }
 
+// An end against the triangle that was nearest to it when it was looked for last.
+void add_known_end(const PreparedMesh& mesh, const Capsule& capsule, std::size_t which,
+                   CapsuleContacts& contacts) noexcept {
+  const std::uint32_t triangle = capsule.guess.to_end[which];
+  if (triangle >= mesh.mesh().triangles().size()) return;
+  const Vec3& end = capsule.ends[which];
+  const Corners corners = mesh.corners(triangle);
+  const Vec3 place = closest_point(corners, end);
+  const Vec3 normal = unit_normal(corners);
+  const double distance = (place - end).norm();
+  const bool is_beside = distance > same_place * capsule.radius && distance < capsule.radius;
+  if (!is_beside || (mesh.closed && !(normal.dot(end - place) > 0.0))) return;
+  if (contacts.near(place, separate_end * capsule.radius)) return;
+  contacts.add({place, way_from_any(place, normal, end), capsule.radius - distance, triangle});
+}
+
 // The surface at the first place, as it is seen from the axis. The nearest point of the surface to the axis is the
 // nearest to that point of the axis, too, and its pseudo-normal tells the side.
 // Nothing if that takes long.
@@ -249,7 +266,11 @@ void add_beside(const PreparedMesh& mesh, const Capsule& capsule, CapsulePlaces&
   // The nearest place and both ends hold it, if there is no time for more.
   add_minima(mesh, capsule, places, 0, std::min<std::size_t>(places.count, 1), std::nullopt, limit, contacts);
   for (std::size_t end = 0; end < capsule.ends.size(); ++end) {
-    if (!limit.time_is_up()) add_end_ball(mesh, capsule, end, 1.0, limit, contacts);
+    if (!limit.time_is_up()) {
+      add_end_ball(mesh, capsule, end, 1.0, limit, contacts);
+    } else if (!contacts.end_touches[end]) {
+      add_known_end(mesh, capsule, end, contacts);
+    }
   }
   add_minima(mesh, capsule, places, 1, places.count, std::nullopt, limit, contacts);
 }
@@ -257,7 +278,6 @@ void add_beside(const PreparedMesh& mesh, const Capsule& capsule, CapsulePlaces&
 void add_contacts(const PreparedMesh& mesh, const Capsule& capsule, CapsulePlaces& places, Limit& limit,
                   CapsuleContacts& contacts) noexcept {
   if (places.count > 0) contacts.met.to_axis = places.all[0].triangle;
-  contacts.axis_is_sure = places.nearest_is_sure;
   if (places.count == 0 || places.all[0].distance > same_place * capsule.radius) {
     return add_beside(mesh, capsule, places, limit, contacts);
   }
@@ -266,19 +286,29 @@ void add_contacts(const PreparedMesh& mesh, const Capsule& capsule, CapsulePlace
   add_minima(mesh, capsule, places, 0, places.count, out, limit, contacts);
 }
 
+// Where there is no time to look along the whole axis, each part has its turn: what was nearest so far is known.
+PartOfAxis part_in_turn(std::uint32_t turn, const Limit& limit) noexcept {
+  constexpr std::uint32_t parts = 3;
+  constexpr std::uint64_t enough_nodes = 60;  // for an axis that lies on the ground
+  if (limit.nodes_in_time(1.0) >= enough_nodes) return {};
+  return {turn % parts, parts};
+}
+
 // Where there is hardly time for all. A capsule that lies is held by its nearest place and both ends: where there is
 // time for one of them only, each has its turn, and what was found in others is kept.
-Seen find_few_contacts(const PreparedMesh& mesh, const Capsule& capsule, std::uint32_t turn, Limit& limit,
+Seen find_few_contacts(const PreparedMesh& mesh, const Capsule& capsule, const Turn& turn, Limit& limit,
                        CapsuleContacts& found) noexcept {
   constexpr std::uint32_t turns = 3;
+  const std::uint32_t own = turn.number % turns;
   CapsulePlaces places;
-  if (turn % turns > 0) add_end_ball(mesh, capsule, turn % turns - 1, time_for_few, limit, found);
-  find_nearest_place(mesh, capsule, limit, places);
+  if (own > 0) add_end_ball(mesh, capsule, own - 1, time_for_few, limit, found);
+  const PartOfAxis part = turn.others_are_known ? part_in_turn(turn.number / turns, limit) : PartOfAxis{};
+  find_nearest_place(mesh, capsule, part, limit, places);
   add_contacts(mesh, capsule, places, limit, found);
   return places.complete && limit.units > 0 ? Seen::all : Seen::cut_off;
 }
 
-Seen find_contacts(const PreparedMesh& mesh, const Capsule& capsule, std::uint32_t turn, Limit& limit,
+Seen find_contacts(const PreparedMesh& mesh, const Capsule& capsule, const Turn& turn, Limit& limit,
                    CapsuleContacts& found) noexcept {
   const bool has_few = has_little_time(limit);
   if (has_few) {
@@ -289,7 +319,7 @@ Seen find_contacts(const PreparedMesh& mesh, const Capsule& capsule, std::uint32
   find_places(mesh, capsule, limit, places);
   if (has_few && places.cut_off) return Seen::cut_off;
   found.count = 0;
-  found.end_is_sure = {false, false};  // they are to be added again
+  found.end_is_sure = found.end_touches = {false, false};  // they are to be added again
   add_contacts(mesh, capsule, places, limit, found);
   if (places.cut_off || limit.units == 0) return Seen::cut_off;
   return places.complete ? Seen::all : Seen::what_has_room;
@@ -360,13 +390,15 @@ int collide_capsule(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, i
   }
   CapsuleContacts found;
   found.met = capsule.guess;
-  const std::uint32_t turn = is_kept ? data.resting.turn(question, capsule_in_mesh) : 0;
+  Turn turn;
+  if (is_kept) turn = {data.resting.turn(question, capsule_in_mesh), true};
   const Seen seen = find_contacts(mesh, capsule, turn, limit, found);
   if (remembers) data.met.note(o2, std::array{found.met.to_axis, found.met.to_end[0], found.met.to_end[1]});
   write(found, *mesh_in_world, writer);
   if (is_kept) {
-    // Of a capsule that rolls what is kept lies behind it, and would drive it on.
-    const bool finished = found.hold_surely() || (seen != Seen::cut_off && !limit.time_is_up());
+    // Of a capsule that rolls what is kept lies behind it, and would drive it on: only what it met last is known, and
+    // what is kept is given where nothing was found in time.
+    const bool finished = writer.count() > 0 || (seen != Seen::cut_off && !limit.time_is_up());
     settle_contacts(*mesh_in_world, capsule_in_mesh, finished, size, question, data.resting, writer);
   }
   return limit.finish(seen == Seen::all, writer.count());
