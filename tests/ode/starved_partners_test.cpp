@@ -77,6 +77,20 @@ class StarvedPartners : public WorldTest {
     return {at[0], at[1], at[2]};
   }
 
+  /// Of place and motion, over the weight, metres.
+  [[nodiscard]] double energy_as_height() const {
+    constexpr double gravity = 9.81;
+    dMass mass;
+    dBodyGetMass(body, &mass);
+    const dReal* const v = dBodyGetLinearVel(body);
+    const dReal* const w = dBodyGetAngularVel(body);
+    dVector3 own;
+    dBodyVectorFromWorld(body, w[0], w[1], w[2], own);
+    const double spin = mass.I[0] * own[0] * own[0] + mass.I[5] * own[1] * own[1] + mass.I[10] * own[2] * own[2];
+    const double speed = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+    return place().z() + 0.5 * (speed + spin / mass.mass) / gravity;
+  }
+
   dGeomID ground = nullptr;
   dBodyID body = nullptr;
   std::optional<ConvexCoin> coin;
@@ -120,16 +134,48 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& of) { return of.param.name(); });
 
 TEST_F(StarvedPartners, ACapsuleLiesOnBothEnds) {
-  for (const unsigned long units : {40UL, 80UL}) {
+  for (const unsigned long units : {24UL, 40UL, 80UL}) {
     lay(Ground::flat, units);
     put("capsule");
+    Vec3 settled = Vec3::Zero();
     for (int i = 0; i < 5000; ++i) {
       step();
       ASSERT_NEAR(degrees_from_upright(), 90.0, 0.5) << "step " << i << ", units " << units;
+      if (i == 1000) settled = place();
     }
     EXPECT_NEAR(place().z(), 0.5 * height, 1e-3);
+    EXPECT_LE((place() - settled).norm(), 1e-3) << "it rolls by itself, units " << units;
     dGeomDestroy(dBodyGetFirstGeom(body));
     dGeomDestroy(ground);
+  }
+}
+
+/// What earlier collisions found lies behind a capsule that rolls, and drove it up the hills.
+TEST_F(StarvedPartners, ACapsuleRollsUpNoHillByItself) {
+  struct Work {
+    unsigned long units;
+    double most_rise;  // metres
+  };
+  for (const auto& [units, most_rise] : {Work{40, 5e-4}, Work{80, 5e-5}}) {
+    for (const double angle : {0.3, 0.9, 2.5}) {
+      lay(Ground::hilly, units);
+      put("capsule");
+      dMatrix3 turn;
+      dRFromAxisAndAngle(turn, std::cos(angle), std::sin(angle), 0, 0.5 * std::numbers::pi);
+      dBodySetRotation(body, turn);
+      double least = 1.0;  // of its energy, as a height, metres
+      double rise = 0.0;
+      for (int i = 0; i < 5000 && place().z() > -0.05; ++i) {
+        step();
+        if (i < 1000) continue;
+        const double now = energy_as_height();
+        least = std::min(least, now);
+        rise = std::max(rise, now - least);
+      }
+      EXPECT_LE(rise, most_rise) << "units " << units << ", angle " << angle;
+      dGeomDestroy(dBodyGetFirstGeom(body));
+      dGeomDestroy(ground);
+    }
   }
 }
 
