@@ -1,6 +1,8 @@
 // Contacts held from tick to tick: they move with the bodies, and a body whose budget is short stays where it lies.
 #include "ode/geom/held_contacts.hpp"
 
+#include <algorithm>
+
 #include "odds/query/pair.hpp"
 #include "odds/realtime/clock.hpp"
 #include "ode/ode_fixture.hpp"
@@ -50,6 +52,24 @@ TEST(HeldContacts, WhatIsKeptTakesThePlaceOfAll) {
   EXPECT_EQ(held.at({}, 1.0).size(), HeldContacts::most);
   held.keep({}, {}, true, true);
   EXPECT_TRUE(held.at({}, 1.0).empty());
+}
+
+// As many as can be, found with care while a body touched on one side only, kept out what its other side sank into: it
+// tipped until a collision saw all again, which threw it back.
+TEST(HeldContacts, OfManyTheShallowestMakesRoomForADeeperOne) {
+  HeldContacts held;
+  std::vector<query::Contact> on_one_side;
+  for (std::size_t i = 0; i < HeldContacts::most; ++i) {
+    on_one_side.push_back(contact_at({-0.1, 0.1 * static_cast<double>(i), 0}, -Vec3::UnitZ(), 0.0));
+  }
+  held.keep(on_one_side, {}, true, true);
+  // About the line on which they lie: 0.4 mm at the other side.
+  const math::Pose tipped = {Eigen::AngleAxisd(0.002, Vec3::UnitY()).toRotationMatrix(), Vec3(0, 0, -0.0002)};
+  const query::Contact found[] = {contact_at({0.1, 0.3, 0}, -Vec3::UnitZ(), 0.0004)};
+  const auto given = held.with_part(found, tipped, 1.0);
+  const auto is_there = [](const query::Contact& c) { return c.position.x() > 0.05 && c.depth > 0.0003; };
+  EXPECT_TRUE(std::any_of(given.begin(), given.end(), is_there));
+  EXPECT_EQ(given.size(), HeldContacts::most);
 }
 
 TEST(HeldContacts, CareGrowsStaleWhereBodiesMove) {

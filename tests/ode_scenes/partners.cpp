@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "ode_scenes/scenes.hpp"
@@ -16,6 +17,7 @@ constexpr double settled_s = 2.0;
 constexpr double radius = 0.1;
 constexpr double height = 0.05;
 constexpr double density = 500.0;
+constexpr double gravity = 9.81;
 constexpr double most_tilt = 10.0;    // degrees; a body that rolls, as a capsule on hills, may come to lie elsewhere
 constexpr double falls_at_m = -0.15;  // the ground is nowhere so low
 constexpr Physics smooth{"ODE's defaults", 50, 0.0, 0.5, 0.5, 8};
@@ -45,7 +47,7 @@ constexpr std::array bodies{
          [](dMass* mass) { dMassSetCapsule(mass, density, 3, height, 2 * radius); }, height, true}};
 
 Run run_partner(const Body& kind, const Ground& ground, const Collider& collider) {
-  Arena arena(collider, smooth);
+  Arena arena(collider, smooth, -gravity);
   arena.add(made(ground.mesh, false), {});
   dMass mass;
   kind.weigh(&mass);
@@ -68,6 +70,8 @@ Run run_partner(const Body& kind, const Ground& ground, const Collider& collider
   Vec3 settled_axis = Vec3::UnitZ();
   double fastest_spin = 0.0;
   double turned = 0.0;
+  double least_j = std::numeric_limits<double>::infinity();
+  double rise_j = 0.0;  // of the energy, which friction can only take
   for (int i = 0; i < static_cast<int>(1000.0 * seconds) && position_of(body).z() > falls_at_m; ++i) {
     arena.step();
     if (arena.time_s() < settled_s) continue;
@@ -77,6 +81,9 @@ Run run_partner(const Body& kind, const Ground& ground, const Collider& collider
     }
     turned = std::max(turned, std::acos(std::clamp(settled_axis.dot(axis()), -1.0, 1.0)) * 180.0 / std::numbers::pi);
     fastest_spin = std::max(fastest_spin, spin_of(body).norm());
+    const double energy_j = arena.energy();
+    least_j = std::min(least_j, energy_j);
+    rise_j = std::max(rise_j, energy_j - least_j);
   }
   const double moved = (position_of(body) - settled).norm();
   const bool falls = !(position_of(body).z() > falls_at_m);
@@ -84,6 +91,7 @@ Run run_partner(const Body& kind, const Ground& ground, const Collider& collider
       {"moved after 2 s", 1e3 * moved, "mm"},
       {"tilted since", turned, "°", run.ours && !kind.lies ? std::optional<double>(most_tilt) : std::nullopt},
       {"fastest turn since", fastest_spin, "rad/s"},
+      {"energy rises since, over the weight", 1e3 * rise_j / (mass.mass * gravity), "mm"},
       {"off the ground", falls ? 1.0 : 0.0, "", kind.lies ? std::nullopt : std::optional<double>(0.0)}};
   add_common(run, arena);
   run.note = falls ? fmt::format("leaves the ground after {:.1f} s", arena.time_s())

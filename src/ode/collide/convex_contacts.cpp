@@ -395,6 +395,7 @@ Seen write_convex_contacts(const PreparedMesh& mesh, const math::Pose& mesh_in_w
   const math::Pose body_in_mesh = mesh_in_world.inverse() * body_in_world;
   Pieces pieces;
   gather_pieces(mesh, body_in_mesh, body, turn, limit, pieces);
+  bool ways_are_known = true;
   if (pieces.count == 0) {
     if (!push_out(mesh, mesh_in_world, body_in_mesh, body, pieces.cut_off, limit, writer)) pieces.cut_off = true;
   } else {
@@ -402,6 +403,7 @@ Seen write_convex_contacts(const PreparedMesh& mesh, const math::Pose& mesh_in_w
     const BySize by_size(pieces);
     const std::size_t count = group(by_size.span(), patches);
     find_exits(std::span(patches).first(count), by_size.span(), pieces.complete, body, limit);
+    ways_are_known = !limit.time_is_up(time_for_exits);
     leave_sideways(mesh, body_in_mesh, by_size.span(), body, limit, std::span(patches).first(count));
     if (!pieces.complete) {
       if (!pieces.nearest_first) {
@@ -414,7 +416,7 @@ Seen write_convex_contacts(const PreparedMesh& mesh, const math::Pose& mesh_in_w
     }
     write_manifolds(mesh, body_in_mesh, std::span(patches).first(count), body, body_in_world, limit, writer, room);
   }
-  if (pieces.cut_off || limit.units == 0) return Seen::cut_off;
+  if (pieces.cut_off || !ways_are_known || limit.units == 0) return Seen::cut_off;
   return pieces.complete ? Seen::all : Seen::what_has_room;
 }
 
@@ -446,7 +448,9 @@ int collide_convex_body(dGeomID mesh, dGeomID partner, const ConvexBody& body, i
   }
   const std::uint32_t turn = motion > 0.0 ? data.resting.turn(question, body_in_mesh) : 0;
   const Seen seen = write_convex_contacts(*data.mesh, *mesh_in_world, *body_in_world, body, turn, limit, writer, room);
-  const bool finished = seen != Seen::cut_off && !limit.time_is_up();
+  // Where only the choice of contacts was cut short, they are right, and some hold the body.
+  constexpr int enough = 3;
+  const bool finished = seen != Seen::cut_off && (writer.count() >= enough || !limit.time_is_up());
   if (holds || (finished && motion > 0.0)) {
     settle_contacts(*mesh_in_world, body_in_mesh, finished, size, question, data.resting, writer);
   }

@@ -99,11 +99,24 @@ void HeldContacts::add_one(const query::Contact& contact, bool trusted, const ma
     least = distance;
     place = i;
   }
+  if (place == most) place = shallowest_above(contact.depth, b_in_a);
   if (place == most) return;
   held_[place] = query::HeldContact(contact, b_in_a);
   complete_[place] = false;
   added_[place] = 0;
   count_ = std::max(count_, place + 1);
+}
+
+// What was made with care on one side only must not keep out what the other side sinks into.
+std::size_t HeldContacts::shallowest_above(double depth, const math::Pose& b_in_a) const noexcept {
+  std::size_t shallowest = most;
+  for (std::size_t i = 0; i < count_; ++i) {
+    const double own = held_[i].parted(b_in_a).depth;
+    if (!(own < depth)) continue;
+    depth = own;
+    shallowest = i;
+  }
+  return shallowest;
 }
 
 bool HeldContacts::is_trusted(const math::Pose& b_in_a, double size) const noexcept {

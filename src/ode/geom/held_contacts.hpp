@@ -84,6 +84,8 @@ class HeldContacts {
   void add_apart(const HeldContacts& before, const math::Pose& b_in_a, double size) noexcept;
   void add(std::span<const query::Contact> found, const math::Pose& b_in_a, double size) noexcept;
   void add_one(const query::Contact& contact, bool trusted, const math::Pose& b_in_a, double size) noexcept;
+  /// Of those that are less deep; `most`: none is.
+  [[nodiscard]] std::size_t shallowest_above(double depth, const math::Pose& b_in_a) const noexcept;
   [[nodiscard]] bool is_trusted(const math::Pose& b_in_a, double size) const noexcept;
   [[nodiscard]] bool agrees(const Vec3& normal, const math::Pose& b_in_a) const noexcept;
   void move(std::size_t from, std::size_t to) noexcept;
