@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "odds/math/random.hpp"
 #include "odds/mesh/made/terrain.hpp"
 #include "ode/known_convexes.hpp"
 #include "ode/world_fixture.hpp"
@@ -148,6 +149,36 @@ TEST_F(StarvedPartners, ACapsuleLiesOnBothEnds) {
     dGeomDestroy(dBodyGetFirstGeom(body));
     dGeomDestroy(ground);
   }
+}
+
+/// Nothing is kept of one that has met nothing yet: a part of its axis is not enough.
+TEST_F(StarvedPartners, ACapsuleFindsWhatItMeetsFirst) {
+  lay(Ground::hilly, 0);
+  const dGeomID all_of_it = ground;
+  lay(Ground::hilly, 40);
+  math::Random random(5, 1);
+  std::vector<dGeomID> capsules;  // another each time: what is known of one that touched counts for it alone
+  int touching = 0;
+  int overlooked = 0;
+  for (int i = 0; i < 60; ++i) {
+    const double angle = random.uniform(0.0, 2.0 * std::numbers::pi);
+    dMatrix3 turn;
+    dRFromAxisAndAngle(turn, std::cos(angle), std::sin(angle), 0, random.uniform(0.0, std::numbers::pi));
+    const dGeomID capsule = capsules.emplace_back(dCreateCapsule(nullptr, 0.5 * height, 2 * radius));
+    dGeomSetRotation(capsule, turn);
+    dGeomSetPosition(capsule, random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3), 0);
+    double above = 0.2;  // metres, of its middle
+    while (above > 0.0 && collide(all_of_it, capsule).empty()) {
+      above -= 0.1 * height;
+      const dReal* const at = dGeomGetPosition(capsule);
+      dGeomSetPosition(capsule, at[0], at[1], above);
+    }
+    touching += collide(all_of_it, capsule).empty() ? 0 : 1;
+    overlooked += collide(ground, capsule).empty() ? 1 : 0;
+  }
+  EXPECT_EQ(touching, 60);
+  EXPECT_EQ(overlooked, 0);
+  for (const dGeomID capsule : capsules) dGeomDestroy(capsule);
 }
 
 /// What earlier collisions found lies behind a capsule that rolls, and drove it up the hills.

@@ -42,7 +42,7 @@ struct CapsuleContact {
 // Which of several looks this collision is to have.
 struct Turn {
   std::uint32_t number = 0;
-  bool others_are_known = false;  // what was found in others
+  bool others_are_known = false;  // what was found in others: it has been looked for before
 };
 
 struct CapsuleContacts {
@@ -391,7 +391,11 @@ int collide_capsule(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, i
   CapsuleContacts found;
   found.met = capsule.guess;
   Turn turn;
-  if (is_kept) turn = {data.resting.turn(question, capsule_in_mesh), true};
+  if (is_kept) {
+    // Another one each time, also where nothing was found at this pose.
+    const std::uint32_t looks = data.met.turn(o2);
+    turn = looks > 0 ? Turn{looks, true} : Turn{data.resting.turn(question, capsule_in_mesh), false};
+  }
   const Seen seen = find_contacts(mesh, capsule, turn, limit, found);
   if (remembers) data.met.note(o2, std::array{found.met.to_axis, found.met.to_end[0], found.met.to_end[1]});
   write(found, *mesh_in_world, writer);
