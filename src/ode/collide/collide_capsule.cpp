@@ -295,7 +295,7 @@ PartOfAxis part_in_turn(std::uint32_t turn, const Limit& limit) noexcept {
 }
 
 // Where there is hardly time for all. A capsule that lies is held by its nearest place and both ends: where there is
-// time for one of them only, each has its turn, and what was found in others is kept.
+// time for one of them only, each has its turn, and what was nearest in others is known.
 Seen find_few_contacts(const PreparedMesh& mesh, const Capsule& capsule, const Turn& turn, Limit& limit,
                        CapsuleContacts& found) noexcept {
   constexpr std::uint32_t turns = 3;
