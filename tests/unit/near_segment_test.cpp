@@ -122,12 +122,7 @@ TEST(NearSegmentKernels, BoundsOfTrianglesAreNoMoreThanDistances) {
     const Vec3 from = scale * random.uniform(0.0, 10.0) * random.direction();
     const Vec3 middle = from + scale * random.uniform(0.0, 4.0) * random.direction();
     const Vec3 half = (round % 3 == 0 ? 0.0 : scale * random.uniform()) * random.direction();
-    wide::SegmentInTree segment;
-    segment.middle = middle.cast<float>();
-    segment.half = half.cast<float>();
-    const float square = segment.half.squaredNorm();
-    segment.inverse_square = square > 0.0F ? 1.0F / square : 0.0F;
-    segment.inverse_length = square > 0.0F ? 1.0F / std::sqrt(square) : 0.0F;
+    const wide::SegmentInTree segment = segment_about(middle.cast<float>(), half.cast<float>());
     alignas(64) tree::WideLeaf leaf;
     Vec3 corners[tree::wide_lanes][3];
     for (unsigned t = 0; t < tree::wide_lanes; ++t) {
@@ -169,11 +164,9 @@ TEST(NearSegmentKernels, OfEachInstructionSetGiveTheSame) {
   testing::for_each_kernel(
       &wide::Searches::children_near,
       [&](const wide::Searches& searches, const tree::WideNode& node) {
-        segment.middle = random.direction().cast<float>();
-        segment.half = (nodes++ % 4 == 0 ? 0.0 : 0.4) * random.direction().cast<float>();
-        const float square = segment.half.squaredNorm();
-        segment.inverse_square = square > 0.0F ? 1.0F / square : 0.0F;
-        segment.inverse_length = square > 0.0F ? 1.0F / std::sqrt(square) : 0.0F;
+        const Vec3 middle = random.direction();
+        const Vec3 half = (nodes++ % 4 == 0 ? 0.0 : 0.4) * random.direction();
+        segment = segment_about(middle.cast<float>(), half.cast<float>());
         portable.children_near(node, segment, expected);
         searches.children_near(node, segment, own);
         for (unsigned lane = 0; lane < tree::wide_lanes; ++lane) {

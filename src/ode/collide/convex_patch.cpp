@@ -9,6 +9,7 @@
 
 #include "ode/geom/convex_shape.hpp"
 #include "ode/mesh/triangle_corners.hpp"
+#include "query/wide/points_by_eight.hpp"
 #include "query/wide/searches.hpp"
 
 namespace odds::ode {
@@ -84,18 +85,8 @@ void cut_by_many(Piece& piece, const ConvexBody& body) noexcept {
 // seems to be the deepest.
 class Ways {
  public:
-  Ways(std::span<const Piece* const> patch, const ConvexBody& body) noexcept
-      : patch_(patch),
-        body_(body),
-        used_((std::min(patch.size(), most_samples) + EightPoints::count - 1) / EightPoints::count) {
-    for (std::size_t i = 0; i < EightPoints::count * used_; ++i) {
-      EightPoints& eight = samples_[i / EightPoints::count];
-      if (i < patch.size()) {
-        eight.set(i % EightPoints::count, patch[i]->corners[0], 0.0);
-      } else {
-        eight.leave_out(i % EightPoints::count);
-      }
-    }
+  Ways(std::span<const Piece* const> patch, const ConvexBody& body) noexcept : patch_(patch), body_(body) {
+    for (const Piece* piece : patch.first(std::min(patch.size(), most_samples))) samples_.add(piece->corners[0], 0.0);
   }
 
   // How far the body must go along `direction` to be clear of the patch; infinity if it is not less than `enough`.
@@ -105,7 +96,7 @@ class Ways {
     if (barring_ < patch_.size() && bars(*patch_[barring_], direction.dot(low_))) return no_way;
     low_ = body_.farthest(-direction);
     const double lowest = direction.dot(low_);
-    const std::uint32_t deepest = kernels_.outermost_along(std::span(samples_).first(used_), direction, 0.0, 0.0, 1);
+    const std::uint32_t deepest = kernels_.outermost_along(samples_.all(), direction, 0.0, 0.0, 1);
     if (deepest != query::no_feature && bars(*patch_[deepest], lowest)) {
       barring_ = deepest;
       return no_way;
@@ -121,7 +112,6 @@ class Ways {
   }
 
  private:
-  using EightPoints = query::wide::EightPoints;
   static constexpr std::size_t most_samples = 128;
   static constexpr double no_way = std::numeric_limits<double>::infinity();
   [[nodiscard]] double depth_of(const Piece& piece, const Vec3& direction, double lowest) const noexcept {
@@ -143,8 +133,7 @@ class Ways {
   std::size_t barring_ = std::numeric_limits<std::size_t>::max();
   Vec3 low_ = Vec3::Zero();  // a point of the body
   const query::wide::Searches& kernels_ = *query::wide::searches_for(query::InstructionSet::best);
-  std::array<EightPoints, most_samples / EightPoints::count> samples_;  // a corner of each piece, the largest first
-  std::size_t used_;
+  query::wide::PointsByEight<most_samples> samples_;  // a corner of each piece, the largest first
 };
 
 // Zero where they nearly cancel each other, as those of a mesh wholly within the body do, or of a plate that goes

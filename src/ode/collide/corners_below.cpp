@@ -335,7 +335,9 @@ bool CornersBelow::has_time_to_search() const noexcept { return limit_.has_time_
 
 double GatheredVertices::size() const noexcept {
   double square = 0.0;
-  for (std::size_t i = 1; i < count_; ++i) square = std::max(square, (position(i) - position(0)).squaredNorm());
+  for (std::size_t i = 1; i < count(); ++i) {
+    square = std::max(square, (by_eight_.point(i) - by_eight_.point(0)).squaredNorm());
+  }
   return std::sqrt(square);
 }
 

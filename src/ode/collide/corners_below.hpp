@@ -11,27 +11,23 @@
 #include "ode/collide/manifold.hpp"
 #include "ode/mesh/prepared_mesh.hpp"
 #include "query/shape/corner_search.hpp"
-#include "query/wide/outermost.hpp"
+#include "query/wide/points_by_eight.hpp"
 
 namespace odds::ode {
 
 /// Places of corners, each once: a mesh without common vertices, as STL files have it, repeats them.
 class GatheredVertices {
  public:
-  using Eight = query::wide::EightPoints;
   static constexpr std::size_t most = 512;
 
   GatheredVertices() noexcept {
     places_.fill(nobody);
     seen_.fill(query::no_feature);
   }
-  [[nodiscard]] bool is_full() const noexcept { return count_ >= most; }
-  [[nodiscard]] std::size_t count() const noexcept { return count_; }
+  [[nodiscard]] bool is_full() const noexcept { return count() >= most; }
+  [[nodiscard]] std::size_t count() const noexcept { return by_eight_.count(); }
   [[nodiscard]] std::uint32_t corner(std::size_t i) const noexcept { return corners_[i]; }
-  /// By eight, in the order in which they came.
-  [[nodiscard]] std::span<const Eight> all() const noexcept {
-    return std::span(eights_).first((count_ + Eight::count - 1) / Eight::count);
-  }
+  [[nodiscard]] std::span<const query::wide::EightPoints> all() const noexcept { return by_eight_.all(); }
   /// How far one of them is from the first, at most, metres.
   [[nodiscard]] double size() const noexcept;
 
@@ -45,32 +41,22 @@ class GatheredVertices {
         (bits_of(position.x()) * factors[0] + bits_of(position.y()) * factors[1]) + bits_of(position.z()) * factors[2];
     std::size_t place = hash >> (64 - bits);
     for (; places_[place] != nobody; place = (place + 1) % places_.size()) {
-      if (this->position(places_[place]) == position) return;
+      if (by_eight_.point(places_[place]) == position) return;
     }
-    places_[place] = static_cast<std::uint16_t>(count_);
-    if (count_ % Eight::count == 0) {
-      for (std::size_t lane = 1; lane < Eight::count; ++lane) eights_[count_ / Eight::count].leave_out(lane);
-    }
-    eights_[count_ / Eight::count].set(count_ % Eight::count, position, depth);
-    corners_[count_++] = corner;
+    places_[place] = static_cast<std::uint16_t>(count());
+    corners_[count()] = corner;
+    by_eight_.add(position, depth);
   }
 
  private:
-  [[nodiscard]] Vec3 position(std::size_t i) const noexcept {
-    const auto& at = eights_[i / Eight::count].at;
-    const std::size_t lane = i % Eight::count;
-    return {at[0][lane], at[1][lane], at[2][lane]};
-  }
-
   static constexpr int bits = 10;  // half of the places remain free
   static constexpr std::uint64_t factors[3] = {0x9E3779B97F4A7C15U, 0xC2B2AE3D27D4EB4FU, 0x165667B19E3779F9U};
   static constexpr std::uint16_t nobody = 0xFFFF;
 
-  std::array<Eight, most / Eight::count + 1> eights_;
+  query::wide::PointsByEight<most + 1> by_eight_;
   std::array<std::uint32_t, most + 1> corners_;
   std::array<std::uint16_t, std::size_t{1} << bits> places_;
   std::array<std::uint32_t, most> seen_;  ///< some of the vertices that were added, by their numbers' last bits
-  std::size_t count_ = 0;
 };
 
 /// Of {x: normal . x <= offset}; places are in the wide tree's frame, metres. They are gathered, and where they are too

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "ode/collide/manifold.hpp"
+#include "query/wide/points_by_eight.hpp"
 #include "query/wide/searches.hpp"
 
 namespace odds::ode {
@@ -79,11 +80,9 @@ class ManifoldSource {
   explicit ManifoldSource(const ManifoldPoints& points) noexcept : points_(points) {
     for (std::size_t i = 0; i < points.count; ++i) {
       const ManifoldPoint& point = points.all[i];
-      eights_[i / Eight::count].set(i % Eight::count, point.position, point.depth);
+      by_eight_.add(point.position, point.depth);
       deepest_ = std::max(deepest_, point.depth);
     }
-    for (std::size_t i = points.count; i % Eight::count != 0; ++i)
-      eights_[i / Eight::count].leave_out(i % Eight::count);
   }
   [[nodiscard]] const Vec3& position(std::uint32_t i) const noexcept { return points_.all[i].position; }
   // Of the deepest the outermost: stable where a whole face lies on the surface.
@@ -92,28 +91,22 @@ class ManifoldSource {
     Vec3 middle = Vec3::Zero();
     for (std::size_t i = 0; i < points_.count; ++i) middle += points_.all[i].position;
     middle /= static_cast<double>(std::max<std::size_t>(points_.count, 1));
-    return kernels_.outermost_from(used(), middle, Vec3::Zero(), 0.0, equally_deep * deepest_, 1);
+    return kernels_.outermost_from(by_eight_.all(), middle, Vec3::Zero(), 0.0, equally_deep * deepest_, 1);
   }
   [[nodiscard]] std::uint32_t farthest(const Vec3& from) const noexcept {
-    return kernels_.outermost_from(used(), from, points_.normal, deeper_at_one_place * deepest_, any_depth, 1);
+    return kernels_.outermost_from(by_eight_.all(), from, points_.normal, deeper_at_one_place * deepest_, any_depth, 1);
   }
   [[nodiscard]] std::uint32_t extreme(const Vec3& direction) const noexcept {
-    return kernels_.outermost_along(used(), direction, deeper_at_one_place * direction.norm(), any_depth, 1);
+    return kernels_.outermost_along(by_eight_.all(), direction, deeper_at_one_place * direction.norm(), any_depth, 1);
   }
 
  private:
-  using Eight = query::wide::EightPoints;
   static constexpr double any_depth = std::numeric_limits<double>::lowest();
-  static constexpr std::size_t most = ManifoldPoints::most_points + ManifoldPoints::most_tips;
-
-  [[nodiscard]] std::span<const Eight> used() const noexcept {
-    return std::span(eights_).first((points_.count + Eight::count - 1) / Eight::count);
-  }
 
   const ManifoldPoints& points_;
   const query::wide::Searches& kernels_ = *query::wide::searches_for(query::InstructionSet::best);
   double deepest_ = 0.0;
-  std::array<Eight, (most + Eight::count - 1) / Eight::count> eights_;
+  query::wide::PointsByEight<ManifoldPoints::most_points + ManifoldPoints::most_tips> by_eight_;
 };
 
 }  // namespace odds::ode

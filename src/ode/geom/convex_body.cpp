@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "query/wide/points_by_eight.hpp"
 #include "query/wide/searches.hpp"
 
 namespace odds::ode {
@@ -20,10 +21,8 @@ constexpr double refinement_tolerance = 1e-7;  // of the body's size
 // A hull of more corners takes longer to search than its direction is worth.
 constexpr std::size_t most_hull_corners = 256;
 
-using query::wide::EightPoints;
-
 struct Hull {
-  std::span<const EightPoints> corners;
+  const query::wide::PointsByEight<most_hull_corners>& corners;
   Vec3 middle;
   double scale;
 };
@@ -60,10 +59,8 @@ void body_center(const void* self, ccd_vec3_t* center) noexcept {
 void hull_support(const void* self, const ccd_vec3_t* direction, ccd_vec3_t* point) noexcept {
   const auto& hull = *static_cast<const Hull*>(self);
   const query::wide::Searches& kernels = *query::wide::searches_for(query::InstructionSet::best);
-  const std::uint32_t best = kernels.outermost_along(hull.corners, from_ccd(*direction), 0.0, 0.0, 1);
-  const Vec3 corner = best == query::no_feature
-                          ? hull.middle
-                          : hull.corners[best / EightPoints::count].point(best % EightPoints::count);
+  const std::uint32_t best = kernels.outermost_along(hull.corners.all(), from_ccd(*direction), 0.0, 0.0, 1);
+  const Vec3 corner = best == query::no_feature ? hull.middle : hull.corners.point(best);
   to_ccd(hull.scale * corner, point);
 }
 
@@ -86,25 +83,19 @@ double ConvexBody::way_through(const Vec3& point, const Vec3& direction) const n
 }
 
 void add_refined_exit(const ConvexBody& body, std::span<const Piece* const> patch, ExitList& exits) noexcept {
-  std::array<EightPoints, most_hull_corners / EightPoints::count> eights;
-  std::size_t corners = 0;
+  query::wide::PointsByEight<most_hull_corners> corners;
   Vec3 sum = Vec3::Zero();
   for (const Piece* piece : patch) {
-    if (corners + piece->count > most_hull_corners) return;
+    if (corners.count() + piece->count > most_hull_corners) return;
     for (const Vec3& corner : std::span(piece->corners).first(piece->count)) {
       sum += corner;
-      eights[corners / EightPoints::count].set(corners % EightPoints::count, corner, 0.0);
-      ++corners;
+      corners.add(corner, 0.0);
     }
   }
-  if (corners == 0) return;
-  for (std::size_t i = corners; i % EightPoints::count != 0; ++i) {
-    eights[i / EightPoints::count].leave_out(i % EightPoints::count);
-  }
+  if (corners.count() == 0) return;
   const double size = body.box_half_extents().norm();
   const double scale = scale_of(size);
-  const Hull hull = {std::span(eights).first((corners + EightPoints::count - 1) / EightPoints::count),
-                     sum / static_cast<double>(corners), scale};
+  const Hull hull = {corners, sum / static_cast<double>(corners.count()), scale};
   ccd_t settings;
   CCD_INIT(&settings);
   settings.support1 = &body_support;

@@ -16,6 +16,13 @@
 
 namespace odds::query {
 
+/// {middle + t * half, -1 <= t <= 1}, as kernels want it.
+[[nodiscard]] inline wide::SegmentInTree segment_about(const Vec3f& middle, const Vec3f& half) noexcept {
+  const float square = half.squaredNorm();
+  if (!(square > 0.0F)) return {middle, half};
+  return {middle, half, 1.0F / square, 1.0F / std::sqrt(square)};
+}
+
 /// Made for one segment, in the mesh's frame, metres. Mesh and tree must outlive it; searching changes nothing.
 class NearSegment {
  public:
@@ -24,11 +31,7 @@ class NearSegment {
     constexpr double of_floats = 16.0 * 0x1p-24;  // what the bounds of distances may be off
     const Vec3 middle = 0.5 * begin + 0.5 * end - tree.origin();
     const Vec3 half = 0.5 * end - 0.5 * begin;
-    segment_.middle = middle.cast<float>();
-    segment_.half = half.cast<float>();
-    const float square = segment_.half.squaredNorm();
-    segment_.inverse_square = square > 0.0F ? 1.0F / square : 0.0F;
-    segment_.inverse_length = square > 0.0F ? 1.0F / std::sqrt(square) : 0.0F;
+    segment_ = segment_about(middle.cast<float>(), half.cast<float>());
     margin_ = of_floats * (tree.reach() + middle.norm() + half.norm());
   }
 
