@@ -6,10 +6,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <variant>
 #include <vector>
 
 #include "odds/math/random.hpp"
+#include "odds/mesh/made/by_name.hpp"
 #include "odds/primitive/triangle_distance.hpp"
+#include "odds/query/shape.hpp"
+#include "query/shape_data.hpp"
 #include "support/each_kernel.hpp"
 #include "support/wavy_tree.hpp"
 
@@ -112,6 +117,43 @@ TEST_P(NearSegments, EndWhereTheyAreTold) {
 
 INSTANTIATE_TEST_SUITE_P(About, NearSegments, ::testing::Values(0.0, 1e3, -1e6));
 
+// Visited by bounds of slabs, too, surface on the far side of a solid came first: in a short time a body found none of
+// what lay beside its middle.
+TEST(NearSegment, ComesToWhatIsNearestSoon) {
+  const auto made = mesh::made::make_shape("bumpy_sphere");
+  ASSERT_TRUE(made.ok());
+  const auto mesh = std::make_shared<const mesh::TriangleMesh>(made.value());
+  const auto shape = Shape::build(mesh).value();
+  const tree::WideTree& tree = std::get<tree::WideTree>(shape->data().tree);
+  int soon = 0;
+  constexpr int points = 500;
+  for (int i = 0; i < points; ++i) {
+    math::Random random(4, static_cast<std::uint64_t>(i));
+    const Vec3 vertex = mesh->vertices()[random.below(mesh->vertices().size())];
+    const Vec3 away = random.direction();
+    const Vec3 from = vertex + random.uniform(0.0, 0.25) * mesh->size() * away;
+    const auto distance = [&](std::uint32_t triangle) {
+      const mesh::Triangle& t = mesh->triangles()[triangle];
+      const Vec3 corners[3] = {mesh->vertices()[t[0]], mesh->vertices()[t[1]], mesh->vertices()[t[2]]};
+      return (primitive::closest_point_on_triangle(from, corners) - from).norm();
+    };
+    const NearSegment near(*mesh, tree, from, from);
+    std::uint64_t nodes = 1'000'000;
+    double first = 0.0;
+    const auto take = [&](std::uint32_t triangle) {
+      first = distance(triangle);
+      return false;
+    };
+    static_cast<void>(near.all_within(
+        mesh->size(), take, [] { return true; }, nodes));
+    bool finished = false;
+    const std::uint32_t nearest = near.nearest(
+        mesh->size(), 0.0, distance, [] { return true; }, nodes, finished);
+    soon += first <= distance(nearest) + 5e-3 * mesh->size() ? 1 : 0;
+  }
+  EXPECT_GT(soon, points * 7 / 10);
+}
+
 // Slivers, whose normals are rounding; sizes the squares of whose squares underflow or overflow.
 TEST(NearSegmentKernels, BoundsOfTrianglesAreNoMoreThanDistances) {
   math::Random random(9, 3);
@@ -167,10 +209,13 @@ TEST(NearSegmentKernels, OfEachInstructionSetGiveTheSame) {
         const Vec3 middle = random.direction();
         const Vec3 half = (nodes++ % 4 == 0 ? 0.0 : 0.4) * random.direction();
         segment = segment_about(middle.cast<float>(), half.cast<float>());
-        portable.children_near(node, segment, expected);
-        searches.children_near(node, segment, own);
+        float boxes_expected[tree::wide_lanes];
+        float boxes[tree::wide_lanes];
+        portable.children_near(node, segment, expected, boxes_expected);
+        searches.children_near(node, segment, own, boxes);
         for (unsigned lane = 0; lane < tree::wide_lanes; ++lane) {
           EXPECT_EQ(own[lane], expected[lane]);
+          EXPECT_EQ(boxes[lane], boxes_expected[lane]);
           EXPECT_EQ(node.child[lane].is_nothing(), own[lane] == std::numeric_limits<float>::infinity());
         }
       },

@@ -74,6 +74,7 @@ class NearSegment {
   struct Open {
     tree::ChildRef child;
     float bound;
+    float order;
     Vec3f center;
   };
 
@@ -83,9 +84,10 @@ class NearSegment {
     std::array<Open, (tree::wide_lanes - 1) * (tree::deepest_level + 2)> stack;
     const wide::Searches& searches = *wide::searches_for(InstructionSet::best);
     const tree::WideNode& root = tree_.nodes()[0];
-    stack[0] = {root.child[0], 0.0F, {root.center[0][0], root.center[1][0], root.center[2][0]}};
+    stack[0] = {root.child[0], 0.0F, 0.0F, {root.center[0][0], root.center[1][0], root.center[2][0]}};
     std::size_t size = 1;
     float least[tree::wide_lanes];
+    float order[tree::wide_lanes];
     while (size != 0) {
       const Open top = stack[--size];
       if (!is_near(top.bound)) continue;
@@ -93,15 +95,15 @@ class NearSegment {
       --nodes_left;
       if (!top.child.is_leaf()) {
         const tree::WideNode& node = tree_.nodes()[top.child.node_index()];
-        searches.children_near(node, segment_, least);
+        searches.children_near(node, segment_, least, order);
         const std::size_t first = size;
         for (std::uint32_t lane = 0; lane < tree::wide_lanes && !node.child[lane].is_nothing(); ++lane) {
           if (!is_near(least[lane])) continue;
-          const Open child = {
-              node.child[lane], least[lane], {node.center[0][lane], node.center[1][lane], node.center[2][lane]}};
+          const Vec3f center(node.center[0][lane], node.center[1][lane], node.center[2][lane]);
+          const Open child = {node.child[lane], least[lane], order[lane], center};
           // The nearest last, for it is visited first.
           std::size_t at = size++;
-          for (; at > first && stack[at - 1].bound < child.bound; --at) stack[at] = stack[at - 1];
+          for (; at > first && stack[at - 1].order < child.order; --at) stack[at] = stack[at - 1];
           stack[at] = child;
           prefetch(tree_, child.child);
         }

@@ -23,8 +23,10 @@ struct SegmentInTree {
 template <class L>
 class NearSegmentKernel {
  public:
-  static void children(const tree::WideNode& node, const SegmentInTree& segment,
-                       float (&least)[tree::wide_lanes]) noexcept {
+  /// By boxes and slabs. `by_boxes`: by boxes alone, as children had best be visited: the slab of one that is far off
+  /// may go on to where the segment is, and that of the nearest one does not.
+  static void children(const tree::WideNode& node, const SegmentInTree& segment, float (&least)[tree::wide_lanes],
+                       float (&by_boxes)[tree::wide_lanes]) noexcept {
     const F center[3] = {L::load(node.center[0]), L::load(node.center[1]), L::load(node.center[2])};
     const F half[3] = {L::load(node.half[0]), L::load(node.half[1]), L::load(node.half[2])};
     const Part part(center, half, segment);
@@ -37,7 +39,10 @@ class NearSegmentKernel {
       reach = reach + normal * part.half[axis];
     }
     const F from_slab = L::abs(height) - L::abs(reach) - L::load(node.thickness);
-    write(L::max(part.from_box(half), from_slab), L::less_equal(L::all(0.0F), half[0]), least);
+    const F from_box = part.from_box(half);
+    const unsigned used = L::less_equal(L::all(0.0F), half[0]);
+    write(from_box, used, by_boxes);
+    write(L::max(from_box, from_slab), used, least);
   }
 
   /// The first `count` triangles of a leaf, by their boxes and planes; corners are given from `from`.

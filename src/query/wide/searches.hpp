@@ -110,8 +110,8 @@ struct Searches {
   void (*extents_of_triangles)(const tree::WideLeaf& leaf, const Vec3f& center, const Vec3f& direction,
                                Extents& extents) noexcept;
   /// How near what is in a node, in a leaf, may be to a segment.
-  void (*children_near)(const tree::WideNode& node, const SegmentInTree& segment,
-                        float (&least)[tree::wide_lanes]) noexcept;
+  void (*children_near)(const tree::WideNode& node, const SegmentInTree& segment, float (&least)[tree::wide_lanes],
+                        float (&by_boxes)[tree::wide_lanes]) noexcept;
   void (*triangles_near)(const tree::WideLeaf& leaf, unsigned count, const Vec3f& from, const SegmentInTree& segment,
                          float (&least)[tree::wide_lanes]) noexcept;
   /// Which of a body's many sides a ball is not wholly within, and the way out of the body.
