@@ -1,7 +1,9 @@
 // odds_bench_partners: how long boxes, cylinders, capsules, balls and convexes on a mesh take within budgets of
 // microseconds, and how many of them have contacts. Poses are about vertices of the mesh, turned anyhow, the same for
 // every budget. Planes let the mesh sink in by up to 1 % of its size, rays go through its vertices. Times are net of
-// the machine's stalls: of gaps between two looks at the clock, unless the same pose has one again.
+// the machine's stalls: of gaps between two looks at the clock, unless the same pose, as little of it in the caches,
+// has one again. Shorter stalls than such gaps stay in; how many the machine has, the first rows tell: they do nothing
+// but look at the clock until the budget is over.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -111,6 +113,39 @@ struct Measured {
   }
 };
 
+void print_row(const char* name, double budget_us, const Measured& m) {
+  std::printf("%-10s %10.0f %8.1f %8.1f %8.1f %8.1f %8d %8d %10d\n", name, budget_us, m.at(0.5), m.at(0.9), m.at(0.99),
+              m.at(0.999), m.stalled, m.hits, m.contacts);
+}
+
+/// What any collision within that budget would show on this machine that could end at once.
+Measured measure_clock(double budget_us, int times) {
+  NotedClock& clock = noted_clock();
+  const odds::realtime::Clock looks = clock.clock();
+  Measured measured;
+  for (int i = 0; i < times; ++i) {
+    clock.begin();
+    const std::int64_t end = looks() + static_cast<std::int64_t>(1e3 * budget_us);
+    while (looks() < end) {
+    }
+    const auto& ledger = clock.end();
+    measured.us.push_back(1e-3 * static_cast<double>(ledger.net_ns()));
+    measured.stalled += ledger.stalls() > 0 ? 1 : 0;
+  }
+  std::sort(measured.us.begin(), measured.us.end());
+  return measured;
+}
+
+/// Leaves in the nearer caches, and in those of addresses, nothing of the mesh, as other poses do.
+void forget_mesh() {
+  constexpr std::size_t line = 64;
+  static std::vector<unsigned char> other(std::size_t{2} << 20);
+  for (std::size_t i = 0; i < other.size(); i += line) {
+    volatile unsigned char& byte = other[i];
+    byte = static_cast<unsigned char>(byte + 1);
+  }
+}
+
 Measured measure(dGeomID mesh, const Body& body, const odds::mesh::TriangleMesh& shape, double size, int poses,
                  std::uint64_t seed) {
   NotedClock& clock = noted_clock();
@@ -129,7 +164,12 @@ Measured measure(dGeomID mesh, const Body& body, const odds::mesh::TriangleMesh&
     };
     const auto [ledger, count] = collide();
     const bool stalled = ledger.stalls() > 0;
-    const bool again = stalled && collide().first.stalls() > 0 && collide().first.stalls() > 0;
+    const auto has_such_a_gap = [&] {
+      constexpr std::int64_t as_long = 2;  // at least half
+      forget_mesh();
+      return as_long * collide().first.longest_gap_ns() >= ledger.longest_gap_ns();
+    };
+    const bool again = stalled && (has_such_a_gap() || has_such_a_gap());
     measured.us.push_back(1e-3 * static_cast<double>(again ? ledger.gross_ns() : ledger.net_ns()));
     measured.stalled += stalled && !again ? 1 : 0;
     measured.hits += count > 0 ? 1 : 0;
@@ -163,14 +203,19 @@ int run(std::string_view name, int poses, std::uint64_t seed) {
                          {"convex", convex.geom, put_turned},
                          {"plane", dCreatePlane(nullptr, 0, 0, 1, 0), put_plane},
                          {"ray", dCreateRay(nullptr, 4.0 * size), put_ray}};
+  constexpr double budgets_us[] = {5.0, 10.0, 20.0, 50.0, 100.0};
+  for (const double us : budgets_us) {
+    noted_clock().set_budget(us);
+    print_row("(clock)", us, measure_clock(us, poses));
+  }
+  const auto collide_within = [&](const Body& body, double us) {
+    dGeomOddsMeshSetBudget(geom.id(), std::min(us, 1e12));
+    noted_clock().set_budget(us);
+    print_row(body.name, us, measure(geom.id(), body, *shared, size, poses, seed));
+  };
   for (const Body& body : bodies) {
-    for (const double us : {5.0, 10.0, 20.0, 50.0, 100.0, std::numeric_limits<double>::infinity()}) {
-      dGeomOddsMeshSetBudget(geom.id(), std::min(us, 1e12));
-      noted_clock().set_budget(us);
-      const Measured m = measure(geom.id(), body, *shared, size, poses, seed);
-      std::printf("%-10s %10.0f %8.1f %8.1f %8.1f %8.1f %8d %8d %10d\n", body.name, us, m.at(0.5), m.at(0.9),
-                  m.at(0.99), m.at(0.999), m.stalled, m.hits, m.contacts);
-    }
+    for (const double us : budgets_us) collide_within(body, us);
+    collide_within(body, std::numeric_limits<double>::infinity());
     if (body.geom != convex.geom) dGeomDestroy(body.geom);
   }
   return 0;
