@@ -96,6 +96,12 @@ struct Cap {
   [[nodiscard]] double area() const { return 2.0 * std::numbers::pi * radius * radius * (1.0 - std::cos(angle)); }
 };
 
+FourVectors four(const Vec3& v) { return FourVectors::all(v.cast<float>()); }
+/// Four patches that are the same.
+FourPatches same(const Vec3& mean_normal, double area, const Vec3& centroid) {
+  return {Four::all(static_cast<float>(area)), four(centroid), four(mean_normal)};
+}
+
 /// Two balls touch on z, B above A; the patches of both lie aside of that.
 TEST(FacingWhereTheyTouch, IsNearerToThatOfTwoBallsThanTheNormalsOfPatchesAside) {
   const auto off = [](const Vec3& direction) { return std::acos(std::min(1.0, -direction.normalized().z())); };
@@ -106,8 +112,8 @@ TEST(FacingWhereTheyTouch, IsNearerToThatOfTwoBallsThanTheNormalsOfPatchesAside)
         const Cap b{{0.0, std::sin(aside_b), -std::cos(aside_b)}, radius_b, 0.5};
         const Vec3 centroid_a = a.mean_normal() * a.radius;
         const Vec3 centroid_b = Vec3(0, 0, 1.0 + radius_b) + b.mean_normal() * b.radius;
-        const Vec3 facing =
-            facing_where_they_touch(a.mean_normal(), a.area(), b.mean_normal(), b.area(), centroid_a - centroid_b);
+        const Vec3 facing = facing_where_they_touch(same(a.mean_normal(), a.area(), centroid_a),
+                                                    same(b.mean_normal(), b.area(), centroid_b))[2];
         EXPECT_LT(off(facing), 0.75 * off(b.mean_normal() - a.mean_normal()))
             << radius_b << " " << aside_a << " " << aside_b;
       }
@@ -118,18 +124,18 @@ TEST(FacingWhereTheyTouch, IsNearerToThatOfTwoBallsThanTheNormalsOfPatchesAside)
 TEST(FacingWhereTheyTouch, OfFlatAndOfUnknownPatchesIsTheDifferenceOfTheNormals) {
   const Vec3 up = Vec3::UnitZ();
   const Vec3 aside = Vec3(0.3, 0.0, -1.0).normalized();
-  const Vec3 flat = facing_where_they_touch(up, 0.01, aside, 0.01, Vec3(0.05, 0.0, 0.0));
+  const Vec3 zero = Vec3::Zero();
+  const Vec3 flat = facing_where_they_touch(same(up, 0.01, Vec3(0.05, 0.0, 0.0)), same(aside, 0.01, zero))[0];
   EXPECT_LT(flat.normalized().cross((aside - up).normalized()).norm(), 1e-3);
-  for (const double area : {0.0, 1e-320, std::numeric_limits<double>::infinity()}) {
-    EXPECT_EQ(facing_where_they_touch(up, area, 0.5 * aside, 0.01, Vec3(1.0, 0.0, 0.0)), 0.5 * aside - up) << area;
+  for (const double area : {0.0, 1e-44, std::numeric_limits<double>::infinity()}) {
+    const Vec3 facing = facing_where_they_touch(same(up, area, Vec3(1.0, 0.0, 0.0)), same(0.5 * aside, 0.01, zero))[3];
+    EXPECT_LT((facing - (0.5 * aside - up)).norm(), 1e-6) << area;
   }
 }
 
-/// A disc: thin, about a point.
-PatchSpread disc(const Vec3& normal, double thickness) {
-  tree::NodeStatistics statistics;
-  statistics.slab_half = static_cast<float>(thickness);
-  return PatchSpread::of(statistics, 0.5, 1.0, normal);
+/// Discs: thin, about a point.
+PatchSpreads discs(const Vec3& normal, double thickness) {
+  return PatchSpreads::of(Four::all(static_cast<float>(thickness)), Four::all(0.5F), Four::all(1.0F), four(normal));
 }
 
 TEST(WhereTheyMeet, OfTwoPlanesIsOnBoth) {
@@ -137,13 +143,14 @@ TEST(WhereTheyMeet, OfTwoPlanesIsOnBoth) {
   for (const double angle : {0.3, 1.0, 1.57}) {
     const Vec3 aslant(std::sin(angle), 0.0, std::cos(angle));
     const Vec3 beyond(0.05, 0.2, 0.03);
-    const Meeting met = where_they_meet(disc(up, 0.0), disc(aslant, 0.0), beyond);
-    EXPECT_NEAR(up.dot(met.from_a), 0.0, 5e-3);
-    EXPECT_NEAR(aslant.dot(met.from_a - beyond), 0.0, 5e-3);
-    EXPECT_NEAR(met.from_a.y(), 0.1, 1e-3) << "half-way along the line in which they meet";
-    const Meeting back = where_they_meet(disc(aslant, 0.0), disc(up, 0.0), -beyond);
-    EXPECT_LT((beyond + back.from_a - met.from_a).norm(), 1e-9);
-    EXPECT_NEAR(back.log_likelihood, met.log_likelihood, 1e-4);
+    const Meetings met = where_they_meet(discs(up, 0.0), discs(aslant, 0.0), four(beyond));
+    const Vec3 from_a = met.from_a[0];
+    EXPECT_NEAR(up.dot(from_a), 0.0, 5e-3);
+    EXPECT_NEAR(aslant.dot(from_a - beyond), 0.0, 5e-3);
+    EXPECT_NEAR(from_a.y(), 0.1, 1e-3) << "half-way along the line in which they meet";
+    const Meetings back = where_they_meet(discs(aslant, 0.0), discs(up, 0.0), four(-beyond));
+    EXPECT_LT((beyond + back.from_a[3] - from_a).norm(), 1e-6);
+    EXPECT_NEAR(back.log_likelihood(3), met.log_likelihood(0), 1e-4);
   }
 }
 
@@ -151,10 +158,10 @@ TEST(WhereTheyMeet, OfParallelSheetsIsBetweenAndTheLessLikelyTheFartherTheyAreAp
   const Vec3 up = Vec3::UnitZ();
   float last = std::numeric_limits<float>::infinity();
   for (const double apart : {0.0, 0.01, 0.03, 0.1}) {
-    const Meeting met = where_they_meet(disc(up, 0.02), disc(up, 0.02), apart * up);
-    EXPECT_NEAR(met.from_a.z(), 0.5 * apart, 1e-9);
-    EXPECT_LT(met.log_likelihood, last);
-    last = met.log_likelihood;
+    const Meetings met = where_they_meet(discs(up, 0.02), discs(up, 0.02), four(apart * up));
+    EXPECT_NEAR(met.from_a[1].z(), 0.5 * apart, 1e-4 * apart);
+    EXPECT_LT(met.log_likelihood(1), last);
+    last = met.log_likelihood(1);
   }
 }
 

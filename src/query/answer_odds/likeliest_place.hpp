@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <span>
 
 #include "odds/math/elementary.hpp"
 #include "odds/query/answer.hpp"
@@ -26,6 +28,9 @@ template <class Met, class Apart>
   constexpr double unopposed = 0.01;         // of what is flat: less, and all that is known lies beside what meets
   constexpr double least_opposition = 0.01;  // so that patches of which none faces another have a direction, too
   std::array<MetPlace, Shortlist::capacity> places;
+  std::array<PatchPair, Shortlist::capacity> patches;
+  for (std::size_t i = 0; i < list.size(); ++i) patches[i] = met.patches(list.begin()[i]);
+  find_met_places(std::span(patches).first(list.size()), met.pose(), places);
   std::array<double, Shortlist::capacity> weights;
   Contact mean;
   Vec3 position = Vec3::Zero();
@@ -35,16 +40,16 @@ template <class Met, class Apart>
   double flat = 0.0;
   std::size_t count = 0;
   for (const NodePair& pair : list) {
-    const MetPlace& place = places[count] = met.place(pair.a, pair.b);
+    const MetPlace& place = places[count];
     if (count == 0) mean.position = place.position;
     const double weight =
         static_cast<double>(math::rough_exp2(std::clamp(pair.rank, -20.0F, 4.0F) + place.log_likelihood)) *
         place.inverse_size;
     weights[count++] = weight;
     position += weight * place.position;
-    facing += weight * (both_solid ? least_opposition + place.facing.opposition : 1.0) * place.facing.direction;
+    facing += weight * (both_solid ? least_opposition + place.opposition : 1.0) * place.direction;
     sum += weight;
-    opposed += weight * place.facing.opposition;
+    opposed += weight * place.opposition;
     flat += weight * place.flatness;
   }
   if (both_solid) {

@@ -14,6 +14,7 @@ namespace odds::query {
 namespace {
 
 constexpr std::size_t sizes = 3;  ///< of nodes about a place: a leaf, about 8 and about 64 times as much
+static_assert(sizes <= Four::count);
 
 /// The smallest first. A tree that has fewer levels repeats its largest.
 using NodesAbout = std::array<const tree::NodeStatistics*, sizes>;
@@ -116,21 +117,23 @@ Vec3 direction_about(const Shape& a, const Shape& b, const wide::Searches& searc
   const Vec3 place = contact.position - meshes.origin_a();
   const auto [about_a, about_b] =
       nodes_about(a, place.cast<float>(), b, (b_in_a.inverse() * place).cast<float>(), searches);
-  double sign_a = 1.0;
-  double sign_b = 1.0;
+  float sign_a = 1.0F;
+  float sign_b = 1.0F;
   if (!a.is_solid() || !b.is_solid()) {
     const bool behind_a = is_met_from_behind(-contact.normal, about_a[0]->mean_normal.cast<double>());
     const bool behind_b = is_met_from_behind(contact.normal, b_in_a.rotation * about_b[0]->mean_normal.cast<double>());
     // A sheet has two sides; the normals of a solid, from behind, say nothing of where it pushes.
     if ((behind_a && a.is_solid()) || (behind_b && b.is_solid())) return contact.normal;
-    if (behind_a) sign_a = -1.0;
-    if (behind_b) sign_b = -1.0;
+    if (behind_a) sign_a = -1.0F;
+    if (behind_b) sign_b = -1.0F;
   }
   Vec3 sum = worth_of_triangles(meshes, contact, flatness_of(*about_a[0], *about_b[0])) * contact.normal;
-  for (std::size_t i = 0; i < sizes; ++i) {
-    const Facing facing = facing_of(*about_a[i], *about_b[i], b_in_a, sign_a, sign_b);
-    sum += facing.opposition * facing.direction;
-  }
+  const auto of = [](const NodesAbout& nodes) {
+    return FourPatches::from([&](std::size_t i) { return nodes[std::min(i, sizes - 1)]; });
+  };
+  const FourFacings facings =
+      facings_of(of(about_a).seen_from(sign_a), of(about_b).placed(math::PoseOfFour(b_in_a)).seen_from(sign_b));
+  for (std::size_t i = 0; i < sizes; ++i) sum += static_cast<double>(facings.opposition[i]) * facings.direction[i];
   const double length = sum.norm();
   return length > 1e-3 && std::isfinite(length) ? Vec3(sum / length) : contact.normal;
 }

@@ -159,11 +159,12 @@ class Encounter {
   [[nodiscard]] double smaller_radius(std::uint32_t i, std::uint32_t j) const noexcept {
     return static_cast<double>(std::min(a_.nodes()[i].radius, b_.nodes()[j].radius));
   }
-  /// Where the surfaces of the pair most probably meet.
-  [[nodiscard]] MetPlace place(std::uint32_t i, std::uint32_t j) const noexcept {
-    return met_place(a_.statistics()[i], b_.statistics()[j], static_cast<double>(a_.nodes()[i].radius),
-                     static_cast<double>(b_.nodes()[j].radius), b_in_a_);
+  /// What tells where the surfaces of a pair most probably meet.
+  [[nodiscard]] PatchPair patches(const NodePair& pair) const noexcept {
+    return {&a_.statistics()[pair.a], &b_.statistics()[pair.b], a_.nodes()[pair.a].radius, b_.nodes()[pair.b].radius};
   }
+  /// Of B's tree frame in A's.
+  [[nodiscard]] const math::Pose& pose() const noexcept { return b_in_a_; }
 
   /// Cosine between the mean normals of both nodes, times how flat they are: -1 face to face, 1 one behind the other.
   [[nodiscard]] float facing(std::uint32_t i, std::uint32_t j) const noexcept {

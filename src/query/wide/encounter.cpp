@@ -108,9 +108,8 @@ double Encounter::smaller_radius(Slot slot_a, Slot slot_b) const noexcept {
   return static_cast<double>(std::min(box(a_, slot_a).radius(), box(b_, slot_b).radius()));
 }
 
-MetPlace Encounter::place(Slot slot_a, Slot slot_b) const noexcept {
-  return met_place(a_.statistics(slot_a), b_.statistics(slot_b), static_cast<double>(box(a_, slot_a).radius()),
-                   static_cast<double>(box(b_, slot_b).radius()), meshes_.pose());
+PatchPair Encounter::patches(const NodePair& pair) const noexcept {
+  return {&a_.statistics(pair.a), &b_.statistics(pair.b), box(a_, pair.a).radius(), box(b_, pair.b).radius()};
 }
 
 }  // namespace odds::query::wide

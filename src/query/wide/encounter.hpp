@@ -95,7 +95,9 @@ class Encounter {
     return thickness_of(a_.statistics(slot_a), b_.statistics(slot_b));
   }
   [[nodiscard]] double smaller_radius(Slot slot_a, Slot slot_b) const noexcept;
-  [[nodiscard]] MetPlace place(Slot slot_a, Slot slot_b) const noexcept;
+  [[nodiscard]] PatchPair patches(const NodePair& pair) const noexcept;
+  /// Of B's tree frame in A's.
+  [[nodiscard]] const math::Pose& pose() const noexcept { return meshes_.pose(); }
 
  private:
   [[nodiscard]] static volume::Aabb box(const tree::WideTree& tree, Slot slot) noexcept;
