@@ -6,6 +6,11 @@
 #include <cstddef>
 
 #include "odds/math/pose.hpp"
+#if defined(__SSE2__)
+#include <immintrin.h>
+#elif defined(__aarch64__)
+#include <arm_neon.h>
+#endif
 
 namespace odds::math {
 
@@ -46,7 +51,13 @@ struct Four {
 /// Of each lane `a` where it is true, else `b`.
 inline Four choose(const FourTruths& which, const Four& a, const Four& b) noexcept { return {which.v ? a.v : b.v}; }
 inline Four root(const Four& a) noexcept {
+#if defined(__SSE2__)
+  return {_mm_sqrt_ps(a.v)};
+#elif defined(__aarch64__)
+  return {vsqrtq_f32(a.v)};
+#else
   return Four::from([&](std::size_t i) { return std::sqrt(a[i]); });
+#endif
 }
 /// The first of two where neither is less.
 inline Four lesser(const Four& a, const Four& b) noexcept { return choose(b < a, b, a); }
