@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 
 #include "odds/math/pose.hpp"
 #include "odds/query/answer.hpp"
@@ -41,6 +42,7 @@ class HeldContact {
   /// As it was found, metres.
   [[nodiscard]] double depth() const noexcept { return contact_.depth; }
   [[nodiscard]] const Vec3& normal() const noexcept { return contact_.normal; }
+  [[nodiscard]] std::uint32_t triangle_a() const noexcept { return contact_.triangle_a; }
   /// Its point of A's surface, in A's mesh frame.
   [[nodiscard]] const Vec3& on_a() const noexcept { return on_a_; }
   /// Its point of B's surface, in B's mesh frame.

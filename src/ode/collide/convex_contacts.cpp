@@ -354,19 +354,42 @@ bool push_out(const PreparedMesh& mesh, const math::Pose& mesh_in_world, const m
   return finished;
 }
 
+/// Whether a triangle of the mesh meets the body.
+class Meets {
+ public:
+  Meets(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const ConvexBody& body) noexcept
+      : mesh_(mesh), mesh_in_body_(body_in_mesh.inverse()), body_(body) {}
+  /// `motion` of the body, in the mesh's frame.
+  [[nodiscard]] bool operator()(std::uint32_t triangle, const Vec3& motion = Vec3::Zero()) const noexcept {
+    math::Pose mesh_in_body = mesh_in_body_;
+    mesh_in_body.translation -= mesh_in_body.rotation * motion;
+    Piece piece;
+    return cut_triangle(mesh_, triangle, mesh_in_body, body_, all_sides, piece);
+  }
+  [[nodiscard]] HeldContacts::StillMeets still() noexcept {
+    return {[](void* self, std::uint32_t triangle, const Vec3& motion) noexcept {
+              return (*static_cast<Meets*>(self))(triangle, motion);
+            },
+            this};
+  }
+
+ private:
+  const PreparedMesh& mesh_;
+  math::Pose mesh_in_body_;
+  const ConvexBody& body_;
+};
+
 // What is kept of bodies that rest; false if the contacts must be made.
-bool write_resting(const PreparedMesh& mesh, const math::Pose& mesh_in_world, const math::Pose& body_in_mesh,
-                   const ConvexBody& body, const RestingContacts::Question& question, double motion, double size,
-                   RestingContacts& resting, Limit& limit, ContactWriter& writer) noexcept {
-  const math::Pose mesh_in_body = body_in_mesh.inverse();
-  const auto meets = [&](std::uint32_t triangle) noexcept {
+bool write_resting(const Meets& meets, const math::Pose& mesh_in_world, const math::Pose& body_in_mesh,
+                   const RestingContacts::Question& question, double motion, double size, RestingContacts& resting,
+                   Limit& limit, ContactWriter& writer) noexcept {
+  const auto meets_in_time = [&](std::uint32_t triangle) noexcept {
     if (limit.units == 0 || limit.time_is_up()) return false;
     --limit.units;
-    Piece piece;
-    return cut_triangle(mesh, triangle, mesh_in_body, body, all_sides, piece);
+    return meets(triangle);
   };
   std::array<query::Contact, query::most_contacts> held;
-  const std::size_t count = resting.write(question, body_in_mesh, motion, size, meets, held);
+  const std::size_t count = resting.write(question, body_in_mesh, motion, size, meets_in_time, held);
   write_kept(std::span(held).first(count), mesh_in_world, writer);
   return count > 0;
 }
@@ -442,8 +465,8 @@ int collide_convex_body(dGeomID mesh, dGeomID partner, const ConvexBody& body, i
   if (gives_only_held()) {
     return holds ? give_kept(*mesh_in_world, body_in_mesh, size, question, data.resting, writer) : 0;
   }
-  if (write_resting(*data.mesh, *mesh_in_world, body_in_mesh, body, question, motion, size, data.resting, limit,
-                    writer)) {
+  Meets meets(*data.mesh, body_in_mesh, body);
+  if (write_resting(meets, *mesh_in_world, body_in_mesh, question, motion, size, data.resting, limit, writer)) {
     return limit.finish_carried(writer.count());
   }
   const std::uint32_t turn = motion > 0.0 ? data.resting.turn(question, body_in_mesh) : 0;
@@ -452,7 +475,7 @@ int collide_convex_body(dGeomID mesh, dGeomID partner, const ConvexBody& body, i
   constexpr int enough = 3;
   const bool finished = seen != Seen::cut_off && (writer.count() >= enough || !limit.time_is_up());
   if (holds || (finished && motion > 0.0)) {
-    settle_contacts(*mesh_in_world, body_in_mesh, finished, size, question, data.resting, writer);
+    settle_contacts(*mesh_in_world, body_in_mesh, finished, size, question, data.resting, writer, meets.still());
   }
   return limit.finish(seen == Seen::all, writer.count());
 }

@@ -18,8 +18,8 @@ void write_kept(std::span<const query::Contact> contacts, const math::Pose& mesh
 }
 
 void settle_contacts(const math::Pose& mesh_in_world, const math::Pose& body_in_mesh, bool finished, double size,
-                     const RestingContacts::Question& question, RestingContacts& resting,
-                     ContactWriter& writer) noexcept {
+                     const RestingContacts::Question& question, RestingContacts& resting, ContactWriter& writer,
+                     const HeldContacts::StillMeets& meets) noexcept {
   std::array<query::Contact, query::most_contacts> made;
   const math::Pose into_mesh = mesh_in_world.inverse();
   const auto count = static_cast<std::size_t>(writer.count());
@@ -34,7 +34,7 @@ void settle_contacts(const math::Pose& mesh_in_world, const math::Pose& body_in_
   }
   std::array<query::Contact, query::most_contacts> best;
   const std::size_t best_count =
-      resting.settle(question, std::span(made).first(count), finished, body_in_mesh, size, best);
+      resting.settle(question, std::span(made).first(count), finished, body_in_mesh, size, meets, best);
   note_kept();
   if (finished) return;  // they are what was written
   writer.clear();

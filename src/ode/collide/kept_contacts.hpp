@@ -15,10 +15,10 @@ void write_kept(std::span<const query::Contact> contacts, const math::Pose& mesh
                 ContactWriter& writer) noexcept;
 
 /// Keeps what a collision has written, whose writer's g1 is the mesh; of one that is not `finished` beside what was
-/// kept before, and then writes that instead. `size`: of the smaller body, metres.
+/// kept before, about which `meets` may be asked, and then writes that instead. `size`: of the smaller body, metres.
 void settle_contacts(const math::Pose& mesh_in_world, const math::Pose& body_in_mesh, bool finished, double size,
-                     const RestingContacts::Question& question, RestingContacts& resting,
-                     ContactWriter& writer) noexcept;
+                     const RestingContacts::Question& question, RestingContacts& resting, ContactWriter& writer,
+                     const HeldContacts::StillMeets& meets = {}) noexcept;
 
 /// Of a frame in which it is not this pair's turn: writes what is kept, where the bodies are now. Returns the number.
 int give_kept(const math::Pose& mesh_in_world, const math::Pose& body_in_mesh, double size,

@@ -20,7 +20,7 @@ std::span<const query::Contact> HeldContacts::best_of(const query::Answer& answe
   const bool rough = !measured && answer.contact_pairs < enough_pairs;
   if (answer.contacts.empty() || (rough && better_than_rough() && !still_held.empty())) return still_held;
   if (rough && !still_held.empty()) {
-    add(answer.contacts, b_in_a, size);
+    add(answer.contacts, b_in_a, size, {});
     return at(b_in_a, size);
   }
   keep(answer.contacts, b_in_a, !rough, false);
@@ -43,31 +43,43 @@ std::span<const query::Contact> HeldContacts::with_all(std::span<const query::Co
 }
 
 std::span<const query::Contact> HeldContacts::with_part(std::span<const query::Contact> found, const math::Pose& b_in_a,
-                                                        double size) noexcept {
+                                                        double size, const StillMeets& meets) noexcept {
   const std::span<const query::Contact> still_held = at(b_in_a, size, found.empty() ? most_slip_undecided : most_slip);
   if (found.empty()) return still_held;
   if (still_held.empty()) {
     keep(found, b_in_a, false, false);
     return found;
   }
-  add(found, b_in_a, size);
+  add(found, b_in_a, size, meets);
   return at(b_in_a, size);
 }
 
 /// A few pairs of triangles, of whose rim each run finds others: what they touched is kept beside what they touch now
 /// (a persistent manifold), the nearest one's place is taken where there are as many as can be. What pushes where none
-/// of those found now does was a wrong guess, or is another side; and what no run has found for a while is gone. But
-/// what was made with care stays while the bodies have hardly moved, and nothing has come deeper beside it than they
-/// have moved there since.
-void HeldContacts::add(std::span<const query::Contact> found, const math::Pose& b_in_a, double size) noexcept {
+/// of those found now does was a wrong guess, or is another side; and what no run has found for a while is gone, unless
+/// it is known to be there: a body that stands on it would sink in until it is found again. But what was made with care
+/// stays while the bodies have hardly moved, and nothing has come deeper beside it than they have moved there since.
+void HeldContacts::add(std::span<const query::Contact> found, const math::Pose& b_in_a, double size,
+                       const StillMeets& meets) noexcept {
   const bool trusted = is_trusted(b_in_a, size);
+  bool has_asked = false;
+  const auto lives_on = [&](std::size_t i) {
+    if (added_[i] < most_added) return true;
+    if (meets.ask == nullptr) return false;
+    if (has_asked) return true;  // until the next run
+    has_asked = true;
+    const double gap = std::max(-held_[i].parted(b_in_a).depth, 0.0) + rest * size;
+    if (!meets.ask(meets.self, held_[i].triangle_a(), gap * held_[i].normal())) return false;
+    added_[i] = 0;
+    return true;
+  };
   std::size_t kept = 0;
   for (std::size_t i = 0; i < count_; ++i) {
     const Vec3 normal = held_[i].at(b_in_a).normal;
     const bool supported =
         std::any_of(found.begin(), found.end(), [&](const auto& f) { return f.normal.dot(normal) > same_side; });
     const bool stays = trusted && complete_[i];
-    if (!stays && (!supported || added_[i] >= most_added)) continue;
+    if (!stays && !(supported && lives_on(i))) continue;
     move(i, kept);
     if (!stays) ++added_[kept];
     ++kept;

@@ -26,8 +26,8 @@ class HeldContacts {
   static constexpr double most_gap = 0.002;
   /// Of the smaller body's size: nearer to each other two contacts are one.
   static constexpr double same_place = tolerances::same_contact_place;
-  /// Runs that add contacts and do not find one again, after which it is let go: a rim of which each run finds a tenth
-  /// is found in fewer.
+  /// Runs that add contacts and do not find one again, after which it is let go, unless its triangle is still
+  /// where it says: a rim of which each run finds a tenth is found in fewer.
   static constexpr int most_added = 40;
   /// Of the smaller body's size: while bodies have moved less, all contacts that a finished run found are trusted more
   /// than the few that a starved one finds.
@@ -44,6 +44,12 @@ class HeldContacts {
   /// and so better, than held ones, which know of one side of a body that rocks.
   static constexpr std::uint32_t enough_pairs = 12;
 
+  /// Tells whether a triangle of A's mesh meets B now, if B is moved by `motion`, in A's mesh frame.
+  struct StillMeets {
+    bool (*ask)(void* self, std::uint32_t triangle, const Vec3& motion) noexcept = nullptr;  ///< null: nobody knows
+    void* self = nullptr;
+  };
+
   /// What to give for the answer of a run: its own contacts if they were made with care or from enough triangles; what
   /// is held if the budget ended before that, or before anything was decided. Keeps what it gives. `size`: diameter of
   /// the smaller body. Valid until the next call, or the pair's next run.
@@ -55,9 +61,11 @@ class HeldContacts {
   [[nodiscard]] std::span<const query::Contact> with_all(std::span<const query::Contact> found,
                                                          const math::Pose& b_in_a, double size) noexcept;
 
-  /// Of a run that saw a part of them, and that part well: what it found beside what is held.
+  /// Of a run that saw a part of them, and that part well: what it found beside what is held. `meets` is asked once at
+  /// most.
   [[nodiscard]] std::span<const query::Contact> with_part(std::span<const query::Contact> found,
-                                                          const math::Pose& b_in_a, double size) noexcept;
+                                                          const math::Pose& b_in_a, double size,
+                                                          const StillMeets& meets) noexcept;
 
   /// Takes the place of all that was held. `careful`: not what a run gave that had no time to measure; `complete`: all
   /// that there is.
@@ -82,7 +90,8 @@ class HeldContacts {
  private:
   void note_all(std::span<const query::Contact> found, const math::Pose& b_in_a, double size) noexcept;
   void add_apart(const HeldContacts& before, const math::Pose& b_in_a, double size) noexcept;
-  void add(std::span<const query::Contact> found, const math::Pose& b_in_a, double size) noexcept;
+  void add(std::span<const query::Contact> found, const math::Pose& b_in_a, double size,
+           const StillMeets& meets) noexcept;
   void add_one(const query::Contact& contact, bool trusted, const math::Pose& b_in_a, double size) noexcept;
   /// Of those that are less deep; `most`: none is.
   [[nodiscard]] std::size_t shallowest_above(double depth, const math::Pose& b_in_a) const noexcept;

@@ -44,7 +44,7 @@ double RestingContacts::believed_depth(const query::Contact& contact, const Slot
 }
 
 std::size_t RestingContacts::settle(const Question& question, std::span<const query::Contact> found, bool finished,
-                                    const math::Pose& body_in_mesh, double size,
+                                    const math::Pose& body_in_mesh, double size, const HeldContacts::StillMeets& meets,
                                     std::span<query::Contact, query::most_contacts> contacts) noexcept {
   const auto as_found = [&] {
     std::copy(found.begin(), found.end(), contacts.begin());
@@ -76,7 +76,7 @@ std::size_t RestingContacts::settle(const Question& question, std::span<const qu
     for (query::Contact& contact : part) contact.depth = believed_depth(contact, slot, body_in_mesh, size);
   }
   const std::span<const query::Contact> best =
-      finished ? slot.held.with_all(found, body_in_mesh, size) : slot.held.with_part(part, body_in_mesh, size);
+      finished ? slot.held.with_all(found, body_in_mesh, size) : slot.held.with_part(part, body_in_mesh, size, meets);
   slot.partner.store(best.empty() && slot.held.is_empty() ? nullptr : question.partner, std::memory_order_relaxed);
   return give(best, body_in_mesh, slot, contacts);
 }

@@ -62,9 +62,10 @@ class RestingContacts {
   [[nodiscard]] std::uint32_t turn(const Question& question, const math::Pose& body_in_mesh) noexcept;
 
   /// Takes note of the contacts that a collision found, and writes those that it is to give: its own if it was
-  /// `finished`, else the best of them and of what is held. Returns their number. `size`: of the smaller body.
+  /// `finished`, else the best of them and of what is held, about which `meets` may be asked. Returns their number.
+  /// `size`: of the smaller body.
   [[nodiscard]] std::size_t settle(const Question& question, std::span<const query::Contact> found, bool finished,
-                                   const math::Pose& body_in_mesh, double size,
+                                   const math::Pose& body_in_mesh, double size, const HeldContacts::StillMeets& meets,
                                    std::span<query::Contact, query::most_contacts> contacts) noexcept;
 
   /// Writes what is held, where the body is now, without a collision. Returns the number.
