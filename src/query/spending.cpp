@@ -15,10 +15,11 @@ void Spending::keep_time_for_contacts() noexcept {
 }
 
 // Of poses that nothing led to the last piece and the answer take 0.8 us, one in a hundred 1.6, for caches know
-// nothing of them; what is kept beyond that would leave too little of 2 us to search in.
+// nothing of them; on slower processors half as long again, which a pair learns. What is kept beyond that would leave
+// too little of 2 us to search in.
 std::int64_t Spending::most_search_ending_ns() const noexcept {
   constexpr std::int64_t long_piece_ns = 1'000;
-  constexpr std::int64_t unforeseen_ns = 1'200;
+  constexpr std::int64_t unforeseen_ns = 2'000;
   const std::int64_t ns = allowance_ns();
   return kept_.pieces_are_long ? std::max(std::min(long_piece_ns, ns), ns * 6 / 10)
                                : std::max(most_ending_ns(), std::min(unforeseen_ns, ns * 6 / 10));
