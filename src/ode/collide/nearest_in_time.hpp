@@ -39,8 +39,9 @@ constexpr std::uint64_t nodes_of_a_ray = 24;
                                                                    std::uint32_t guess = query::no_feature) noexcept {
   const std::uint64_t nodes = limit.nodes_left();
   std::uint64_t left = nodes;
-  EndOfShare end(limit, share, wanted == Wanted::something ? EndOfShare::to_a_triangle : 0);
+  EndOfShare end(limit, share, 0);
   const auto nearest = nearest_surface(mesh, point, reach, guess, end.deadline(),
+                                       wanted == Wanted::something ? EndOfShare::to_a_triangle : 0,
                                        wanted == Wanted::nothing ? 0 : nodes_of_a_ray, left, finished);
   limit.spend(nodes - left);
   return nearest;

@@ -61,16 +61,19 @@ Vec3 outward_at(const PreparedMesh& mesh, const Vec3& point, std::uint32_t trian
 }
 
 std::optional<NearestSurface> nearest_surface(const PreparedMesh& mesh, const Vec3& point, double reach,
-                                              std::uint32_t guess, const query::Deadline& deadline,
+                                              std::uint32_t guess, const query::Deadline& deadline, int sure_nodes,
                                               std::uint64_t nodes_of_a_ray, std::uint64_t& units,
                                               bool& finished) noexcept {
-  const auto distance = [&](std::uint32_t t) { return (closest_point(mesh.corners(t), point) - point).norm(); };
+  bool has_seen_any = false;
+  const auto distance = [&](std::uint32_t t) {
+    has_seen_any = true;
+    return (closest_point(mesh.corners(t), point) - point).norm();
+  };
+  const auto may_go_on = [&] { return (!has_seen_any && sure_nodes-- > 0) || !deadline(); };
   const double guessed =
       guess < mesh.mesh().triangles().size() ? distance(guess) : std::numeric_limits<double>::infinity();
-  std::uint32_t triangle =
-      query::NearSegment(mesh.mesh(), *mesh.wide_tree, point, point)
-          .nearest(
-              std::min(reach, guessed), 0.0, distance, [&] { return !deadline(); }, units, finished);
+  std::uint32_t triangle = query::NearSegment(mesh.mesh(), *mesh.wide_tree, point, point)
+                               .nearest(std::min(reach, guessed), 0.0, distance, may_go_on, units, finished);
   if (triangle == query::no_feature) {
     if (!(guessed <= reach) || guess >= mesh.mesh().triangles().size()) return std::nullopt;
     triangle = guess;

@@ -19,13 +19,14 @@ struct NearestSurface {
 
 /// Nothing if the surface is farther than `reach` (metres; infinity allowed), or the limits ended the search before any
 /// triangle was seen. Each visited node takes one from `units`; if they run out later, or `deadline` says that the time
-/// is up, it is not `finished`: what surface_towards gives for the nearest place so far, within `nodes_of_a_ray`.
+/// is up, it is not `finished`: what surface_towards gives for the nearest place so far, within `nodes_of_a_ray`. The
+/// deadline is not asked at the first `sure_nodes`, unless a triangle was seen.
 /// `guess`: a triangle that may be near, the first of those places; no_feature, or no triangle of the mesh: none.
 /// noexcept, no allocation.
 [[nodiscard]] std::optional<NearestSurface> nearest_surface(const PreparedMesh& mesh, const Vec3& point, double reach,
                                                             std::uint32_t guess, const query::Deadline& deadline,
-                                                            std::uint64_t nodes_of_a_ray, std::uint64_t& units,
-                                                            bool& finished) noexcept;
+                                                            int sure_nodes, std::uint64_t nodes_of_a_ray,
+                                                            std::uint64_t& units, bool& finished) noexcept;
 
 /// What a ray from `point` to a place of `triangle` meets first, which need not be the nearest; its plane tells the
 /// side. Nothing if that takes more than `most_nodes`; of a length that a search has shortened some dozen do.
