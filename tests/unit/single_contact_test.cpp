@@ -41,7 +41,7 @@ TEST(SingleContact, IsNoRougherWhereItsHitComesLast) {
     const Answer unhurried = run(pair, i, 1);
     if (unhurried.verdict != Verdict::hit) continue;
     const Contact expected = unhurried.contacts.front();
-    for (std::int64_t step_ns = 20; step_ns <= 1500; step_ns += 10) {
+    for (std::int64_t step_ns = 20; step_ns <= 1500; step_ns += 5) {
       const Answer answer = run(pair, i, step_ns);
       if (answer.basis != Basis::proved) continue;
       ASSERT_EQ(answer.contacts.size(), 1U);

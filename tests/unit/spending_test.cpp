@@ -130,11 +130,12 @@ TEST(Spending, OfASearchTheLastPieceIsPartOfTheEnding) {
 }
 
 TEST(Spending, OfLongPiecesAShortTimeIsKeptAsAWhole) {
-  const auto goes_on_after = [](double budget_us, bool pieces_are_long, std::int64_t ns) {
+  const auto goes_on_after = [](double budget_us, bool pieces_are_long, std::int64_t ns,
+                                std::int64_t search_ns = 1'500) {
     realtime::ManualClock clock;
     Budget budget = Budget::time(budget_us);
     budget.clock = clock.clock();
-    Spending spending(budget, {.search_ns = 1'500, .pieces_are_long = pieces_are_long});
+    Spending spending(budget, {.search_ns = search_ns, .pieces_are_long = pieces_are_long});
     clock.advance(ns);
     return spending.may_go_on();
   };
@@ -145,10 +146,12 @@ TEST(Spending, OfLongPiecesAShortTimeIsKeptAsAWhole) {
   EXPECT_FALSE(goes_on_after(2.0, true, 800));
   EXPECT_TRUE(goes_on_after(2.0, false, 799)) << "what caches do not know takes longer than three tenths";
   EXPECT_FALSE(goes_on_after(2.0, false, 800));
-  EXPECT_TRUE(goes_on_after(3.0, false, 1'799));
-  EXPECT_FALSE(goes_on_after(3.0, false, 1'800));
-  EXPECT_TRUE(goes_on_after(4.0, false, 2'799));
-  EXPECT_FALSE(goes_on_after(4.0, false, 2'800));
+  EXPECT_TRUE(goes_on_after(3.0, false, 1'499)) << "what it needs";
+  EXPECT_FALSE(goes_on_after(3.0, false, 1'500));
+  EXPECT_TRUE(goes_on_after(3.0, false, 1'199, 5'000)) << "no more than six tenths";
+  EXPECT_FALSE(goes_on_after(3.0, false, 1'200, 5'000));
+  EXPECT_TRUE(goes_on_after(4.0, false, 1'999, 5'000)) << "nor than 2 us";
+  EXPECT_FALSE(goes_on_after(4.0, false, 2'000, 5'000));
   EXPECT_TRUE(goes_on_after(5.0, true, 3'499)) << "what it needs and no more";
   EXPECT_FALSE(goes_on_after(5.0, true, 3'500));
 }
