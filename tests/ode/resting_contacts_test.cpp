@@ -1,10 +1,8 @@
 // A mesh at rest against a box, cylinder or convex keeps its contacts, as two meshes do.
 #include "ode/geom/resting_contacts.hpp"
 
-#include <array>
 #include <cmath>
 #include <memory>
-#include <vector>
 
 #include "ode/partners_fixture.hpp"
 
@@ -59,35 +57,6 @@ class Resting : public OdeTest {
   std::array<unsigned, 30> polygons{4, 0, 4, 6, 2, 4, 1, 3, 7, 5, 4, 0, 1, 5, 4,
                                     4, 2, 6, 7, 3, 4, 0, 2, 3, 1, 4, 4, 5, 7, 6};
 };
-
-// What a capsule rolls into, and no collision saw coming, threw it.
-TEST(SettledContacts, OfAPartAreNoDeeperThanTheBodyCanHaveCome) {
-  using ode::Found;
-  constexpr double size = 0.3;
-  constexpr double came = 2e-4;
-  const auto given = [=](Found worth) {
-    ode::RestingContacts resting;
-    const ode::RestingContacts::Question question{reinterpret_cast<dGeomID>(&resting), dCapsuleClass, 0,
-                                                  Vec3::Constant(size), 8};
-    std::array<query::Contact, query::most_contacts> contacts;
-    const query::Contact before[] = {{Vec3(0.1, 0, 0), -Vec3::UnitZ(), 1e-5, 1, 0}};
-    EXPECT_EQ(resting.settle(question, before, Found::all, {}, size, {}, contacts), 1U);
-    const query::Contact late[] = {{Vec3(-0.1, 0, 0), -Vec3::UnitZ(), 3e-3, 2, 0}};
-    const math::Pose lower = {Mat3::Identity(), Vec3(0, 0, -came)};
-    const std::size_t count = resting.settle(question, late, worth, lower, size, {}, contacts);
-    return std::vector<query::Contact>(contacts.begin(), contacts.begin() + static_cast<std::ptrdiff_t>(count));
-  };
-  ASSERT_EQ(given(Found::all).size(), 1U);
-  EXPECT_EQ(given(Found::all)[0].depth, 3e-3);
-  const auto alone = given(Found::alone);
-  ASSERT_EQ(alone.size(), 1U) << "what was held is not given";
-  EXPECT_EQ(alone[0].triangle_a, 2U);
-  EXPECT_GE(alone[0].depth, came);
-  EXPECT_LE(alone[0].depth, came + 1e-4);
-  const auto part = given(Found::part);
-  ASSERT_EQ(part.size(), 2U);
-  for (const query::Contact& contact : part) EXPECT_LE(contact.depth, came + 1e-4);
-}
 
 TEST_F(Resting, KeepsItsContactsWithEveryConvexBody) {
   for (const char* kind : bodies) {

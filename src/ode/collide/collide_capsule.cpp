@@ -402,10 +402,8 @@ int collide_capsule(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, i
   if (is_kept) {
     // Of a capsule that rolls what is kept lies behind it, and would drive it on: only what it met last is known, and
     // what is kept is given where nothing was found in time.
-    // But what it did not see coming must not throw it.
-    const bool finished = seen != Seen::cut_off && (writer.count() > 0 || !limit.time_is_up());
-    const Found worth = finished ? Found::all : writer.count() > 0 ? Found::alone : Found::part;
-    settle_contacts(*mesh_in_world, capsule_in_mesh, worth, size, question, data.resting, writer);
+    const bool finished = writer.count() > 0 || (seen != Seen::cut_off && !limit.time_is_up());
+    settle_contacts(*mesh_in_world, capsule_in_mesh, finished, size, question, data.resting, writer);
   }
   return limit.finish(seen == Seen::all, writer.count());
 }

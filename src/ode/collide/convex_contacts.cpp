@@ -475,8 +475,7 @@ int collide_convex_body(dGeomID mesh, dGeomID partner, const ConvexBody& body, i
   constexpr int enough = 3;
   const bool finished = seen != Seen::cut_off && (writer.count() >= enough || !limit.time_is_up());
   if (holds || (finished && motion > 0.0)) {
-    const Found worth = finished ? Found::all : Found::part;
-    settle_contacts(*mesh_in_world, body_in_mesh, worth, size, question, data.resting, writer, meets.still());
+    settle_contacts(*mesh_in_world, body_in_mesh, finished, size, question, data.resting, writer, meets.still());
   }
   return limit.finish(seen == Seen::all, writer.count());
 }

@@ -17,7 +17,7 @@ void write_kept(std::span<const query::Contact> contacts, const math::Pose& mesh
   }
 }
 
-void settle_contacts(const math::Pose& mesh_in_world, const math::Pose& body_in_mesh, Found worth, double size,
+void settle_contacts(const math::Pose& mesh_in_world, const math::Pose& body_in_mesh, bool finished, double size,
                      const RestingContacts::Question& question, RestingContacts& resting, ContactWriter& writer,
                      const HeldContacts::StillMeets& meets) noexcept {
   std::array<query::Contact, query::most_contacts> made;
@@ -34,9 +34,9 @@ void settle_contacts(const math::Pose& mesh_in_world, const math::Pose& body_in_
   }
   std::array<query::Contact, query::most_contacts> best;
   const std::size_t best_count =
-      resting.settle(question, std::span(made).first(count), worth, body_in_mesh, size, meets, best);
+      resting.settle(question, std::span(made).first(count), finished, body_in_mesh, size, meets, best);
   note_kept();
-  if (worth == Found::all) return;  // they are what was written
+  if (finished) return;  // they are what was written
   writer.clear();
   write_kept(std::span(best).first(best_count), mesh_in_world, writer);
 }

@@ -14,10 +14,9 @@ namespace odds::ode {
 void write_kept(std::span<const query::Contact> contacts, const math::Pose& mesh_in_world,
                 ContactWriter& writer) noexcept;
 
-/// Keeps what a collision has written, whose writer's g1 is the mesh; a part beside what was kept before, about which
-/// `meets` may be asked. Unless they are all, what RestingContacts gives is written instead. `size`: of the smaller
-/// body, metres.
-void settle_contacts(const math::Pose& mesh_in_world, const math::Pose& body_in_mesh, Found worth, double size,
+/// Keeps what a collision has written, whose writer's g1 is the mesh; of one that is not `finished` beside what was
+/// kept before, about which `meets` may be asked, and then writes that instead. `size`: of the smaller body, metres.
+void settle_contacts(const math::Pose& mesh_in_world, const math::Pose& body_in_mesh, bool finished, double size,
                      const RestingContacts::Question& question, RestingContacts& resting, ContactWriter& writer,
                      const HeldContacts::StillMeets& meets = {}) noexcept;
 

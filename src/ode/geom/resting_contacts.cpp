@@ -43,7 +43,7 @@ double RestingContacts::believed_depth(const query::Contact& contact, const Slot
   return std::min(contact.depth, slot.deepest + came + HeldContacts::rest * size);
 }
 
-std::size_t RestingContacts::settle(const Question& question, std::span<const query::Contact> found, Found worth,
+std::size_t RestingContacts::settle(const Question& question, std::span<const query::Contact> found, bool finished,
                                     const math::Pose& body_in_mesh, double size, const HeldContacts::StillMeets& meets,
                                     std::span<query::Contact, query::most_contacts> contacts) noexcept {
   const auto as_found = [&] {
@@ -64,7 +64,7 @@ std::size_t RestingContacts::settle(const Question& question, std::span<const qu
     slot.held = HeldContacts();
     slot.turn = 1;
   }
-  if (worth != Found::part) {
+  if (finished) {
     std::array<query::TrianglePair, query::most_contacts> triangles;
     for (std::size_t i = 0; i < found.size(); ++i) triangles[i] = {found[i].triangle_a, query::no_feature};
     slot.carried.keep(found, question.room, std::span(triangles).first(found.size()), body_in_mesh);
@@ -72,12 +72,11 @@ std::size_t RestingContacts::settle(const Question& question, std::span<const qu
   std::array<query::Contact, query::most_contacts> believed;
   std::copy(found.begin(), found.end(), believed.begin());
   const std::span<query::Contact> part = std::span(believed).first(found.size());
-  if (worth != Found::all && is_known) {
+  if (!finished && is_known) {
     for (query::Contact& contact : part) contact.depth = believed_depth(contact, slot, body_in_mesh, size);
   }
-  const std::span<const query::Contact> best = worth == Found::part
-                                                   ? slot.held.with_part(part, body_in_mesh, size, meets)
-                                                   : slot.held.with_all(part, body_in_mesh, size);
+  const std::span<const query::Contact> best =
+      finished ? slot.held.with_all(found, body_in_mesh, size) : slot.held.with_part(part, body_in_mesh, size, meets);
   slot.partner.store(best.empty() && slot.held.is_empty() ? nullptr : question.partner, std::memory_order_relaxed);
   return give(best, body_in_mesh, slot, contacts);
 }

@@ -13,13 +13,6 @@
 
 namespace odds::ode {
 
-/// What the contacts that a collision found are worth.
-enum class Found : std::uint8_t {
-  all,    ///< they are right
-  alone,  ///< there may be deeper ones, but what is held of others is worth less: the body rolls
-  part,   ///< there may be others, and what is held of them is worth as much
-};
-
 /// What one geom with a mesh keeps of its contacts with convex bodies that touched it lately: those of bodies that rest
 /// by the rules of query::CarriedContacts, and what a collision that its limit ended falls back on by those of
 /// HeldContacts. Of more than `most_partners` the ones that were longest out of use are let go. All in the mesh's
@@ -68,10 +61,10 @@ class RestingContacts {
   /// that their limit ends must not all look in the same place.
   [[nodiscard]] std::uint32_t turn(const Question& question, const math::Pose& body_in_mesh) noexcept;
 
-  /// Takes note of the contacts that a collision found, and writes those that it is to give: its own, unless they are a
-  /// `part`: then the best of them and of what is held, about which `meets` may be asked. Unless they are all they are
-  /// not given any depth: see believed_depth. Returns their number. `size`: of the smaller body.
-  [[nodiscard]] std::size_t settle(const Question& question, std::span<const query::Contact> found, Found worth,
+  /// Takes note of the contacts that a collision found, and writes those that it is to give: its own if it was
+  /// `finished`, else the best of them and of what is held, about which `meets` may be asked. Returns their number.
+  /// `size`: of the smaller body.
+  [[nodiscard]] std::size_t settle(const Question& question, std::span<const query::Contact> found, bool finished,
                                    const math::Pose& body_in_mesh, double size, const HeldContacts::StillMeets& meets,
                                    std::span<query::Contact, query::most_contacts> contacts) noexcept;
 

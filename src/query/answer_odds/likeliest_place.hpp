@@ -27,6 +27,7 @@ template <class Met, class Apart>
                                       const Apart& apart) noexcept {
   constexpr double unopposed = 0.01;         // of what is flat: less, and all that is known lies beside what meets
   constexpr double least_opposition = 0.01;  // so that patches of which none faces another have a direction, too
+  static_assert(Shortlist::capacity <= Four::count);
   std::array<MetPlace, Shortlist::capacity> places;
   std::array<PatchPair, Shortlist::capacity> patches;
   for (std::size_t i = 0; i < list.size(); ++i) patches[i] = met.patches(list.begin()[i]);
