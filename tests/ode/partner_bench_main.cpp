@@ -136,7 +136,7 @@ Measured measure_clock(double budget_us, int times) {
   return measured;
 }
 
-/// Leaves in the nearer caches, and in those of addresses, nothing of the mesh, as other poses do.
+/// Leaves little of the mesh in the nearer caches, as other poses do.
 void forget_mesh() {
   constexpr std::size_t line = 64;
   static std::vector<unsigned char> other(std::size_t{2} << 20);

@@ -26,8 +26,8 @@ class HeldContacts {
   static constexpr double most_gap = 0.002;
   /// Of the smaller body's size: nearer to each other two contacts are one.
   static constexpr double same_place = tolerances::same_contact_place;
-  /// Runs that add contacts and do not find one again, after which it is let go, unless its triangle is still
-  /// where it says: a rim of which each run finds a tenth is found in fewer.
+  /// Runs that add contacts and do not find one again, after which it is let go, unless its triangle meets the other
+  /// body, moved by what the contact is apart: a rim of which each run finds a tenth is found in fewer.
   static constexpr int most_added = 40;
   /// Of the smaller body's size: while bodies have moved less, all contacts that a finished run found are trusted more
   /// than the few that a starved one finds.
