@@ -1,5 +1,6 @@
 // Four numbers in single precision side by side, where one after the other each would wait for its own roots and
-// quotients. In one register that every processor has. For probabilities and guesses, never for geometry.
+// quotients. In one register that every processor has (the eight of query/wide/lanes.hpp are for kernels that are there
+// once for each instruction set). For probabilities and guesses, never for geometry.
 #pragma once
 
 #include <cmath>
@@ -7,7 +8,7 @@
 
 #include "odds/math/pose.hpp"
 #if defined(__SSE2__)
-#include <immintrin.h>
+#include <xmmintrin.h>
 #elif defined(__aarch64__)
 #include <arm_neon.h>
 #endif

@@ -169,10 +169,10 @@ Measured measure(dGeomID mesh, const Body& body, const odds::mesh::TriangleMesh&
       return collide().first.longest_gap_ns();
     };
     const std::int64_t again_ns = stalled ? std::max(longest_again_ns(), longest_again_ns()) : 0;
-    // As long as half of it: it is the collision's own, but for what it is much longer by.
+    // Of one that comes again, if half as long, the machine's is what it is much longer by.
     const std::int64_t longest_ns = ledger.longest_gap_ns();
     const std::int64_t own_ns = 2 * again_ns >= longest_ns ? std::min(longest_ns, again_ns + again_ns / 2) : 0;
-    measured.us.push_back(1e-3 * static_cast<double>(ledger.net_ns() + (stalled ? own_ns : 0)));
+    measured.us.push_back(1e-3 * static_cast<double>(ledger.net_ns() + own_ns));
     measured.stalled += stalled && own_ns < longest_ns ? 1 : 0;
     measured.hits += count > 0 ? 1 : 0;
     measured.contacts += count;
