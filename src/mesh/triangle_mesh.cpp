@@ -6,6 +6,8 @@
 #include <limits>
 #include <optional>
 
+#include "odds/mesh/side_by_side.hpp"
+
 namespace odds::mesh {
 namespace {
 
@@ -62,6 +64,7 @@ Result<TriangleMesh> TriangleMesh::make(std::vector<Vec3> vertices, std::vector<
   }
   mesh.vertices_ = std::move(vertices);
   mesh.triangles_ = std::move(triangles);
+  put_side_by_side(mesh.triangles_, mesh.vertices_);
   mesh.name_ = std::move(name);
   return mesh;
 }

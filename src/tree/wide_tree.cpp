@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "odds/math/rounding.hpp"
+#include "odds/mesh/side_by_side.hpp"
 #include "odds/volume/box_overlap.hpp"
 
 namespace odds::tree {
@@ -250,6 +251,7 @@ WideTree WideTree::build(const mesh::TriangleMesh& mesh, const BuildOptions& opt
   parts.leaves = std::move(leaves);
   parts.statistics = std::move(all_statistics);
   parts.statistics_at = std::move(layout.statistics_at);
+  mesh::put_side_by_side(parts.nodes, parts.leaves, parts.statistics_at, parts.statistics);
   if (progress) progress(1.0);
   return WideTree(std::move(parts));
 }

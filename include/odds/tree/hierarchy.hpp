@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "odds/mesh/shared_array.hpp"
+#include "odds/mesh/side_by_side.hpp"
 #include "odds/mesh/triangle_mesh.hpp"
 #include "odds/tree/for_parts.hpp"
 #include "odds/tree/node_statistics.hpp"
@@ -134,6 +135,7 @@ Hierarchy<V> Hierarchy<V>::build(const mesh::TriangleMesh& mesh, const BuildOpti
   parts.statistics = std::move(surface.statistics);
   parts.corners = std::move(corners);
   parts.order = std::move(topology.order);
+  mesh::put_side_by_side(parts.nodes, parts.corners, parts.order, parts.statistics);
   parts.levels = topology.levels;
   if (progress) progress(1.0);
   return Hierarchy(std::move(parts));
