@@ -116,6 +116,19 @@ TEST_F(FrameBudget, PairsBeyondItsMemoryAreServedToo) {
   oddsFrameBudgetDestroy(small);
 }
 
+// They were given half a microsecond each, which is for frames that have no more.
+TEST_F(FrameBudget, WithoutALimitPairsBeyondItsMemoryHaveNoneEither) {
+  const SlowLooks looks(250);
+  const oddsFrameBudgetID small = oddsFrameBudgetCreate(5);
+  Crowd crowd(space, 12);
+  for (int frame = 0; frame < 3; ++frame) {
+    crowd.run(space, small);
+    EXPECT_EQ(summary_of(small).starved, 0);
+    for (const CrowdPair& pair : crowd.pairs()) EXPECT_TRUE(pair.right);
+  }
+  oddsFrameBudgetDestroy(small);
+}
+
 TEST_F(FrameBudget, AllocatesNothing) {
   Crowd crowd(space, 30);
   oddsFrameBudgetSetWork(budget, 3000);

@@ -51,7 +51,7 @@ typedef struct oddsFrameSummary {
   int waiting_longest; /* frames that some pair within `most_pairs` has been without a turn by now; one that starved
                         * had none */
   int beyond_memory;   /* pairs beyond `most_pairs`: called one after the other, through several frames if need be, each
-                        * with the least share, in the first half of a frame */
+                        * with the least share, in the first half of a frame; without a limit all, in full */
   double gross_us;     /* of the whole frame */
   double overshoot_us; /* beyond the budget, >= 0 */
   unsigned long work;  /* units spent with meshes */

@@ -101,7 +101,7 @@ void oddsFrameBudget::serve_beyond_memory(dGeomID a, dGeomID b) noexcept {
   Candidate unknown;
   unknown.a = a;
   unknown.b = b;
-  serve(unknown, least_share());
+  serve(unknown, std::isfinite(left()) ? least_share() : left());
 }
 
 void oddsFrameBudget::learn(const Candidate& candidate, double share, double cost, const FrameShare& given) noexcept {

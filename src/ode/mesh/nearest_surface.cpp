@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 
+#include "odds/math/tolerances.hpp"
 #include "ode/mesh/triangle_corners.hpp"
 #include "query/counted_ray.hpp"
 #include "query/shape/near_segment.hpp"
@@ -19,12 +22,17 @@ constexpr double on_feature = 1e-12;
 // point.
 constexpr double rounding = 4e-15;
 
-// The angle-weighted mean of the normals of all triangles that meet at `point`, which lies on triangle `at`.
-Vec3 pseudo_normal(const PreparedMesh& mesh, const Vec3& point, std::uint32_t at, double tolerance) noexcept {
-  const Corners own = mesh.corners(at);
-  const Vec3 own_normal = unit_normal(own);
-  if (angle_at(own, point, tolerance) > 1.5 * std::numbers::pi && own_normal != Vec3::Zero()) return own_normal;
-  std::array<std::uint32_t, PreparedMesh::most_touching> touching;
+// Whether a triangle is so low that it may be nothing but its corners' rounding, as where edges of unlike length meet.
+bool is_thin(const Corners& t, double height) noexcept {
+  const Vec3 sides[3] = {t[1] - t[0], t[2] - t[1], t[0] - t[2]};
+  const double longest = std::max({sides[0].squaredNorm(), sides[1].squaredNorm(), sides[2].squaredNorm()});
+  return sides[0].cross(sides[2]).squaredNorm() <= height * height * longest;
+}
+
+using Touching = std::array<std::uint32_t, PreparedMesh::most_touching>;
+
+// Triangles that meet at `point`, in their order: sums are then the same in every tree.
+std::size_t find_touching(const PreparedMesh& mesh, const Vec3& point, double tolerance, Touching& touching) noexcept {
   std::size_t count = 0;
   std::uint64_t nodes = 4096;
   const auto take = [&](std::uint32_t triangle) {
@@ -35,6 +43,47 @@ Vec3 pseudo_normal(const PreparedMesh& mesh, const Vec3& point, std::uint32_t at
   const query::NearSegment about(mesh.mesh(), *mesh.wide_tree, point, point);
   static_cast<void>(about.all_within(
       tolerance, take, [] { return true; }, nodes));
+  std::sort(touching.begin(), touching.begin() + static_cast<std::ptrdiff_t>(count));
+  return count;
+}
+
+// The angle-weighted mean of the normals of triangles at `point`: of those that are not thin, if `thin` is not zero.
+Vec3 mean_normal(const PreparedMesh& mesh, const Vec3& point, double tolerance, std::span<const std::uint32_t> touching,
+                 double thin) noexcept {
+  Vec3 sum = Vec3::Zero();
+  for (const std::uint32_t triangle : touching) {
+    const Corners corners = mesh.corners(triangle);
+    if (thin > 0.0 && is_thin(corners, thin)) continue;
+    sum += angle_at(corners, point, tolerance) * unit_normal(corners);
+  }
+  const double length = sum.norm();
+  return length > 0.0 ? Vec3(sum / length) : Vec3(Vec3::Zero());
+}
+
+// The angle-weighted mean of the normals of all triangles that meet at `point`, which lies on triangle `at`. Those of
+// thin ones point anywhere, and their corners may lie as far beside their neighbours as they are high. Where there are
+// some, the others about the point have the word, unless they do not tell the side: on the rim of a sheet so thin.
+Vec3 pseudo_normal(const PreparedMesh& mesh, const Vec3& point, std::uint32_t at, double tolerance,
+                   const Vec3& seen_from) noexcept {
+  constexpr double least = 0.1;  // cosine
+  const double thin = tolerances::flat_face * mesh.mesh().size();
+  const auto tells_side = [&](const Vec3& normal) {
+    return std::abs(normal.dot(seen_from - point)) > least * (seen_from - point).norm();
+  };
+  const Corners own = mesh.corners(at);
+  const Vec3 own_normal = unit_normal(own);
+  const bool within = angle_at(own, point, tolerance) > 1.5 * std::numbers::pi && own_normal != Vec3::Zero();
+  if (within && !is_thin(own, thin)) return own_normal;
+  Touching touching;
+  const std::size_t count = find_touching(mesh, point, tolerance, touching);
+  const std::span<const std::uint32_t> all = std::span(touching).first(count);
+  if (std::any_of(all.begin(), all.end(), [&](std::uint32_t t) { return is_thin(mesh.corners(t), thin); })) {
+    Touching about;
+    const std::size_t count_about = find_touching(mesh, point, thin, about);
+    const Vec3 normal = mean_normal(mesh, point, thin, std::span(about).first(count_about), thin);
+    if (count_about < about.size() && tells_side(normal)) return normal;
+  }
+  if (within) return own_normal;
   if (count == touching.size()) {
     const auto before = [](const PreparedMesh::Fan& fan, double x) { return fan.tip.x() < x; };
     auto fan = std::lower_bound(mesh.fans.begin(), mesh.fans.end(), point.x() - tolerance, before);
@@ -42,14 +91,8 @@ Vec3 pseudo_normal(const PreparedMesh& mesh, const Vec3& point, std::uint32_t at
       if ((fan->tip - point).norm() <= tolerance) return fan->normal;
     }
   }
-  std::sort(touching.begin(), touching.begin() + static_cast<std::ptrdiff_t>(count));  // the same sum in every tree
-  Vec3 sum = Vec3::Zero();
-  for (std::size_t i = 0; i < count; ++i) {
-    const Corners corners = mesh.corners(touching[i]);
-    sum += angle_at(corners, point, tolerance) * unit_normal(corners);
-  }
-  const double length = sum.norm();
-  return length > 0.0 ? Vec3(sum / length) : own_normal;
+  const Vec3 normal = mean_normal(mesh, point, tolerance, all, 0.0);
+  return normal != Vec3::Zero() ? normal : own_normal;
 }
 
 }  // namespace
@@ -57,7 +100,7 @@ Vec3 pseudo_normal(const PreparedMesh& mesh, const Vec3& point, std::uint32_t at
 Vec3 outward_at(const PreparedMesh& mesh, const Vec3& point, std::uint32_t triangle, const Vec3& seen_from) noexcept {
   const double far = std::max(mesh.mesh().lower().cwiseAbs().maxCoeff(), mesh.mesh().upper().cwiseAbs().maxCoeff());
   const double tolerance = on_feature * mesh.mesh().size() + rounding * (far + seen_from.cwiseAbs().maxCoeff());
-  return pseudo_normal(mesh, point, triangle, tolerance);
+  return pseudo_normal(mesh, point, triangle, tolerance, seen_from);
 }
 
 std::optional<NearestSurface> nearest_surface(const PreparedMesh& mesh, const Vec3& point, double reach,
