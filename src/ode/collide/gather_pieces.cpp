@@ -44,7 +44,7 @@ Vec3 inner_point(const ConvexBody& body, std::size_t octant) noexcept {
 /// From where pieces are looked for in a turn, and how far it is from there to the farthest corner of the body's box.
 struct Start {
   Start(const ConvexBody& body, std::uint32_t turn) noexcept {
-    const std::uint32_t of_turns = turn % (octants + 1);
+    const std::size_t of_turns = turn % (octants + 1);
     point = of_turns == 0 ? body.center() : inner_point(body, in_order[of_turns - 1]);
     reach = (body.box_half_extents() + (point - body.box_center()).cwiseAbs()).norm();
   }
