@@ -175,6 +175,30 @@ TEST(ShortBudget, TakesFewerRunsWithMoreTime) {
   EXPECT_GT(before, 1);
 }
 
+// Pairs share the memory of their work. Those that waited for it had rough contacts only, for as long as others worked.
+TEST(ShortBudget, PairsOfACrowdDoNotWaitForEachOther) {
+  const auto shape = fine_ball();
+  const auto runs_of = [&shape](std::size_t count) {
+    realtime::ManualClock clock(150);
+    const Request request = short_request(clock, 5.0);
+    std::vector<Pair> pairs;
+    for (std::size_t i = 0; i < count; ++i) {
+      pairs.push_back(std::move(Pair::make(shape, shape, {.late_contacts = true})).value());
+    }
+    std::vector<bool> is_late(count);
+    for (int run = 1; run <= most_runs; ++run) {
+      for (std::size_t i = 0; i < count; ++i)
+        is_late[i] = pairs[i].run(deep(0.04), request).contacts_late || is_late[i];
+      if (std::all_of(is_late.begin(), is_late.end(), [](bool late) { return late; })) return run;
+    }
+    return most_runs;
+  };
+  const int alone = runs_of(1);
+  ASSERT_GT(alone, 10);
+  ASSERT_LT(alone, most_runs / 4);
+  EXPECT_LT(runs_of(40), 2 * alone);
+}
+
 TEST(ShortBudget, GivesTheWholeDepthInTheEnd) {
   realtime::ManualClock clock(50);
   const auto shape = ball();
