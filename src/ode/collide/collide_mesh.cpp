@@ -208,7 +208,10 @@ int answer_pair(PairEntry& entry, std::uint64_t asked_in, dGeomID o1, dGeomID o2
     return 0;
   }
   const Settings own = combine(entry.a->settings, entry.b->settings);
-  const Settings settings = within_share(own);
+  Settings settings = within_share(own);
+  // Contacts that take some dozens of runs would be of long ago where a pair waits for its turns in a frame, and keep
+  // their memory from others meanwhile.
+  if (current_share != nullptr && entry.last.only_held != 0) settings.late_contacts = false;
   const int limit = room_for(flags, settings.max_contacts);
   const math::Pose b_in_a = pose_a->inverse() * *pose_b;
   ContactWriter writer(o1, o2, limit, contacts, skip);
