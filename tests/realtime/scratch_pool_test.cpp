@@ -51,6 +51,26 @@ TEST(ScratchPool, GivesTheSameOneAgain) {
   EXPECT_EQ(counter.allocations(), 0u);
 }
 
+TEST(ScratchPool, SaysWhetherOneIsLeftToTake) {
+  const auto pool = ScratchPool::of({64, 8, 0, 3});
+  EXPECT_FALSE(pool->has_free());
+  for (int i = 0; i < 5; ++i) pool->add_pair();
+  std::uint32_t places[3] = {};
+  Scratch* taken[3] = {};
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_TRUE(pool->has_free()) << i;
+    taken[i] = pool->take(places[i]);
+    ASSERT_NE(taken[i], nullptr) << i;
+  }
+  EXPECT_FALSE(pool->has_free());
+  std::uint32_t last = 0;
+  EXPECT_EQ(pool->take(last), nullptr);
+  pool->give_back(*taken[1], places[1]);
+  EXPECT_TRUE(pool->has_free());
+  EXPECT_EQ(pool->take(last), taken[1]);
+  EXPECT_EQ(last, places[1]);
+}
+
 /// More threads than there are processors, and pairs that come and go meanwhile.
 TEST(ScratchPool, LendsEachToOneThreadAtATime) {
   const auto pool = ScratchPool::of(small);

@@ -31,6 +31,7 @@ void ScratchPool::add_pair() {
     scratches_.push_back(std::make_unique<Scratch>(capacities_.queue, capacities_.hits, capacities_.stack_bytes));
     places_[scratches_.size() - 1].free.store(scratches_.back().get(), std::memory_order_release);
     made_.store(static_cast<std::uint32_t>(scratches_.size()), std::memory_order_release);
+    free_.fetch_add(1, std::memory_order_relaxed);
   }
   ++pairs_;
 }
@@ -54,11 +55,13 @@ ScratchPool::Loan ScratchPool::borrow(std::uint32_t& last) noexcept {
 }
 
 Scratch* ScratchPool::take(std::uint32_t& last) noexcept {
+  if (!has_free()) return nullptr;
   const std::uint32_t count = size();
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t at = (last + i) % count;
     if (places_[at].free.load(std::memory_order_relaxed) == nullptr) continue;
     if (Scratch* const scratch = places_[at].free.exchange(nullptr, std::memory_order_acquire)) {
+      free_.fetch_sub(1, std::memory_order_relaxed);
       last = at;
       return scratch;
     }
@@ -66,13 +69,9 @@ Scratch* ScratchPool::take(std::uint32_t& last) noexcept {
   return nullptr;
 }
 
-bool ScratchPool::has_free() const noexcept {
-  return std::any_of(places_.begin(), places_.begin() + size(),
-                     [](const Place& place) { return place.free.load(std::memory_order_relaxed) != nullptr; });
-}
-
 void ScratchPool::give_back(Scratch& scratch, std::uint32_t last) noexcept {
   places_[last].free.store(&scratch, std::memory_order_release);
+  free_.fetch_add(1, std::memory_order_relaxed);
 }
 
 }  // namespace odds::query

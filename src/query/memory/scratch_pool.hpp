@@ -68,8 +68,8 @@ class ScratchPool {
   [[nodiscard]] Loan borrow(std::uint32_t& last) noexcept;
   /// The same for longer than a scope, at `last`; null if none is free.
   [[nodiscard]] Scratch* take(std::uint32_t& last) noexcept;
-  /// Whether `take` would probably find one.
-  [[nodiscard]] bool has_free() const noexcept;
+  /// Whether `take` would probably find one. Of a pool of which nothing is borrowed.
+  [[nodiscard]] bool has_free() const noexcept { return free_.load(std::memory_order_relaxed) > 0; }
   /// Gives back what `take` gave at `last`.
   void give_back(Scratch& scratch, std::uint32_t last) noexcept;
 
@@ -83,6 +83,7 @@ class ScratchPool {
   Capacities capacities_;
   std::vector<Place> places_;
   std::atomic<std::uint32_t> made_{0};
+  std::atomic<std::int32_t> free_{0};  ///< made, and not taken: asked in each run, which has no time for 64 places
   std::mutex changing_;  ///< guards what follows
   std::uint32_t pairs_ = 0;
   std::vector<std::unique_ptr<Scratch>> scratches_;
