@@ -9,6 +9,7 @@
 #include "odds/math/random.hpp"
 #include "odds/query/pair.hpp"
 #include "odds/realtime/clock.hpp"
+#include "ode/budget_clock.hpp"
 #include "ode/frame/frame_budget.hpp"
 #include "ode/frame/frame_need.hpp"
 #include "ode/frame/frame_share.hpp"
@@ -277,6 +278,35 @@ TEST_F(HeldInFrame, WhatTouchesKeepsItsContactsInFramesWithoutATurn) {
     }
   }
   EXPECT_GT(held, 60);
+}
+
+// Late contacts take some dozens of runs. They would be of long ago where a pair waits for its turns, and keep the
+// memory that they are made in from other pairs meanwhile. They are told by their depth: until then, guesses are
+// shallow.
+TEST_F(HeldInFrame, PairsThatWaitForTheirTurnsMakeNoLateContacts) {
+  realtime::ManualClock clock(150);
+  ode::use_budget_clock(clock.clock());
+  const auto deepest = [&](int frames_a_turn) {
+    const dGeomID a = mesh_geom(sphere_shape(0.1), space);
+    const dGeomID b = mesh_geom(sphere_shape(0.1), space);
+    dGeomOddsMeshSetBudget(a, 5.0);
+    double depth = 0.0;
+    for (int frame = 0; frame < 60 * frames_a_turn; ++frame) {
+      dGeomSetPosition(b, 0.0, 1e-5 * frame / frames_a_turn, 0.19);
+      ode::FrameShare share;
+      share.only_held = frame % frames_a_turn != 0;
+      ode::current_share = &share;
+      for (const dContactGeom& contact : collide(a, b)) depth = std::max(depth, contact.depth);
+      ode::current_share = nullptr;
+    }
+    dGeomDestroy(a);
+    dGeomDestroy(b);
+    return depth;
+  };
+  const double guessed = 2e-4;
+  EXPECT_GT(deepest(1), 2.0 * guessed);
+  EXPECT_LT(deepest(3), guessed);
+  ode::use_budget_clock({});
 }
 
 TEST_F(HeldInFrame, HeldContactsFollowTheBodiesAndCostNoWork) {
