@@ -48,6 +48,7 @@ void oddsFrameBudget::set(const odds::ode::FrameSettings& settings) noexcept {
 }
 
 double oddsFrameBudget::least_share() const noexcept {
+  if (!std::isfinite(left())) return left();
   return settings_.in_units() ? least_units : least_us + call_us_;
 }
 
@@ -101,7 +102,7 @@ void oddsFrameBudget::serve_beyond_memory(dGeomID a, dGeomID b) noexcept {
   Candidate unknown;
   unknown.a = a;
   unknown.b = b;
-  serve(unknown, std::isfinite(left()) ? least_share() : left());
+  serve(unknown, least_share());
 }
 
 void oddsFrameBudget::learn(const Candidate& candidate, double share, double cost, const FrameShare& given) noexcept {
