@@ -16,8 +16,9 @@ class LargePages {
   /// Fewer bytes would leave too much of a page empty.
   static constexpr std::size_t least_bytes = std::size_t{3} << 19U;
 
-  /// Null if the system has no such pages, or for fewer than `least_bytes`. The first byte stands at a multiple of 64;
-  /// up to half a mebibyte at the end is empty. What does not fill a page to three quarters is in small ones.
+  /// Null if the system knows no such pages or has no room, or for fewer than `least_bytes`. The first byte stands at a
+  /// multiple of 64; up to half a mebibyte at the end is empty. What does not fill a page to three quarters is in small
+  /// ones, as is all of it where the system gives no large ones. May throw bad_alloc. Any thread.
   [[nodiscard]] static std::shared_ptr<std::byte> make(std::size_t bytes);
   /// Once it is filled: small pages are not made large ones later, for whoever reads them would wait meanwhile.
   static void settle(const std::shared_ptr<std::byte>& memory, std::size_t bytes) noexcept;
@@ -39,7 +40,7 @@ void copy_to(std::byte* place, const std::shared_ptr<std::byte>& keeper, SharedA
 /// Moves arrays that are read together into one block of large pages, those that are read most first; the old elements
 /// go one array after the other, unless other copies keep them. A search jumps about in a tree, and in pages of 4 KiB
 /// the processor has to look up again where a node is, in the tables of a hypervisor, too. Arrays stay where they are
-/// if there are no such pages, or they are too short.
+/// if there are no such pages, or they are too short. May throw bad_alloc, before any is moved.
 template <class... T>
 void put_side_by_side(SharedArray<T>&... arrays) {
   const std::size_t bytes = (std::size_t{0} + ... + detail::in_lines(arrays.bytes()));
