@@ -12,12 +12,12 @@
 #include <thread>
 #include <vector>
 
+#include "benchmark/mesh_argument.hpp"
 #include "benchmark/peer_times.hpp"
 #include "odds/math/random.hpp"
-#include "odds/mesh/made/by_name.hpp"
-#include "odds/mesh/read.hpp"
 #include "odds/query/pair.hpp"
 #include "odds/volume/kind.hpp"
+#include "support/cache_emptier.hpp"
 
 namespace odds::benchmark {
 namespace {
@@ -46,19 +46,6 @@ struct Settings {
   bool empty_caches = false;  ///< between two queries
   bool late = false;          ///< contacts are made over several queries
   bool quality = false;       ///< also how far contacts point from where those of a query without a budget do
-};
-
-/// Fills a core's own caches with something else, not one that cores share.
-class CacheEmptier {
- public:
-  void run() noexcept {
-    volatile unsigned char* const bytes = bytes_.data();
-    for (std::size_t i = 0; i < bytes_.size(); i += cache_line) bytes[i] = static_cast<unsigned char>(i);
-  }
-
- private:
-  static constexpr std::size_t cache_line = 64;
-  std::vector<unsigned char> bytes_ = std::vector<unsigned char>(3U << 20U);  // beyond the second level's
 };
 
 /// Cases are courses with a number of contacts and a budget.
@@ -137,7 +124,7 @@ double angle_between(const query::Answer& one, const query::Answer& other) {
 /// The least of what each pose's query took beyond the budget in all passes; `net_us`: of the first.
 std::vector<double> least_of_each(query::Pair& pair, const Course& course, const query::Request& request,
                                   std::vector<double> net_us, const Settings& settings) {
-  CacheEmptier emptier;
+  testing::CacheEmptier emptier;
   for (std::size_t pass = 1; pass < settings.passes; ++pass) {
     pair.reset();
     Poses poses(course, pair.a().mesh().size(), settings.seed);
@@ -167,7 +154,7 @@ void measure(const query::Shape& shape, query::Pair& pair, query::Pair* referenc
   std::size_t late = 0;
   double made_of = 0.0;
   std::vector<double> unused_us;  // by answers that were told to end
-  CacheEmptier emptier;
+  testing::CacheEmptier emptier;
   const query::Request request{.budget = query::Budget::time(budget_us), .max_contacts = contacts};
   for (std::size_t i = 0; i < count; ++i) {
     const math::Pose pose = poses.next();
@@ -243,14 +230,13 @@ bool measure_all(const std::string& name, const std::shared_ptr<const mesh::Tria
 int run(const Settings& settings) {
   Tally total;
   for (const std::string& name : settings.meshes) {
-    auto read = name.starts_with("made:") ? mesh::made::make_shape(name) : mesh::read(name);
-    if (!read) {
-      std::fprintf(stderr, "%s\n", read.error().message().c_str());
+    const auto mesh = mesh_of(name);
+    if (!mesh) {
+      std::fprintf(stderr, "%s\n", mesh.error().message().c_str());
       return 1;
     }
-    const auto mesh = std::make_shared<const mesh::TriangleMesh>(std::move(read).value());
     for (const std::string& volume : settings.volumes) {
-      if (!measure_all(name, mesh, volume, settings, total)) return 1;
+      if (!measure_all(name, mesh.value(), volume, settings, total)) return 1;
     }
   }
   total.print("all", settings.passes);

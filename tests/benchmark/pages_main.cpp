@@ -5,7 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -13,15 +12,18 @@
 #include <span>
 #include <stdexcept>
 
+#include "benchmark/mesh_argument.hpp"
 #include "benchmark/peer_times.hpp"
 #include "benchmark/pose_class.hpp"
-#include "odds/mesh/made/by_name.hpp"
-#include "odds/mesh/read.hpp"
 #include "odds/query/pair.hpp"
 #include "odds/query/saved_shape.hpp"
+#include "support/cache_emptier.hpp"
+#include "support/value_or_throw.hpp"
 
 namespace odds::benchmark {
 namespace {
+
+using testing::value_or_throw;
 
 struct Settings {
   std::vector<std::string> meshes{"made:car_body:triangles=60000", "made:car_body:triangles=1000000"};
@@ -29,12 +31,6 @@ struct Settings {
   std::size_t passes = 40;
   std::uint64_t seed = 1;
 };
-
-template <class T>
-T value_or_throw(Result<T> result) {
-  if (!result.ok()) throw std::runtime_error(result.error().message());
-  return std::move(result).value();
-}
 
 std::shared_ptr<const query::Shape> saved_copy(const query::Shape& shape) {
   const auto path = std::filesystem::temp_directory_path() / ("odds_pages_" + std::to_string(getpid()) + ".odds");
@@ -45,27 +41,18 @@ std::shared_ptr<const query::Shape> saved_copy(const query::Shape& shape) {
   return value_or_throw(query::load_shape(std::as_bytes(std::span(bytes)), path.string()));
 }
 
-/// Fills a core's own caches with something else.
-void empty_caches() noexcept {
-  constexpr std::size_t line = 64;
-  static std::vector<unsigned char> other(std::size_t{4} << 20U);
-  for (std::size_t i = 0; i < other.size(); i += line) {
-    volatile unsigned char& byte = other[i];
-    byte = static_cast<unsigned char>(byte + 1);
-  }
-}
-
 /// A row: the mean over the poses of the medians over the passes, of both.
 void compare(const char* name, std::array<query::Pair*, 2> pairs, const std::vector<math::Pose>& poses, bool cold,
              std::size_t passes) {
   std::array<std::vector<std::vector<double>>, 2> us;
   for (auto& of_pair : us) of_pair.resize(poses.size());
+  testing::CacheEmptier emptier;
   for (std::size_t pass = 0; pass < passes; ++pass) {
     for (std::size_t turn = 0; turn < 2; ++turn) {
       const std::size_t which = (pass + turn) % 2;
       for (std::size_t i = 0; i < poses.size(); ++i) {
         pairs[which]->reset();
-        if (cold) empty_caches();
+        if (cold) emptier.run();
         const double start = clock_us(CLOCK_MONOTONIC);
         static_cast<void>(pairs[which]->run(poses[i], {}));
         us[which][i].push_back(clock_us(CLOCK_MONOTONIC) - start);
@@ -82,8 +69,7 @@ void compare(const char* name, std::array<query::Pair*, 2> pairs, const std::vec
 }
 
 void measure(const std::string& name, const Settings& settings) {
-  const auto mesh = std::make_shared<const mesh::TriangleMesh>(
-      value_or_throw(name.starts_with("made:") ? mesh::made::make_shape(name) : mesh::read(name)));
+  const auto mesh = value_or_throw(mesh_of(name));
   const auto built = value_or_throw(query::Shape::build(mesh));
   const auto copied = saved_copy(*built);
   query::Pair large = value_or_throw(query::Pair::make(built, built));

@@ -1,11 +1,12 @@
 #include "benchmark/peer_odds.hpp"
 
-#include <stdexcept>
-
 #include "odds/query/pair.hpp"
+#include "support/value_or_throw.hpp"
 
 namespace odds::benchmark {
 namespace {
+
+using testing::value_or_throw;
 
 const char* method_name(query::Method method) {
   switch (method) {
@@ -16,12 +17,6 @@ const char* method_name(query::Method method) {
     default:
       return "time-critical";
   }
-}
-
-template <class T>
-T value_or_throw(Result<T> result) {
-  if (!result.ok()) throw std::runtime_error(result.error().message());
-  return std::move(result).value();
 }
 
 class OddsPeer final : public Peer {

@@ -2,19 +2,12 @@
 
 #include <filesystem>
 
-#include "odds/mesh/made/by_name.hpp"
-#include "odds/mesh/read.hpp"
+#include "benchmark/mesh_argument.hpp"
 
 namespace odds::benchmark {
 namespace {
 
 using SharedMesh = std::shared_ptr<const mesh::TriangleMesh>;
-
-Result<SharedMesh> load(const std::string& argument) {
-  auto mesh = argument.starts_with(mesh::made::prefix) ? mesh::made::make_shape(argument) : mesh::read(argument);
-  if (!mesh.ok()) return mesh.error();
-  return std::make_shared<const mesh::TriangleMesh>(std::move(mesh).value());
-}
 
 Result<SharedMesh> scaled(const mesh::TriangleMesh& mesh, double factor) {
   const Vec3 middle = 0.5 * (mesh.lower() + mesh.upper());
@@ -33,21 +26,21 @@ std::string short_name(const std::string& mesh) {
 }  // namespace
 
 Result<Workload> two_copies(const std::string& mesh) {
-  const auto loaded = load(mesh);
+  const auto loaded = mesh_of(mesh);
   if (!loaded.ok()) return loaded.error();
   return Workload{short_name(mesh), {loaded.value(), loaded.value()}, false};
 }
 
 Result<Workload> unlike_pair(const std::string& a, const std::string& b) {
-  const auto loaded_a = load(a);
+  const auto loaded_a = mesh_of(a);
   if (!loaded_a.ok()) return loaded_a.error();
-  const auto loaded_b = load(b);
+  const auto loaded_b = mesh_of(b);
   if (!loaded_b.ok()) return loaded_b.error();
   return Workload{short_name(a) + " + " + short_name(b), {loaded_a.value(), loaded_b.value()}, false};
 }
 
 Result<Workload> nested_copies(const std::string& mesh) {
-  const auto outer = load(mesh);
+  const auto outer = mesh_of(mesh);
   if (!outer.ok()) return outer.error();
   const auto inner = scaled(*outer.value(), 0.994);
   if (!inner.ok()) return inner.error();

@@ -15,12 +15,15 @@
 #include "benchmark/pose_class.hpp"
 #include "benchmark/stopwatch.hpp"
 #include "odds/query/shape.hpp"
+#include "support/value_or_throw.hpp"
 #ifdef ODDS_WITH_BULLET
 #include "benchmark/peer_bullet.hpp"
 #endif
 
 namespace odds::benchmark {
 namespace {
+
+using testing::value_or_throw;
 
 struct Settings {
   std::vector<std::string> meshes;
@@ -185,12 +188,6 @@ void compare(const Settings& settings, const Workload& workload, Ratios& ratios,
     ratios.add(word, runs);
     write_csv(csv, workload.name, pose_class, runs, truth);
   }
-}
-
-template <class T>
-T value_or_throw(Result<T> result) {
-  if (!result.ok()) throw std::runtime_error(result.error().message());
-  return std::move(result).value();
 }
 
 std::vector<Workload> load_workloads(const Settings& settings) {

@@ -13,9 +13,12 @@
 #include "odds/mesh/made/by_name.hpp"
 #include "odds/query/pair.hpp"
 #include "odds/query/saved_shape.hpp"
+#include "support/value_or_throw.hpp"
 
 namespace odds::benchmark {
 namespace {
+
+using testing::value_or_throw;
 
 struct Settings {
   std::string shape = "torus_knot";
@@ -28,12 +31,6 @@ struct Settings {
 
 constexpr std::array<PoseClass, 3> classes = {PoseClass::near, PoseClass::touch, PoseClass::shallow};
 constexpr std::array<const char*, 3> colors = {"#1b7f5c", "#b8471b", "#3a5fb0"};
-
-template <class T>
-T value_or_throw(Result<T> result) {
-  if (!result.ok()) throw std::runtime_error(result.error().message());
-  return std::move(result).value();
-}
 
 /// About so many triangles of the shape; those of a knot's tube stay about equilateral.
 std::string argument_for(const std::string& shape, std::uint64_t triangles) {

@@ -26,6 +26,7 @@
 #include "odds/realtime/stall_ledger.hpp"
 #include "ode/budget_clock.hpp"
 #include "ode/known_convexes.hpp"
+#include "support/cache_emptier.hpp"
 
 namespace {
 
@@ -150,19 +151,10 @@ Measured measure_clock(double budget_us, int times) {
   return measured;
 }
 
-/// Leaves little of the mesh in the nearer caches, as other poses do.
-void forget_mesh() {
-  constexpr std::size_t line = 64;
-  static std::vector<unsigned char> other(std::size_t{2} << 20);
-  for (std::size_t i = 0; i < other.size(); i += line) {
-    volatile unsigned char& byte = other[i];
-    byte = static_cast<unsigned char>(byte + 1);
-  }
-}
-
 Measured measure(dGeomID mesh, const Body& body, const odds::mesh::TriangleMesh& shape, double size, double budget_us,
                  int poses, std::uint64_t seed) {
   NotedClock& clock = noted_clock();
+  odds::testing::CacheEmptier emptier;
   Measured measured;
   for (int i = 0; i < poses; ++i) {
     odds::math::Random random(seed, static_cast<std::uint64_t>(i));
@@ -179,7 +171,7 @@ Measured measure(dGeomID mesh, const Body& body, const odds::mesh::TriangleMesh&
     const auto [ledger, count] = collide();
     const bool stalled = ledger.stalls() > 0;
     const auto again = [&] {
-      forget_mesh();
+      emptier.run();  // as other poses do
       return collide().first;
     };
     const std::int64_t again_ns = stalled ? std::max(again().longest_gap_ns(), again().longest_gap_ns()) : 0;

@@ -13,21 +13,18 @@
 #include "ode/mesh/mass_properties.hpp"
 #include "ode/vectors.hpp"
 #include "ode_scenes/bullet.hpp"
+#include "support/value_or_throw.hpp"
 
 namespace odds::ode_scenes {
 namespace {
+
+using testing::value_or_throw;
 
 constexpr double step_s = 0.001;
 constexpr int most_asked = 64;
 
 /// ODE writes redundant contacts to stderr, thousands of times.
 void swallow(int, const char*, va_list) {}
-
-template <class T>
-T value_or_throw(Result<T> result) {
-  if (!result) throw std::runtime_error(result.error().message());
-  return std::move(result).value();
-}
 
 unsigned long units_of(double us) {
   return std::max(1UL, static_cast<unsigned long>(std::lround(scene::work_units_per_us * us)));
