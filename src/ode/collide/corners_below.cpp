@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "query/shape/bound_along.hpp"
 #include "query/shape/convex_region.hpp"
 #include "query/shape/near_segment.hpp"
 #include "query/wide/searches.hpp"
@@ -31,33 +32,8 @@ constexpr int sure_nodes = 12;
 constexpr double rough_share = 0.03;
 
 using OfLanes = query::CornerSearch::OfLanes;
+using query::BoundAlong;
 using query::wide::Extents;
-
-// Of direction . x.
-class BoundAlong {
- public:
-  BoundAlong(const query::CornerSearch& search, const Vec3& direction) noexcept
-      : kernels_(search.kernels()), direction_(direction.cast<float>()), margin_(search.margin() * direction_.norm()) {}
-
-  /// A bound exceeds what it is of by no more than that, but for the size of boxes.
-  [[nodiscard]] double excess() const noexcept { return 2.0 * static_cast<double>(margin_); }
-
-  void of(const tree::WideNode& node, OfLanes& most) const noexcept {
-    Extents extents;
-    kernels_.extents_of_children(node, direction_, extents);
-    for (std::size_t k = 0; k < tree::wide_lanes; ++k) most[k] = extents.greatest[k] + margin_;
-  }
-  void of(const tree::WideLeaf& leaf, const Vec3f& center, OfLanes& most) const noexcept {
-    Extents extents;
-    kernels_.extents_of_triangles(leaf, center, direction_, extents);
-    for (std::size_t k = 0; k < tree::wide_lanes; ++k) most[k] = extents.greatest[k] + margin_;
-  }
-
- private:
-  const query::wide::Searches& kernels_;
-  Vec3f direction_;
-  float margin_;
-};
 
 // Of the distance from a point, across a unit direction, squared, of what comes with the height along it. In units, so
 // that squares of floats neither vanish nor overflow.

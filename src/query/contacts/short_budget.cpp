@@ -6,6 +6,7 @@
 #include <span>
 
 #include "odds/math/tolerances.hpp"
+#include "query/contacts/corner_look.hpp"
 #include "query/contacts/flush_answer.hpp"
 #include "query/contacts/guess_contacts.hpp"
 #include "query/contacts/look_beside.hpp"
@@ -18,6 +19,8 @@ namespace {
 
 /// Budgets of less have no time for a patch beside the search.
 constexpr double short_us = 50.0;
+/// Budgets of less have no time for anything but guesses, also where there is no memory for late contacts.
+constexpr double guesses_only_us = 12.0;
 /// Of a longer one a guess is made from these hits: the first that are found lie on one side.
 constexpr double hits_per_microsecond = 1.0;
 constexpr double most_hits = 65536.0;
@@ -114,6 +117,14 @@ void work(const math::Pose& pose_b_in_a, const Request& request, Pair::Implement
   add_flush(request, pair, spending);
 }
 
+/// Guesses, and what stands in for them: contacts that were made with care need nothing beside them.
+void hold_by_corners(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair,
+                     Spending& spending) noexcept {
+  if (!pair.answer.contacts_late && !pair.answer.contacts_flush) {
+    support_by_corners(pose_b_in_a, request, pair, spending);
+  }
+}
+
 /// Contacts of what was found to meet, whatever is known of other places. False: flat faces explain all of it.
 bool guess_anew(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, const Request& request,
                 Pair::Implementation& pair, Spending& spending) noexcept {
@@ -171,8 +182,10 @@ bool may_be_late(const Request& request, const Pair::Implementation& pair) noexc
 }  // namespace
 
 bool is_short(const Request& request, const Pair::Implementation& pair) noexcept {
-  return may_be_late(request, pair) && (request.budget.microseconds < short_us || pair.late->is_wanted()) &&
-         pair.late->can_work();
+  if (!may_be_late(request, pair)) return false;
+  const double budget_us = request.budget.microseconds;
+  return budget_us < guesses_only_us ? pair.late->is_of_use()
+                                     : (budget_us < short_us || pair.late->is_wanted()) && pair.late->can_work();
 }
 
 void note_unfinished(const Request& request, Pair::Implementation& pair) noexcept {
@@ -208,6 +221,7 @@ bool carry_late_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_
     }
   }
   pair.answer.contacts_complete = false;
+  hold_by_corners(pose_b_in_a, request, pair, spending);
   work(pose_b_in_a, request, pair, spending);
   return true;
 }
@@ -234,12 +248,15 @@ void make_contacts_over_runs(const PosedMeshes& meshes, const math::Pose& pose_b
     pair.carried.keep_proofs(pair.hits.pairs());
   } else if (serves_late(pose_b_in_a, request, pair, spending)) {
     write_late(pose_b_in_a, request, pair);
+  } else if (look_for_corner(pose_b_in_a, pair, spending) && !pair.corners.empty()) {
+    if (!share_guess(pose_b_in_a, request, pair) && !recall_guess(pose_b_in_a, request, pair)) pair.answer.contacts = {};
   } else if (!share_guess(pose_b_in_a, request, pair)) {
     spending.reserve_for_contacts(pair.endings.rough);
     add_hits_of_work(meshes, pair, spending);
     guess_contacts(meshes, pose_b_in_a, known_normal, request, pair, spending);
     pair.late->keep_guess(pair.answer.contacts, pose_b_in_a);
   }
+  hold_by_corners(pose_b_in_a, request, pair, spending);
   if (!pair.answer.contacts_flush) add_flush(request, pair, spending);
   work(pose_b_in_a, request, pair, spending);
 }

@@ -111,6 +111,12 @@ class HastyMemory {
     }
   }
 
+  /// How many places are remembered, and which triangles crossed in each.
+  [[nodiscard]] std::size_t count() const noexcept { return count_; }
+  [[nodiscard]] TrianglePair pair_of(std::size_t place) const noexcept {
+    return {places_[place].triangle_a, places_[place].triangle_b};
+  }
+
   /// Appends to the `made` first of `contacts` those remembered places that are not near one of them, with `normal`, or
   /// their own where it is null or across theirs. Returns how many there are then.
   [[nodiscard]] std::size_t add_to(std::span<Contact> contacts, std::size_t made, const Vec3* normal,

@@ -1,6 +1,7 @@
 // Contacts that a run has no time for, made over the runs that follow.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -36,6 +37,8 @@ class LateContacts {
   /// Whether there is memory for work, and use in it: of bodies that cross in more places than are kept, a part says
   /// little.
   [[nodiscard]] bool can_work() const noexcept { return is_at_work() || (!too_many_ && has_room_); }
+  /// The same, whether there is memory or not.
+  [[nodiscard]] bool is_of_use() const noexcept { return is_at_work() || !too_many_; }
   /// The bodies were proved apart in this run. True: for so long now that the work should be dropped.
   [[nodiscard]] bool note_clear() noexcept {
     parted_ = true;
@@ -84,6 +87,8 @@ class LateContacts {
   [[nodiscard]] const math::Pose& pose() const noexcept { return pose_; }
   /// Whether this run takes over the last guess, which has left no time for the work.
   [[nodiscard]] bool shares_guess() const noexcept { return owed_ > 0 && guessed_ > 0; }
+  /// This run takes it over, for its time is for something else.
+  void share_guess() noexcept { owed_ = std::max(owed_, 1); }
   /// Contacts that this run has guessed.
   void keep_guess(std::span<const Contact> contacts, const math::Pose& pose_b_in_a) noexcept;
   /// If shares_guess(): writes those that still overlap, moved along. Returns how many.

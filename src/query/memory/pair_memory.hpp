@@ -13,6 +13,7 @@
 #include "query/ending_reserve.hpp"
 #include "query/flush/flush_contacts.hpp"
 #include "query/known/carried_contacts.hpp"
+#include "query/known/corner_contacts.hpp"
 #include "query/known/hasty_memory.hpp"
 #include "query/known/known_depth.hpp"
 #include "query/known/known_direction.hpp"
@@ -91,6 +92,7 @@ struct Pair::Implementation {
   FlushContacts flush;                          ///< of flat faces that lie on each other
   std::optional<NothingBeside> nothing_beside;  ///< but those faces
   HastyMemory haste;                            ///< of contacts that are guessed
+  CornerContacts corners;                       ///< beside those
   bool haste_has_begun = false;                 ///< in this run
   std::uint32_t hasty_runs = 0;                 ///< that guessed or might have
   Vec3 came = Vec3::Zero();  ///< how B came to where it met A since they were apart, unit, A's frame; zero: unknown

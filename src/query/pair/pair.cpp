@@ -45,10 +45,23 @@ bool witness_suffices(const PosedMeshes& meshes, const Request& request, Pair::I
       !spending.allows(1)) {
     return false;
   }
-  spending.spend_triangle_pairs(1);
-  if (!meshes.meet(pair.witness)) return false;
-  pair.hits.add(pair.witness);
-  return true;
+  const auto still_meets = [&](const TrianglePair& tried) {
+    spending.spend_triangle_pairs(1);
+    if (!meshes.meet(tried)) return false;
+    pair.hits.add(tried);
+    return true;
+  };
+  if (still_meets(pair.witness)) return true;
+  if (!is_short(request, pair)) return false;
+  // Places that were guessed in the runs before: to search again would take what time there is for contacts.
+  for (std::size_t i = 0; i < pair.haste.count(); ++i) {
+    if (!spending.allows(1) || !spending.may_go_on_after(2)) return false;
+    const TrianglePair guessed = pair.haste.pair_of(i);
+    if (!still_meets(guessed)) continue;
+    pair.witness = guessed;
+    return true;
+  }
+  return false;
 }
 
 void remember_witness(Pair::Implementation& pair) noexcept {
@@ -246,6 +259,7 @@ void forget_if_elsewhere(const PosedMeshes& meshes, Pair::Implementation& pair) 
       pair.previous_normal.setZero();
       pair.sweep.forget();
       pair.haste.forget();
+      pair.corners.forget();
       pair.flush.forget();
       pair.nothing_beside.reset();
       if (!pair.apart_last) pair.apart_at.reset();
@@ -335,7 +349,12 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
   pair.flush.begin();
   pair.haste_has_begun = false;
   pair.front.begin_run();
-  if (pair.late) pair.late->age(pose_b_in_a, smaller_size(pair));
+  if (pair.late) {
+    pair.late->age(pose_b_in_a, smaller_size(pair));
+    pair.corners.age(pose_b_in_a, smaller_size(pair));
+    // Where guesses push one way, one that is still good leaves the time for a look at corners, or for better contacts.
+    if (pair.corners.is_due() && pair.haste.is_unanimous()) pair.late->share_guess();
+  }
   const PosedMeshes meshes(pair.a->mesh(), pair.b->mesh(), a.origin(), b.origin(), pose_b_in_a);
   forget_if_elsewhere(meshes, pair);
   search_and_answer(a, b, meshes, pose_b_in_a, request, pair, spending);
@@ -452,6 +471,7 @@ void Pair::note_apart(const math::Pose& pose_b_in_a) noexcept {
         pair.near.forget();
         pair.sweep.forget();
         pair.haste.forget();
+        pair.corners.forget();
         pair.flush.forget();
         pair.nothing_beside.reset();
         if (pair.late) pair.late->forget();
@@ -485,6 +505,7 @@ void Pair::reset() noexcept {
   implementation_->has_witness = false;
   implementation_->sweep.forget();
   implementation_->haste.forget();
+  implementation_->corners.forget();
   implementation_->flush.forget();
   implementation_->nothing_beside.reset();
   implementation_->hasty_runs = 0;
