@@ -52,6 +52,38 @@ TEST_F(BoxTest, RestingOnATessellatedFloorAllNormalsAreVerticalAndCornersAreHeld
   }
 }
 
+// A corner of whose two sides one leans over is not below the section that the floor makes through the box, but beside
+// it by nearly nothing: a box was held by two corners, across, as soon as it was tilted by 1e-11, and rocked.
+TEST_F(BoxTest, StandingNearlyUprightItIsHeldAtAllItsCorners) {
+  const dGeomID floor = mesh_geom(box_shape(2, 2, 0.2, 16), space);
+  dGeomOddsMeshSetCarryMotion(floor, 0);  // each collision stands alone
+  const dGeomID box = dCreateBox(space, 0.3, 0.2, 0.1);
+  for (int round = 0; round < 300; ++round) {
+    const double lean = std::pow(10.0, -7.0 + 4.0 * uniform(random));  // 1e-11 .. 1e-3
+    const double towards = 3.0 * uniform(random);
+    dMatrix3 turned;
+    dRFrom2Axes(turned, std::cos(towards), std::sin(towards), lean, -std::sin(towards), std::cos(towards),
+                lean * uniform(random));
+    dGeomSetRotation(box, turned);
+    const Vec3 center(0.5 * uniform(random), 0.5 * uniform(random), 0.149);
+    dGeomSetPosition(box, center.x(), center.y(), center.z());
+    const auto contacts = collide(box, floor, 8);
+    expect_sound(contacts, box, floor);
+    for (const double x : {-0.15, 0.15}) {
+      for (const double y : {-0.1, 0.1}) {
+        dVector3 corner;
+        dGeomGetRelPointPos(box, x, y, -0.05, corner);
+        const double depth = 0.1 - corner[2];
+        const auto holds = [&](const dContactGeom& contact) {
+          const Vec3 apart = position_of(contact) - Vec3(corner[0], corner[1], 0.1);
+          return apart.norm() < 1e-5 && std::abs(contact.depth - depth) < 1e-5;
+        };
+        EXPECT_TRUE(std::any_of(contacts.begin(), contacts.end(), holds)) << round << ": lean " << lean;
+      }
+    }
+  }
+}
+
 TEST_F(BoxTest, ATiltedBoxIsAsDeepAsItsLowestCorner) {
   const dGeomID floor = mesh_geom(box_shape(2, 2, 0.2, 16), space);
   const dGeomID box = dCreateBox(space, 0.3, 0.2, 0.1);

@@ -112,7 +112,7 @@ void add_points(const Patch& patch, const Vec3& direction, const ConvexBody& bod
   const std::span<const Piece* const> pieces = patch.span();
   bool is_late = false;
   for (std::size_t i = 0; i < pieces.size() && !is_late; ++i) {
-    add_corners_below(*pieces[i], direction, features, points);
+    add_corners_below(*pieces[i], body, direction, features, points);
     if (ridges) edges.add_crossings(*pieces[i], points);
     is_late = limit.time_is_up(time_for_points);
   }

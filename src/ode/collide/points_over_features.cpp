@@ -8,10 +8,18 @@
 namespace odds::ode {
 namespace {
 
-bool contains(const Piece& piece, const Vec3& point) noexcept {
+// A side of the body that leans over by no more than this (sine) cuts a piece off only a little before the point over a
+// corner of that side: the surface goes on there.
+constexpr double most_lean = 0.1;
+
+// Whether a piece is over a corner of the body: seen along `direction` at `above`.
+bool is_over(const Piece& piece, const ConvexBody& body, const Vec3& direction, const Vec3& above) noexcept {
   for (std::size_t i = 0; i < piece.count; ++i) {
+    const std::int16_t side = piece.side[i];
+    const bool is_cut = side != Piece::own_edge;
+    if (is_cut && body.sides()[static_cast<std::size_t>(side)].normal.dot(direction) < most_lean) continue;
     const Vec3 edge = piece.corners[(i + 1) % piece.count] - piece.corners[i];
-    if (piece.normal.cross(edge).dot(point - piece.corners[i]) < -1e-12 * edge.squaredNorm()) return false;
+    if (piece.normal.cross(edge).dot(above - piece.corners[i]) < -1e-12 * edge.squaredNorm()) return false;
   }
   return true;
 }
@@ -27,8 +35,8 @@ struct Around {
     lower.array() -= little;
     upper.array() += little;
   }
-  [[nodiscard]] bool has(const Vec3& point) const noexcept {
-    return (point.array() >= lower.array()).all() && (point.array() <= upper.array()).all();
+  [[nodiscard]] bool has(const Vec3& point, double beside) const noexcept {
+    return (point.array() >= lower.array() - beside).all() && (point.array() <= upper.array() + beside).all();
   }
   Vec3 lower;
   Vec3 upper;
@@ -36,7 +44,7 @@ struct Around {
 
 }  // namespace
 
-void add_corners_below(const Piece& piece, const Vec3& direction, const Features& features,
+void add_corners_below(const Piece& piece, const ConvexBody& body, const Vec3& direction, const Features& features,
                        ManifoldPoints& points) noexcept {
   const double facing = piece.normal.dot(direction);
   if (!(facing > 1e-6)) return;
@@ -46,7 +54,8 @@ void add_corners_below(const Piece& piece, const Vec3& direction, const Features
     const double depth = piece.normal.dot(piece.corners[0] - corner) / facing;
     if (!(depth > 0.0)) continue;
     const Vec3 above = corner + depth * direction;
-    if (around.has(above) && contains(piece, above)) points.add(above, depth, piece.triangle);
+    if (around.has(above, most_lean * depth) && is_over(piece, body, direction, above))
+      points.add(above, depth, piece.triangle);
   }
 }
 

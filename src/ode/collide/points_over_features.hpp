@@ -11,8 +11,9 @@
 
 namespace odds::ode {
 
-/// Corners of the body under the piece: where one dips through a face.
-void add_corners_below(const Piece& piece, const Vec3& direction, const Features& features,
+/// Corners of the body under the piece, or beside it where sides of the body lean over a little and the triangle goes
+/// on: where one dips through a face.
+void add_corners_below(const Piece& piece, const ConvexBody& body, const Vec3& direction, const Features& features,
                        ManifoldPoints& points) noexcept;
 
 /// Edges of a body, seen along a direction.
