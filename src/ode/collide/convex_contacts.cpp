@@ -111,10 +111,14 @@ void add_points(const Patch& patch, const Vec3& direction, const ConvexBody& bod
   const EdgesAlong edges(features, direction, body.box_center().norm() + body.box_half_extents().norm());
   const std::span<const Piece* const> pieces = patch.span();
   bool is_late = false;
+  std::uint64_t below = 0;
   for (std::size_t i = 0; i < pieces.size() && !is_late; ++i) {
-    add_corners_below(*pieces[i], body, direction, features, points);
+    add_corners_below(*pieces[i], body, direction, features, points, below);
     if (ridges) edges.add_crossings(*pieces[i], points);
     is_late = limit.time_is_up(time_for_points);
+  }
+  if (!is_late && body.crowding() > 0.0) {
+    add_curved_crossings(pieces, body, direction, features, patch.exit.depth, below, points);
   }
   for (std::size_t i = 0; i < pieces.size() && !is_late; ++i) {
     if (!add_corners(*pieces[i], direction, body, limit, points)) return;

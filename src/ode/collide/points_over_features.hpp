@@ -12,9 +12,14 @@
 namespace odds::ode {
 
 /// Corners of the body under the piece, or beside it where sides of the body lean over a little and the triangle goes
-/// on: where one dips through a face.
+/// on: where one dips through a face. The bits of `below` are set for those.
 void add_corners_below(const Piece& piece, const ConvexBody& body, const Vec3& direction, const Features& features,
-                       ManifoldPoints& points) noexcept;
+                       ManifoldPoints& points, std::uint64_t& below) noexcept;
+
+/// Edges of the surface over a curved edge of the body: the deepest places where the surface ends before the body's
+/// lowest point, which is not `below` it. `depth` (metres): what is no higher above the lowest point may be below.
+void add_curved_crossings(std::span<const Piece* const> pieces, const ConvexBody& body, const Vec3& direction,
+                          const Features& features, double depth, std::uint64_t below, ManifoldPoints& points) noexcept;
 
 /// Edges of a body, seen along a direction.
 class EdgesAlong {

@@ -77,6 +77,12 @@ struct Features {
   }
 };
 
+/// Where a straight line goes over a curved edge.
+struct OverEdge {
+  double at;     ///< on the line, in lengths of what it was given by
+  double depth;  ///< of the edge below it
+};
+
 /// All in the body's own frame, metres. Every function is noexcept, without allocation, and may be called from any
 /// number of threads.
 class ConvexBody {
@@ -114,6 +120,12 @@ class ConvexBody {
   virtual void add_exits(std::span<const Piece* const> patch, bool refined, ExitList& exits) const noexcept = 0;
   /// Corners and edges less than `depth` above the lowest point, where `up` (unit) points up.
   virtual void add_features(const Vec3& up, double depth, Features& features) const noexcept = 0;
+  /// Where a line, seen along `up` (unit, points up), goes over a curved edge of the body that is low; how many. Those
+  /// that are straight are features.
+  virtual std::size_t over_curved_edge(const Vec3& /*begin*/, const Vec3& /*along*/, const Vec3& /*up*/,
+                                       std::array<OverEdge, 2>& /*over*/) const noexcept {
+    return 0;
+  }
 
  protected:
   ConvexBody() = default;
