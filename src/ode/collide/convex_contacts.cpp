@@ -168,7 +168,8 @@ void write_manifolds(const PreparedMesh& mesh, const math::Pose& body_in_mesh, s
     while (leader[i] < i && !(leader[leader[i]] == leader[i] && same(patches[leader[i]], patches[i]))) ++leader[i];
     manifolds += leader[i] == i ? 1 : 0;
   }
-  const bool ridges = patches.size() > 1 || !is_flat(patches[0]) || body.crowding() > 0.0;
+  // On flat surface corners say all; but where a sheet ends, no patch of its sides tells of it.
+  const bool ridges = patches.size() > 1 || !is_flat(patches[0]) || body.crowding() > 0.0 || !mesh.closed;
   for (std::size_t i = 0; i < patches.size() && !writer.full(); ++i) {
     if (leader[i] != i) continue;
     if (writer.count() > 0 && limit.is_over()) break;  // the deepest manifold has to do
