@@ -112,6 +112,42 @@ TEST_F(CylinderTest, LeaningOverAnEdgeItIsAsDeepAsItsRimThere) {
   }
 }
 
+// Its lowest point may be over one facet by nearly nothing, while its rim is deep in the next: that was not asked for.
+TEST_F(CylinderTest, OnFacetsItIsAsDeepAsItsRimIsOverTheirEdges) {
+  const dGeomID ball = mesh_geom(sphere_shape(1.0, 4), space);
+  dGeomOddsMeshSetCarryMotion(ball, 0);  // each collision stands alone
+  int too_shallow = 0;
+  for (int round = 0; round < 3000; ++round) {
+    const double r = 0.175 + 0.125 * uniform(random);
+    const double l = 0.35 + 0.25 * uniform(random);
+    const dGeomID cylinder = dCreateCylinder(nullptr, r, l);
+    rotate(cylinder, Vec3(uniform(random), uniform(random), uniform(random)), 3.0 * uniform(random));
+    const Vec3 outwards = Vec3(uniform(random), uniform(random), uniform(random)).normalized();
+    const auto place = [&](const Vec3& at) { dGeomSetPosition(cylinder, at.x(), at.y(), at.z()); };
+    double touches = 0.5;
+    double is_apart = 2.0;
+    for (int i = 0; i < 30; ++i) {
+      const double between = 0.5 * (touches + is_apart);
+      place(between * outwards);
+      (collide(ball, cylinder, 1).empty() ? is_apart : touches) = between;
+    }
+    const double pressed = std::pow(10.0, -2.75 + 0.75 * uniform(random));
+    const Vec3 at = (touches - pressed) * outwards;
+    place(at);
+    const auto contacts = collide(ball, cylinder);
+    ASSERT_FALSE(contacts.empty()) << round;
+    place(at - contacts[0].depth * normal_of(contacts[0]));
+    for (const dContactGeom& left : collide(ball, cylinder)) {
+      if (left.depth > 0.3 * pressed) {
+        ++too_shallow;
+        break;
+      }
+    }
+    dGeomDestroy(cylinder);
+  }
+  EXPECT_EQ(too_shallow, 0);
+}
+
 TEST_F(CylinderTest, LyingItIsHeldAtBothEnds) {
   const dGeomID floor = mesh_geom(box_shape(2, 2, 0.4, 16), space);
   const dGeomID cylinder = dCreateCylinder(space, radius, length);

@@ -34,6 +34,8 @@ constexpr double for_each_piece_us = 0.4;
 constexpr double choosing_us = 4.0;
 constexpr double choosing_of_few_us = 0.8;
 
+constexpr std::size_t most_large_pieces = 16;
+
 struct Patch {
   std::array<const Piece*, most_pieces> pieces;
   std::size_t count = 0;
@@ -111,20 +113,26 @@ void add_points(const Patch& patch, const Vec3& direction, const ConvexBody& bod
   const EdgesAlong edges(features, direction, body.box_center().norm() + body.box_half_extents().norm());
   const std::span<const Piece* const> pieces = patch.span();
   bool is_late = false;
-  std::uint64_t below = 0;
+  std::array<double, Features::most> depths = {};
   for (std::size_t i = 0; i < pieces.size() && !is_late; ++i) {
-    add_corners_below(*pieces[i], body, direction, features, points, below);
+    add_corners_below(*pieces[i], body, direction, features, points, depths);
     if (ridges) edges.add_crossings(*pieces[i], points);
     is_late = limit.time_is_up(time_for_points);
-  }
-  if (!is_late && body.crowding() > 0.0) {
-    add_curved_crossings(pieces, body, direction, features, patch.exit.depth, below, points);
   }
   for (std::size_t i = 0; i < pieces.size() && !is_late; ++i) {
     if (!add_corners(*pieces[i], direction, body, limit, points)) return;
     is_late = limit.time_is_up(time_for_points);
   }
-  if (!is_late) return;
+  if (!is_late) {
+    const bool has_curved_edges = body.crowding() > 0.0;
+    if (!has_curved_edges || !some_are_missed(body, direction, features, patch.exit.depth, depths)) return;
+    // Of many pieces so small that their corners are near the body's edges only deeper places are worth their time.
+    const double least = pieces.size() > most_large_pieces ? points.deepest() : 0.0;
+    for (std::size_t i = 0; i < pieces.size() && !limit.time_is_up(0.9 * time_for_points); ++i) {
+      add_curved_crossings(*pieces[i], body, direction, least, points);
+    }
+    return;
+  }
   // Neighbours stand beside each other: a few from all over hold the body, the next ones on one side only.
   const std::size_t few = std::min<std::size_t>(8, pieces.size());
   for (std::size_t i = 0; i < few; ++i) {

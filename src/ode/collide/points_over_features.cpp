@@ -45,8 +45,7 @@ struct Around {
 }  // namespace
 
 void add_corners_below(const Piece& piece, const ConvexBody& body, const Vec3& direction, const Features& features,
-                       ManifoldPoints& points, std::uint64_t& below) noexcept {
-  static_assert(Features::most <= 64);
+                       ManifoldPoints& points, std::array<double, Features::most>& depths) noexcept {
   const double facing = piece.normal.dot(direction);
   if (!(facing > 1e-6)) return;
   const Around around(piece);
@@ -57,38 +56,37 @@ void add_corners_below(const Piece& piece, const ConvexBody& body, const Vec3& d
     const Vec3 above = corner + depth * direction;
     if (!around.has(above, most_lean * depth) || !is_over(piece, body, direction, above)) continue;
     points.add(above, depth, piece.triangle);
-    below |= std::uint64_t{1} << c;
+    depths[c] = std::max(depths[c], depth);
   }
 }
 
-void add_curved_crossings(std::span<const Piece* const> pieces, const ConvexBody& body, const Vec3& direction,
-                          const Features& features, double depth, std::uint64_t below,
-                          ManifoldPoints& points) noexcept {
-  constexpr double clearly_lower = 0.99;
-  const double lowest = -body.reach(-direction);
-  bool all_below = true;
+bool some_are_missed(const ConvexBody& body, const Vec3& direction, const Features& features, double depth,
+                     const std::array<double, Features::most>& depths) noexcept {
+  constexpr double nearly = 0.9;
+  const double surface = depth - body.reach(-direction);
   for (std::size_t c = 0; c < features.corner_count; ++c) {
-    const bool is_low = direction.dot(features.corners[c]) - lowest < clearly_lower * depth;
-    all_below = all_below && (!is_low || (below >> c & 1U) != 0);
+    if (depths[c] < nearly * (surface - direction.dot(features.corners[c]))) return true;
   }
-  if (all_below) return;
-  for (const Piece* piece : pieces) {
-    for (std::size_t i = 0; i < piece->count; ++i) {
-      if (piece->side[i] != Piece::own_edge) continue;
-      const Vec3& begin = piece->corners[i];
-      const Vec3 along = piece->corners[(i + 1) % piece->count] - begin;
-      std::array<OverEdge, 2> over;
-      const std::size_t count = body.over_curved_edge(begin, along, direction, over);
-      for (const OverEdge& place : std::span(over).first(count)) {
-        if (!(place.depth > 0.0)) continue;
-        // Where the body cut the edge off, the edge goes on, and may be over a side that leans.
-        const double beyond = most_lean * place.depth / along.norm();
-        const bool cut_before = piece->side[(i + piece->count - 1) % piece->count] != Piece::own_edge;
-        const bool cut_after = piece->side[(i + 1) % piece->count] != Piece::own_edge;
-        const double first = cut_before ? -beyond : 0.0;
-        const double last = cut_after ? 1.0 + beyond : 1.0;
-        if (place.at >= first && place.at <= last) points.add(begin + place.at * along, place.depth, piece->triangle);
-      }
+  return false;
+}
+
+void add_curved_crossings(const Piece& piece, const ConvexBody& body, const Vec3& direction, double least,
+                          ManifoldPoints& points) noexcept {
+  const auto is_cut = [&](std::size_t i) { return piece.side[i % piece.count] != Piece::own_edge; };
+  for (std::size_t i = 0; i < piece.count; ++i) {
+    if (is_cut(i)) continue;
+    const Vec3& begin = piece.corners[i];
+    const Vec3 along = piece.corners[(i + 1) % piece.count] - begin;
+    std::array<OverEdge, 2> over;
+    const std::size_t count = body.over_curved_edge(begin, along, direction, over);
+    for (const OverEdge& place : std::span(over).first(count)) {
+      if (!(place.depth > least)) continue;
+      // Where the body cut the edge off, the edge goes on, and may be over a side that leans.
+      const double beyond = most_lean * place.depth / along.norm();
+      const double first = is_cut(i + piece.count - 1) ? -beyond : 0.0;
+      const double last = is_cut(i + 1) ? 1.0 + beyond : 1.0;
+      if (place.at < first || place.at > last) continue;
+      points.add(begin + place.at * along, place.depth, piece.triangle, points.all.size());
     }
   }
 }

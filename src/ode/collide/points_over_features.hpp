@@ -12,14 +12,19 @@
 namespace odds::ode {
 
 /// Corners of the body under the piece, or beside it where sides of the body lean over a little and the triangle goes
-/// on: where one dips through a face. The bits of `below` are set for those.
+/// on: where one dips through a face. `depths`: of each corner the greatest so far.
 void add_corners_below(const Piece& piece, const ConvexBody& body, const Vec3& direction, const Features& features,
-                       ManifoldPoints& points, std::uint64_t& below) noexcept;
+                       ManifoldPoints& points, std::array<double, Features::most>& depths) noexcept;
 
-/// Edges of the surface over a curved edge of the body: the deepest places where the surface ends before the body's
-/// lowest point, which is not `below` it. `depth` (metres): what is no higher above the lowest point may be below.
-void add_curved_crossings(std::span<const Piece* const> pieces, const ConvexBody& body, const Vec3& direction,
-                          const Features& features, double depth, std::uint64_t below, ManifoldPoints& points) noexcept;
+/// Whether some corner of the body is not found so deep as it is below `depth` (metres) over the lowest point: the
+/// surface ends before it, or falls away.
+[[nodiscard]] bool some_are_missed(const ConvexBody& body, const Vec3& direction, const Features& features,
+                                   double depth, const std::array<double, Features::most>& depths) noexcept;
+
+/// Edges of the piece over a curved edge of the body: there it is the deepest where its lowest point is beside the
+/// piece. Only those deeper than `least`, metres.
+void add_curved_crossings(const Piece& piece, const ConvexBody& body, const Vec3& direction, double least,
+                          ManifoldPoints& points) noexcept;
 
 /// Edges of a body, seen along a direction.
 class EdgesAlong {
