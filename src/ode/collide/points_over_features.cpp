@@ -49,12 +49,14 @@ void add_corners_below(const Piece& piece, const ConvexBody& body, const Vec3& d
   const double facing = piece.normal.dot(direction);
   if (!(facing > 1e-6)) return;
   const Around around(piece);
+  const bool may_lack_corners = piece.count == Piece::most_corners;
   for (std::size_t c = 0; c < features.corner_count; ++c) {
     const Vec3& corner = features.corners[c];
     const double depth = piece.normal.dot(piece.corners[0] - corner) / facing;
     if (!(depth > 0.0)) continue;
     const Vec3 above = corner + depth * direction;
-    if (!around.has(above, most_lean * depth) || !is_over(piece, body, direction, above)) continue;
+    if (!(may_lack_corners || around.has(above, most_lean * depth)) || !is_over(piece, body, direction, above))
+      continue;
     points.add(above, depth, piece.triangle);
     depths[c] = std::max(depths[c], depth);
   }

@@ -19,7 +19,7 @@ struct HalfSpace {
 /// A triangle cut by the sides of a body, in the body's frame. Not set at first: a collision has room for more than a
 /// hundred, and little time. What most have comes first, and so from few lines of the cache.
 struct Piece {
-  static constexpr std::size_t most_corners = 24;  ///< further corners are left out
+  static constexpr std::size_t most_corners = 24;  ///< of more the flattest between two sides of the body are left out
   static constexpr std::int16_t own_edge = -1;
   Vec3 normal;         ///< unit, of the triangle
   double area;         ///< of the piece
