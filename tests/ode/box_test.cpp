@@ -52,6 +52,38 @@ TEST_F(BoxTest, RestingOnATessellatedFloorAllNormalsAreVerticalAndCornersAreHeld
   }
 }
 
+// A corner of whose two sides one leans over is not below the section that the floor makes through the box, but beside
+// it by nearly nothing: a box was held by two corners, across, as soon as it was tilted by 1e-11, and rocked.
+TEST_F(BoxTest, StandingNearlyUprightItIsHeldAtAllItsCorners) {
+  const dGeomID floor = mesh_geom(box_shape(2, 2, 0.2, 16), space);
+  dGeomOddsMeshSetCarryMotion(floor, 0);  // each collision stands alone
+  const dGeomID box = dCreateBox(space, 0.3, 0.2, 0.1);
+  for (int round = 0; round < 300; ++round) {
+    const double lean = std::pow(10.0, -7.0 + 4.0 * uniform(random));  // 1e-11 .. 1e-3
+    const double towards = 3.0 * uniform(random);
+    dMatrix3 turned;
+    dRFrom2Axes(turned, std::cos(towards), std::sin(towards), lean, -std::sin(towards), std::cos(towards),
+                lean * uniform(random));
+    dGeomSetRotation(box, turned);
+    const Vec3 center(0.5 * uniform(random), 0.5 * uniform(random), 0.149);
+    dGeomSetPosition(box, center.x(), center.y(), center.z());
+    const auto contacts = collide(box, floor, 8);
+    expect_sound(contacts, box, floor);
+    for (const double x : {-0.15, 0.15}) {
+      for (const double y : {-0.1, 0.1}) {
+        dVector3 corner;
+        dGeomGetRelPointPos(box, x, y, -0.05, corner);
+        const double depth = 0.1 - corner[2];
+        const auto holds = [&](const dContactGeom& contact) {
+          const Vec3 apart = position_of(contact) - Vec3(corner[0], corner[1], 0.1);
+          return apart.norm() < 1e-5 && std::abs(contact.depth - depth) < 1e-5;
+        };
+        EXPECT_TRUE(std::any_of(contacts.begin(), contacts.end(), holds)) << round << ": lean " << lean;
+      }
+    }
+  }
+}
+
 TEST_F(BoxTest, ATiltedBoxIsAsDeepAsItsLowestCorner) {
   const dGeomID floor = mesh_geom(box_shape(2, 2, 0.2, 16), space);
   const dGeomID box = dCreateBox(space, 0.3, 0.2, 0.1);
@@ -274,6 +306,37 @@ TEST_F(BoxTest, ASheetOfOneLayerIsLeftAtItsFront) {
 
 // The first triangles may be those of a wall only: along its normal the box would go all of the length of what it
 // stands on. It was pushed by up to 1.4 m, out of a cube of 1 m in which it lay by 1 cm.
+// Its lowest corner is beside the sheet, and the deepest place over it where an edge of the box goes over the border.
+// Of flat surface only corners were asked for, as the sides of a slab make the others known: a box sank in at the
+// border.
+TEST_F(BoxTest, LeaningOverTheBorderOfASheetItIsAsDeepAsItsEdgesThere) {
+  auto made =
+      mesh::TriangleMesh::make({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}, "sheet");
+  const auto shape = query::Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(made).value()));
+  const dGeomID sheet = mesh_geom(shape.value(), space);
+  dGeomOddsMeshSetCarryMotion(sheet, 0);  // each collision stands alone
+  const dGeomID box = dCreateBox(space, 0.3, 0.2, 0.1);
+  for (int round = 0; round < 1000; ++round) {
+    rotate(box, Vec3(uniform(random), uniform(random), 0.0), 0.03 * uniform(random));
+    dGeomSetPosition(box, 1.0 + 0.05 * uniform(random), 0.5 * uniform(random), 0.05);
+    double deepest = 0.0;
+    for (int i = 0; i <= 1000; ++i) {
+      const double t = 0.002 * i - 1.0;
+      for (const Vec3& at : {Vec3(t, -1, -1), Vec3(t, 1, -1), Vec3(-1, t, -1), Vec3(1, t, -1)}) {
+        dVector3 below;
+        dGeomGetRelPointPos(box, 0.15 * at.x(), 0.1 * at.y(), 0.05 * at.z(), below);
+        if (below[0] <= 1.0) deepest = std::max(deepest, -below[2]);
+      }
+    }
+    if (deepest < 1e-4) continue;
+    const auto contacts = collide(box, sheet, 8);
+    ASSERT_FALSE(contacts.empty()) << "round " << round;
+    expect_sound(contacts, box, sheet);
+    EXPECT_GT(contacts[0].normal[2], 0.99) << "round " << round;
+    EXPECT_NEAR(contacts[0].depth, deepest, 0.05 * deepest) << "round " << round;
+  }
+}
+
 TEST_F(BoxTest, AWallThatIsAllThatIsKnownPushesItNoFartherThanOutOfTheMesh) {
   const dGeomID mesh = mesh_geom(box_shape(1, 1, 1, 1), space);
   const dGeomID box = dCreateBox(space, 1, 1, 1);

@@ -92,6 +92,41 @@ TEST_F(CapsuleTest, LyingOnATessellatedFloorItIsHeldAtBothEnds) {
   }
 }
 
+// All along it is as near to the table, but for rounding: the nearest place was often at its inner end, and none at the
+// table's edge.
+TEST_F(CapsuleTest, LyingOverAnEdgeItIsHeldThereAndAtItsInnerEnd) {
+  const dGeomID table = mesh_geom(box_shape(2, 2, 0.4, 3), space);
+  dGeomOddsMeshSetCarryMotion(table, 0);  // each collision stands alone
+  const dGeomID capsule = dCreateCapsule(space, 0.1, 0.6);
+  for (int round = 0; round < 300; ++round) {
+    rotate(table, Vec3(uniform(random), uniform(random), uniform(random)), 3.0 * uniform(random));
+    const auto in_world = [&](const Vec3& v) {
+      dVector3 world;
+      dGeomVectorToWorld(table, v.x(), v.y(), v.z(), world);  // it is at the origin
+      return Vec3(world[0], world[1], world[2]);
+    };
+    const Vec3 along = Vec3(1.0, 0.5 * uniform(random), 1e-4 * uniform(random)).normalized();
+    const Vec3 axis = in_world(along);
+    dMatrix3 lying;
+    dRFromZAxis(lying, axis.x(), axis.y(), axis.z());
+    dGeomSetRotation(capsule, lying);
+    const Vec3 middle(0.95 + 0.1 * uniform(random), 0.5 * uniform(random), 0.299);
+    const Vec3 center = in_world(middle);
+    dGeomSetPosition(capsule, center.x(), center.y(), center.z());
+    const auto contacts = collide(table, capsule);
+    expect_sound(contacts, table, capsule);
+    for (const double at : {-0.3, (1.0 - middle.x()) / along.x()}) {  // from the middle, along the axis
+      const Vec3 on_axis = middle + at * along;
+      const Vec3 place = in_world(Vec3(on_axis.x(), on_axis.y(), 0.2));
+      const double depth = 0.3 - on_axis.z();
+      const auto holds = [&](const dContactGeom& contact) {
+        return (position_of(contact) - place).norm() < 1e-3 && std::abs(contact.depth - depth) < 1e-6;
+      };
+      EXPECT_TRUE(std::any_of(contacts.begin(), contacts.end(), holds)) << "round " << round << ", at " << at;
+    }
+  }
+}
+
 TEST_F(CapsuleTest, StandingItHasOneContact) {
   const dGeomID floor = mesh_geom(box_shape(2, 2, 0.2, 16), space);
   const dGeomID capsule = dCreateCapsule(space, 0.1, 0.4);

@@ -1,6 +1,7 @@
 // Mesh against cylinder: exact depths on floors in every tilt; standing, lying, on beams; out of boxes; swallowed.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "odds/mesh/made/terrain.hpp"
@@ -71,6 +72,80 @@ TEST_F(CylinderTest, StandingItIsHeldAllAroundTheRim) {
     }
     EXPECT_LT((middle - place_of(cylinder)).head<2>().norm(), 0.25 * radius) << "spread around the centre";
   }
+}
+
+// Its lowest point is beside the table; the deepest one over it is where its rim goes over the table's edge. What was
+// cut there by a prism around it, and pulled in, was on the wall, where it had no depth: 1e-15 m instead of
+// millimetres.
+TEST_F(CylinderTest, LeaningOverAnEdgeItIsAsDeepAsItsRimThere) {
+  const dGeomID table = mesh_geom(box_shape(2, 2, 0.4, 3), space);
+  dGeomOddsMeshSetCarryMotion(table, 0);  // each collision stands alone
+  const dGeomID cylinder = dCreateCylinder(space, radius, length);
+  for (int round = 0; round < 1000; ++round) {
+    rotate(table, Vec3(uniform(random), uniform(random), uniform(random)), 3.0 * uniform(random));
+    const auto in_world = [&](const Vec3& v) {
+      dVector3 world;
+      dGeomVectorToWorld(table, v.x(), v.y(), v.z(), world);  // it is at the origin
+      return Vec3(world[0], world[1], world[2]);
+    };
+    const Vec3 axis = in_world(Vec3(0.025 * (1.0 + uniform(random)), 0.025 * uniform(random), -1.0).normalized());
+    dMatrix3 leaning;
+    dRFromZAxis(leaning, axis.x(), axis.y(), axis.z());
+    dGeomSetRotation(cylinder, leaning);
+    const Vec3 center = in_world(Vec3(1.0 - 0.06 * uniform(random), 0.8 * uniform(random), 0.2 + 0.5 * length - 1e-4));
+    dGeomSetPosition(cylinder, center.x(), center.y(), center.z());
+    double deepest = 0.0;
+    for (int i = 0; i < 20000; ++i) {
+      const double angle = 1e-4 * std::numbers::pi * i;
+      dVector3 rim;
+      dVector3 over;
+      dGeomGetRelPointPos(cylinder, radius * std::cos(angle), radius * std::sin(angle), 0.5 * length, rim);
+      dGeomGetPosRelPoint(table, rim[0], rim[1], rim[2], over);
+      if (over[0] <= 1.0) deepest = std::max(deepest, 0.2 - over[2]);
+    }
+    if (deepest < 1e-4) continue;
+    const auto contacts = collide(table, cylinder);
+    ASSERT_FALSE(contacts.empty()) << "round " << round;
+    expect_sound(contacts, table, cylinder);
+    EXPECT_LT(normal_of(contacts[0]).dot(in_world(Vec3::UnitZ())), -0.98) << "round " << round;
+    EXPECT_NEAR(contacts[0].depth, deepest, 0.05 * deepest) << "round " << round;
+  }
+}
+
+// Its lowest point may be over one facet by nearly nothing, while its rim is deep in the next: that was not asked for.
+TEST_F(CylinderTest, OnFacetsItIsAsDeepAsItsRimIsOverTheirEdges) {
+  const dGeomID ball = mesh_geom(sphere_shape(1.0, 4), space);
+  dGeomOddsMeshSetCarryMotion(ball, 0);  // each collision stands alone
+  int too_shallow = 0;
+  for (int round = 0; round < 3000; ++round) {
+    const double r = 0.175 + 0.125 * uniform(random);
+    const double l = 0.35 + 0.25 * uniform(random);
+    const dGeomID cylinder = dCreateCylinder(nullptr, r, l);
+    rotate(cylinder, Vec3(uniform(random), uniform(random), uniform(random)), 3.0 * uniform(random));
+    const Vec3 outwards = Vec3(uniform(random), uniform(random), uniform(random)).normalized();
+    const auto place = [&](const Vec3& at) { dGeomSetPosition(cylinder, at.x(), at.y(), at.z()); };
+    double touches = 0.5;
+    double is_apart = 2.0;
+    for (int i = 0; i < 30; ++i) {
+      const double between = 0.5 * (touches + is_apart);
+      place(between * outwards);
+      (collide(ball, cylinder, 1).empty() ? is_apart : touches) = between;
+    }
+    const double pressed = std::pow(10.0, -2.75 + 0.75 * uniform(random));
+    const Vec3 at = (touches - pressed) * outwards;
+    place(at);
+    const auto contacts = collide(ball, cylinder);
+    ASSERT_FALSE(contacts.empty()) << round;
+    place(at - contacts[0].depth * normal_of(contacts[0]));
+    for (const dContactGeom& left : collide(ball, cylinder)) {
+      if (left.depth > 0.3 * pressed) {
+        ++too_shallow;
+        break;
+      }
+    }
+    dGeomDestroy(cylinder);
+  }
+  EXPECT_EQ(too_shallow, 0);
 }
 
 TEST_F(CylinderTest, LyingItIsHeldAtBothEnds) {

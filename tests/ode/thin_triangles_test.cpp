@@ -1,5 +1,6 @@
 // Triangles that are nothing but the rounding of their corners, as files have them where edges of unlike length meet:
 // their normals point anywhere.
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "odds/math/random.hpp"
+#include "ode/known_convexes.hpp"
 #include "ode/ode_fixture.hpp"
 
 namespace odds::test {
@@ -60,6 +62,38 @@ TEST_F(ThinTriangles, DoNotDrawACapsuleThroughAFloor) {
       EXPECT_LT(contact.depth, 2e-3) << i;
     }
     dGeomDestroy(capsule);
+    dGeomDestroy(slab);
+  }
+  EXPECT_EQ(turned, 0);
+}
+
+// Each was a patch of its own: a box stood on a flat top with one contact sideways, 1.8 mm deep, and cylinders and
+// convexes were pushed along what the mean of such normals and the right ones was.
+TEST_F(ThinTriangles, DoNotTurnTheWayOutOfAFlatTop) {
+  math::Random random(7);
+  const double half = 0.25;  // of all bodies; of the slab's height, too
+  const ConvexCoin coin(space, half, 2.0 * half, 6);
+  const std::array<dGeomID, 3> bodies = {dCreateBox(space, 2.0 * half, 2.0 * half, 2.0 * half),
+                                         dCreateCylinder(space, half, 2.0 * half), coin.geom};
+  int turned = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const Mat3 turn = random.rotation().toRotationMatrix();
+    const dGeomID slab = mesh_geom(slab_with_thin_triangles(turn, random));
+    dGeomOddsMeshSetCarryMotion(slab, 0);  // each collision stands alone
+    const dGeomID body = bodies[static_cast<std::size_t>(i) % bodies.size()];
+    const Vec3 lean(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), 1.0);
+    const Vec3 axis = turn * lean.normalized();
+    dMatrix3 standing;
+    dRFromZAxis(standing, axis.x(), axis.y(), axis.z());
+    dGeomSetRotation(body, standing);
+    const Vec3 place = turn * Vec3(random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4), half + half - 1e-3);
+    dGeomSetPosition(body, place.x(), place.y(), place.z());
+    const auto contacts = collide(slab, body);
+    EXPECT_GE(contacts.size(), 1U) << i;
+    for (const dContactGeom& contact : contacts) {
+      turned += normal_of(contact).dot(turn.col(2)) > -0.9999 ? 1 : 0;
+      EXPECT_LT(contact.depth, 1e-3 + half * std::sqrt(2.0) * std::sin(lean.head<2>().norm())) << i;
+    }
     dGeomDestroy(slab);
   }
   EXPECT_EQ(turned, 0);

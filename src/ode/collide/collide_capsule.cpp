@@ -227,6 +227,54 @@ void add_known_end(const PreparedMesh& mesh, const Capsule& capsule, std::size_t
   contacts.add({place, way_from_any(place, normal, end), capsule.radius - distance, triangle});
 }
 
+// The part of the axis that is over a triangle, seen along its normal, in lengths of the axis from its first end.
+struct Over {
+  double first = 0.0;
+  double last = 1.0;
+};
+
+Over over(const Corners& corners, const Vec3& normal, const Capsule& capsule) noexcept {
+  const Vec3 axis = capsule.ends[1] - capsule.ends[0];
+  Over part;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 inwards = normal.cross(corners[(i + 1) % 3] - corners[i]);
+    const double at = inwards.dot(capsule.ends[0] - corners[i]);
+    const double change = inwards.dot(axis);
+    if (at < 0.0 && at + change < 0.0) return {1.0, 0.0};
+    if (change > 0.0) part.first = std::max(part.first, -at / change);
+    if (change < 0.0) part.last = std::min(part.last, -at / change);
+  }
+  return part;
+}
+
+// A capsule that lies on flat ground is as near to it all along, but for rounding, and any place is the nearest one. If
+// the ground ends before one of its ends, it is held by the last place over the ground, too.
+void add_last_over_ground(const PreparedMesh& mesh, const Capsule& capsule, const CapsulePlaces& places,
+                          std::size_t which, const Limit& limit, CapsuleContacts& contacts) noexcept {
+  constexpr double lies = 0.01;  // sine
+  const CapsulePlace& nearest = places.all[0];
+  const Vec3 out = (nearest.on_axis - nearest.on_surface) / nearest.distance;
+  const Vec3 axis = capsule.ends[1] - capsule.ends[0];
+  if (std::abs(axis.dot(out)) > lies * axis.norm()) return;
+  CapsuleContact last = {nearest.on_surface, out, -1.0, nearest.triangle};
+  double farthest = 0.0;  // from the other end
+  for (const CapsulePlace& place : places.span()) {
+    if (limit.time_is_up()) return;
+    const Corners corners = mesh.corners(place.triangle);
+    const Vec3 normal = unit_normal(corners);
+    if (std::abs(normal.dot(out)) < same_direction) continue;
+    const Over part = over(corners, normal, capsule);
+    const double end = which == 0 ? 1.0 - part.first : part.last;
+    if (part.first > part.last || end <= farthest) continue;
+    farthest = end;
+    const Vec3 on_axis = capsule.ends[1 - which] + end * (capsule.ends[which] - capsule.ends[1 - which]);
+    const Vec3 up = normal.dot(out) < 0.0 ? Vec3(-normal) : normal;
+    const double height = up.dot(on_axis - corners[0]);
+    last = {on_axis - height * up, up, capsule.radius - height, place.triangle};
+  }
+  if (!contacts.near(last.position, separate_end * capsule.radius)) contacts.add(last);
+}
+
 // The surface at the first place, as it is seen from the axis. The nearest point of the surface to the axis is the
 // nearest to that point of the axis, too, and its pseudo-normal tells the side.
 // Nothing if that takes long.
@@ -271,6 +319,9 @@ void add_beside(const PreparedMesh& mesh, const Capsule& capsule, CapsulePlaces&
     } else if (!contacts.end_touches[end]) {
       add_known_end(mesh, capsule, end, contacts);
     }
+  }
+  for (std::size_t end = 0; end < capsule.ends.size() && places.complete && places.count > 0; ++end) {
+    if (!contacts.end_touches[end]) add_last_over_ground(mesh, capsule, places, end, limit, contacts);
   }
   add_minima(mesh, capsule, places, 1, places.count, std::nullopt, limit, contacts);
 }

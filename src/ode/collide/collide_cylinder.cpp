@@ -16,6 +16,8 @@ constexpr std::size_t most_surface_edges = 8;
 constexpr std::size_t most_radii = 12;
 // Sine of the tilt below which a cylinder stands: the lowest point of its rim would wander with the last bit.
 constexpr double standing = 1e-3;
+// Cosine of the tilt from which on it lies.
+constexpr double lying = 0.1;
 
 // About the z axis, centred at the origin.
 class CylinderBody final : public ConvexBody {
@@ -122,6 +124,25 @@ class CylinderBody final : public ConvexBody {
       features.add_corner(other);
       features.add_edge(rim, other);
     }
+  }
+
+  // The lower rim, unless it is seen edge-on: then the lowest line of the wall is at its ends.
+  std::size_t over_curved_edge(const Vec3& begin, const Vec3& along, const Vec3& up,
+                               std::array<OverEdge, 2>& over) const noexcept override {
+    if (!(std::abs(up.z()) > lying)) return 0;
+    const double cap = -std::copysign(half_length_, up.z());
+    const Eigen::Vector2d lean = up.head<2>() / up.z();
+    const Eigen::Vector2d from = begin.head<2>() - (begin.z() - cap) * lean;
+    const Eigen::Vector2d way = along.head<2>() - along.z() * lean;
+    const double a = way.squaredNorm();
+    const double b = from.dot(way);
+    const double under_root = b * b - a * (from.squaredNorm() - radius_ * radius_);
+    if (!(a > 0.0) || !(under_root > 0.0)) return 0;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const double at = (-b + (i == 0 ? -1.0 : 1.0) * std::sqrt(under_root)) / a;
+      over[i] = {at, (begin.z() + at * along.z() - cap) / up.z()};
+    }
+    return 2;
   }
 
  private:

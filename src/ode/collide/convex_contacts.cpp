@@ -34,6 +34,8 @@ constexpr double for_each_piece_us = 0.4;
 constexpr double choosing_us = 4.0;
 constexpr double choosing_of_few_us = 0.8;
 
+constexpr std::size_t most_large_pieces = 16;
+
 struct Patch {
   std::array<const Piece*, most_pieces> pieces;
   std::size_t count = 0;
@@ -111,8 +113,9 @@ void add_points(const Patch& patch, const Vec3& direction, const ConvexBody& bod
   const EdgesAlong edges(features, direction, body.box_center().norm() + body.box_half_extents().norm());
   const std::span<const Piece* const> pieces = patch.span();
   bool is_late = false;
+  std::array<double, Features::most> depths = {};
   for (std::size_t i = 0; i < pieces.size() && !is_late; ++i) {
-    add_corners_below(*pieces[i], direction, features, points);
+    add_corners_below(*pieces[i], body, direction, features, points, depths);
     if (ridges) edges.add_crossings(*pieces[i], points);
     is_late = limit.time_is_up(time_for_points);
   }
@@ -120,7 +123,16 @@ void add_points(const Patch& patch, const Vec3& direction, const ConvexBody& bod
     if (!add_corners(*pieces[i], direction, body, limit, points)) return;
     is_late = limit.time_is_up(time_for_points);
   }
-  if (!is_late) return;
+  if (!is_late) {
+    const bool has_curved_edges = body.crowding() > 0.0;
+    if (!has_curved_edges || !some_are_missed(body, direction, features, patch.exit.depth, depths)) return;
+    // Of many pieces so small that their corners are near the body's edges only deeper places are worth their time.
+    const double least = pieces.size() > most_large_pieces ? points.deepest() : 0.0;
+    for (std::size_t i = 0; i < pieces.size() && !limit.time_is_up(0.9 * time_for_points); ++i) {
+      add_curved_crossings(*pieces[i], body, direction, least, points);
+    }
+    return;
+  }
   // Neighbours stand beside each other: a few from all over hold the body, the next ones on one side only.
   const std::size_t few = std::min<std::size_t>(8, pieces.size());
   for (std::size_t i = 0; i < few; ++i) {
@@ -164,7 +176,8 @@ void write_manifolds(const PreparedMesh& mesh, const math::Pose& body_in_mesh, s
     while (leader[i] < i && !(leader[leader[i]] == leader[i] && same(patches[leader[i]], patches[i]))) ++leader[i];
     manifolds += leader[i] == i ? 1 : 0;
   }
-  const bool ridges = patches.size() > 1 || !is_flat(patches[0]) || body.crowding() > 0.0;
+  // On flat surface corners say all; but where a sheet ends, no patch of its sides tells of it.
+  const bool ridges = patches.size() > 1 || !is_flat(patches[0]) || body.crowding() > 0.0 || !mesh.closed;
   for (std::size_t i = 0; i < patches.size() && !writer.full(); ++i) {
     if (leader[i] != i) continue;
     if (writer.count() > 0 && limit.is_over()) break;  // the deepest manifold has to do

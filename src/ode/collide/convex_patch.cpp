@@ -25,6 +25,39 @@ constexpr double listing_us = 3.0;
 // More normals than these are compared one by one without asking whether they were tried.
 constexpr std::size_t most_remembered = 8;
 
+// What is left of a piece by a cut, which adds one corner at most.
+struct Cut {
+  std::size_t count = 0;
+  std::array<Vec3, Piece::most_corners + 1> corners;
+  std::array<std::int16_t, Piece::most_corners + 1> side;
+
+  void add(const Vec3& corner, std::int16_t of_side) noexcept {
+    if (count == corners.size()) return;
+    corners[count] = corner;
+    side[count++] = of_side;
+  }
+  // Of those between two sides of the body the corner that cuts off least without it. Edges of the triangle stay.
+  void drop_flattest() noexcept {
+    std::size_t flattest = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t before = (i + count - 1) % count;
+      if (side[before] == Piece::own_edge || side[i] == Piece::own_edge) continue;
+      const double area = (corners[i] - corners[before]).cross(corners[(i + 1) % count] - corners[i]).squaredNorm();
+      if (area < least) {
+        least = area;
+        flattest = i;
+      }
+    }
+    std::copy(corners.begin() + static_cast<std::ptrdiff_t>(flattest) + 1,
+              corners.begin() + static_cast<std::ptrdiff_t>(count),
+              corners.begin() + static_cast<std::ptrdiff_t>(flattest));
+    std::copy(side.begin() + static_cast<std::ptrdiff_t>(flattest) + 1,
+              side.begin() + static_cast<std::ptrdiff_t>(count), side.begin() + static_cast<std::ptrdiff_t>(flattest));
+    --count;
+  }
+};
+
 // Keeps the part of the piece in the half-space (Sutherland and Hodgman 1974). False if that is all of it.
 bool cut(Piece& piece, const HalfSpace& half_space, std::int16_t number) noexcept {
   std::array<double, Piece::most_corners> above;
@@ -34,25 +67,20 @@ bool cut(Piece& piece, const HalfSpace& half_space, std::int16_t number) noexcep
     any_above = any_above || above[i] > 0.0;
   }
   if (!any_above) return false;
-  Piece kept;
-  kept.count = 0;
-  const auto add = [&kept](const Vec3& corner, std::int16_t side) {
-    if (kept.count == Piece::most_corners) return;
-    kept.corners[kept.count] = corner;
-    kept.side[kept.count++] = side;
-  };
+  Cut kept;
   for (std::size_t i = 0; i < piece.count; ++i) {
     const std::size_t next = (i + 1) % piece.count;
     const Vec3& a = piece.corners[i];
     const Vec3& b = piece.corners[next];
     const auto crossing = [&]() -> Vec3 { return a + (above[i] / (above[i] - above[next])) * (b - a); };
     if (above[i] <= 0.0) {
-      add(a, piece.side[i]);
-      if (above[next] > 0.0) add(crossing(), number);
+      kept.add(a, piece.side[i]);
+      if (above[next] > 0.0) kept.add(crossing(), number);
     } else if (above[next] <= 0.0) {
-      add(crossing(), piece.side[i]);
+      kept.add(crossing(), piece.side[i]);
     }
   }
+  if (kept.count > Piece::most_corners) kept.drop_flattest();
   piece.count = kept.count;
   std::copy_n(kept.corners.begin(), kept.count, piece.corners.begin());
   std::copy_n(kept.side.begin(), kept.count, piece.side.begin());

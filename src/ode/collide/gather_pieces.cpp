@@ -8,6 +8,7 @@
 #include "ode/collide/end_of_share.hpp"
 #include "ode/collide/sieve.hpp"
 #include "ode/collide/surface_above.hpp"
+#include "ode/mesh/triangle_corners.hpp"
 #include "query/shape/near_segment.hpp"
 
 namespace odds::ode {
@@ -287,6 +288,17 @@ void gather_from_within(const PreparedMesh& mesh, const math::Pose& body_in_mesh
   limit.spend(nodes - left);
 }
 
+/// What may be nothing but its corners' rounding faces anywhere. It is left out where there is other surface, which has
+/// its edges, too.
+void leave_out_thin(const PreparedMesh& mesh, Pieces& pieces) noexcept {
+  if (!(mesh.thin > 0.0)) return;
+  const auto is_noise = [&](const Piece& piece) { return is_thin(mesh.corners(piece.triangle), mesh.thin); };
+  const auto begin = pieces.all.begin();
+  const auto end = begin + static_cast<std::ptrdiff_t>(pieces.count);
+  if (std::all_of(begin, end, is_noise)) return;
+  pieces.count = static_cast<std::size_t>(std::remove_if(begin, end, is_noise) - begin);
+}
+
 }  // namespace
 
 bool add_piece_above(const PreparedMesh& mesh, const math::Pose& body_in_mesh, const ConvexBody& body, const Vec3& up,
@@ -310,6 +322,7 @@ void gather_pieces(const PreparedMesh& mesh, const math::Pose& body_in_mesh, con
   } else {
     Gathering(mesh, body_in_mesh, body, turn, limit, pieces).run();
   }
+  leave_out_thin(mesh, pieces);
 }
 
 }  // namespace odds::ode

@@ -33,11 +33,14 @@ struct ManifoldPoints {
   void add(const Vec3& position, double depth, std::uint32_t triangle, std::size_t most = most_points) noexcept {
     if (count < most) all[count++] = {position, depth, triangle};
   }
+  [[nodiscard]] double deepest() const noexcept {
+    double depth = 0.0;
+    for (std::size_t i = 0; i < count; ++i) depth = std::max(depth, all[i].depth);
+    return depth;
+  }
   // Drops points that touch only: they would push where nothing overlaps, and hide deeper ones at the same place.
   void keep_deep() noexcept {
-    double deepest = 0.0;
-    for (std::size_t i = 0; i < count; ++i) deepest = std::max(deepest, all[i].depth);
-    const auto shallow = [deepest](const ManifoldPoint& p) { return p.depth < least_depth * deepest; };
+    const auto shallow = [least = least_depth * deepest()](const ManifoldPoint& p) { return p.depth < least; };
     count = static_cast<std::size_t>(std::remove_if(all.begin(), all.begin() + count, shallow) - all.begin());
   }
   // Drops points that are nearer than `distance` to one that is clearly deeper. When `may_go_on()` says no, the deepest

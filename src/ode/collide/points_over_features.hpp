@@ -11,9 +11,20 @@
 
 namespace odds::ode {
 
-/// Corners of the body under the piece: where one dips through a face.
-void add_corners_below(const Piece& piece, const Vec3& direction, const Features& features,
-                       ManifoldPoints& points) noexcept;
+/// Corners of the body under the piece, or beside it where sides of the body lean over a little and the triangle goes
+/// on: where one dips through a face. `depths`: of each corner the greatest so far.
+void add_corners_below(const Piece& piece, const ConvexBody& body, const Vec3& direction, const Features& features,
+                       ManifoldPoints& points, std::array<double, Features::most>& depths) noexcept;
+
+/// Whether some corner of the body is not found so deep as it is below `depth` (metres) over the lowest point: the
+/// surface ends before it, or falls away.
+[[nodiscard]] bool some_are_missed(const ConvexBody& body, const Vec3& direction, const Features& features,
+                                   double depth, const std::array<double, Features::most>& depths) noexcept;
+
+/// Edges of the piece over a curved edge of the body: there it is the deepest where its lowest point is beside the
+/// piece. Only those deeper than `least`, metres.
+void add_curved_crossings(const Piece& piece, const ConvexBody& body, const Vec3& direction, double least,
+                          ManifoldPoints& points) noexcept;
 
 /// Edges of a body, seen along a direction.
 class EdgesAlong {

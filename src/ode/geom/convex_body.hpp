@@ -19,7 +19,7 @@ struct HalfSpace {
 /// A triangle cut by the sides of a body, in the body's frame. Not set at first: a collision has room for more than a
 /// hundred, and little time. What most have comes first, and so from few lines of the cache.
 struct Piece {
-  static constexpr std::size_t most_corners = 24;  ///< further corners are left out
+  static constexpr std::size_t most_corners = 24;  ///< of more the flattest between two sides of the body are left out
   static constexpr std::int16_t own_edge = -1;
   Vec3 normal;         ///< unit, of the triangle
   double area;         ///< of the piece
@@ -77,6 +77,12 @@ struct Features {
   }
 };
 
+/// Where a straight line goes over a curved edge.
+struct OverEdge {
+  double at;     ///< on the line, in lengths of what it was given by
+  double depth;  ///< of the edge below it
+};
+
 /// All in the body's own frame, metres. Every function is noexcept, without allocation, and may be called from any
 /// number of threads.
 class ConvexBody {
@@ -114,6 +120,12 @@ class ConvexBody {
   virtual void add_exits(std::span<const Piece* const> patch, bool refined, ExitList& exits) const noexcept = 0;
   /// Corners and edges less than `depth` above the lowest point, where `up` (unit) points up.
   virtual void add_features(const Vec3& up, double depth, Features& features) const noexcept = 0;
+  /// Where a line, seen along `up` (unit, points up), goes over a curved edge of the body that is low; how many. Those
+  /// that are straight are features.
+  virtual std::size_t over_curved_edge(const Vec3& /*begin*/, const Vec3& /*along*/, const Vec3& /*up*/,
+                                       std::array<OverEdge, 2>& /*over*/) const noexcept {
+    return 0;
+  }
 
  protected:
   ConvexBody() = default;

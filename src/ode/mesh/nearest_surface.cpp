@@ -8,7 +8,6 @@
 #include <numbers>
 #include <span>
 
-#include "odds/math/tolerances.hpp"
 #include "ode/mesh/triangle_corners.hpp"
 #include "query/counted_ray.hpp"
 #include "query/shape/near_segment.hpp"
@@ -21,13 +20,6 @@ constexpr double on_feature = 1e-12;
 // Relative to how far from the origin of the mesh's frame mesh and point are: by so much rounding moves a closest
 // point.
 constexpr double rounding = 4e-15;
-
-// Whether a triangle is so low that it may be nothing but its corners' rounding, as where edges of unlike length meet.
-bool is_thin(const Corners& t, double height) noexcept {
-  const Vec3 sides[3] = {t[1] - t[0], t[2] - t[1], t[0] - t[2]};
-  const double longest = std::max({sides[0].squaredNorm(), sides[1].squaredNorm(), sides[2].squaredNorm()});
-  return sides[0].cross(sides[2]).squaredNorm() <= height * height * longest;
-}
 
 using Touching = std::array<std::uint32_t, PreparedMesh::most_touching>;
 
@@ -66,18 +58,19 @@ Vec3 mean_normal(const PreparedMesh& mesh, const Vec3& point, double tolerance, 
 Vec3 pseudo_normal(const PreparedMesh& mesh, const Vec3& point, std::uint32_t at, double tolerance,
                    const Vec3& seen_from) noexcept {
   constexpr double least = 0.1;  // cosine
-  const double thin = tolerances::flat_face * mesh.mesh().size();
+  const double thin = mesh.thin;
   const auto tells_side = [&](const Vec3& normal) {
     return std::abs(normal.dot(seen_from - point)) > least * (seen_from - point).norm();
   };
   const Corners own = mesh.corners(at);
   const Vec3 own_normal = unit_normal(own);
   const bool within = angle_at(own, point, tolerance) > 1.5 * std::numbers::pi && own_normal != Vec3::Zero();
-  if (within && !is_thin(own, thin)) return own_normal;
+  const auto may_be_rounding = [thin](const Corners& corners) { return thin > 0.0 && is_thin(corners, thin); };
+  if (within && !may_be_rounding(own)) return own_normal;
   Touching touching;
   const std::size_t count = find_touching(mesh, point, tolerance, touching);
   const std::span<const std::uint32_t> all = std::span(touching).first(count);
-  if (std::any_of(all.begin(), all.end(), [&](std::uint32_t t) { return is_thin(mesh.corners(t), thin); })) {
+  if (std::any_of(all.begin(), all.end(), [&](std::uint32_t t) { return may_be_rounding(mesh.corners(t)); })) {
     Touching about;
     const std::size_t count_about = find_touching(mesh, point, thin, about);
     const Vec3 normal = mean_normal(mesh, point, thin, std::span(about).first(count_about), thin);

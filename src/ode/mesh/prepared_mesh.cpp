@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "odds/math/tolerances.hpp"
 #include "odds/mesh/enclosed_volume.hpp"
 #include "ode/mesh/triangle_corners.hpp"
 #include "query/shape_data.hpp"
@@ -88,6 +89,15 @@ std::vector<PreparedMesh::Fan> find_fans(const PreparedMesh& prepared, std::span
   return fans;
 }
 
+// How low triangles are that may be nothing but rounding, if there are some.
+double find_thin(const PreparedMesh& prepared) {
+  const double thin = tolerances::flat_face * prepared.mesh().size();
+  for (std::uint32_t t = 0; t < prepared.mesh().triangles().size(); ++t) {
+    if (is_thin(prepared.corners(t), thin)) return thin;
+  }
+  return 0.0;
+}
+
 }  // namespace
 
 std::shared_ptr<const PreparedMesh> PreparedMesh::make(std::shared_ptr<const query::Shape> shape) {
@@ -107,6 +117,7 @@ std::shared_ptr<const PreparedMesh> PreparedMesh::make(std::shared_ptr<const que
   // (As part of a mesh that encloses something it is not told apart.)
   prepared->closed = closes(mesh, representative) && mesh::enclosed_volume(mesh) != 0.0;
   prepared->fans = find_fans(*prepared, representative);
+  prepared->thin = find_thin(*prepared);
   return prepared;
 }
 

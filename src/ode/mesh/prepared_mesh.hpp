@@ -28,6 +28,7 @@ struct PreparedMesh {
   const tree::WideTree* wide_tree = nullptr;  ///< that, or the shape's; never null
   bool closed = false;    ///< every edge has its opposite, and something is enclosed: inside and outside are defined
   std::vector<Fan> fans;  ///< by the x of their tips
+  double thin = 0.0;      ///< metres: triangles no higher may be nothing but rounding (is_thin); 0: there are none
 
   PreparedMesh() = default;
   PreparedMesh(const PreparedMesh&) = delete;  // it points into itself

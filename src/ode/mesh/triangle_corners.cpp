@@ -23,6 +23,13 @@ Vec3 unit_normal(const Corners& triangle) noexcept {
   return length > 0.0 ? Vec3(normal / length) : Vec3(Vec3::Zero());
 }
 
+bool is_thin(const Corners& t, double height) noexcept {
+  constexpr double low = 0.01;  // of the longest side
+  const Vec3 sides[3] = {t[1] - t[0], t[2] - t[1], t[0] - t[2]};
+  const double longest = std::max({sides[0].squaredNorm(), sides[1].squaredNorm(), sides[2].squaredNorm()});
+  return sides[0].cross(sides[2]).squaredNorm() <= std::min(height * height, low * low * longest) * longest;
+}
+
 double angle_at(const Corners& triangle, const Vec3& point_on_it, double tolerance) noexcept {
   for (std::size_t i = 0; i < 3; ++i) {
     if ((triangle[i] - point_on_it).norm() > tolerance) continue;

@@ -170,7 +170,13 @@ bool Summit::measure(const Place& place, const Witness& best, bool may_lean, dou
   const bool known = std::isfinite(top) && std::isfinite(bottom);
   const auto at = [&](double height) noexcept {
     const Vec3 point = centre_ + place.u * frame_.u + place.v * frame_.v + height * frame_.normal;
-    if (!probe_overlap(input_, point, frame_.normal, reach, watch, found)) return false;
+    Witness there;
+    if (!probe_overlap(input_, point, frame_.normal, reach, watch, there)) return false;
+    // What is deeper than all that is known allows, and does not begin before the point and end after it, is another
+    // overlap on the same line, as of a crate with the wall behind the floor that it is on.
+    const bool is_here = height_of(there.on_a) <= height && height <= height_of(there.on_b);
+    if (known && !is_here && there.depth > top - bottom) return false;
+    found = there;
     add(found);
     return true;
   };
