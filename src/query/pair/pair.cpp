@@ -15,6 +15,7 @@
 #include "query/memory/near_contacts.hpp"
 #include "query/memory/pair_memory.hpp"
 #include "query/pair/pair_within.hpp"
+#include "query/pair/witness.hpp"
 #include "query/search/search.hpp"
 #include "query/shape_data.hpp"
 
@@ -36,37 +37,6 @@ Method order_of(const Request& request) noexcept {
   if (request.polygon_free) return Method::time_critical;
   if (request.method == Method::exact) return Method::exact;
   return request.p_min < 1.0 ? Method::time_critical : request.method;
-}
-
-/// The witness of the last hit. True: it still is one, and no more are wanted.
-bool witness_suffices(const PosedMeshes& meshes, const Request& request, Pair::Implementation& pair,
-                      Spending& spending) noexcept {
-  if (order_of(request) != Method::incremental || wanted_hits(request, pair) != 1 || !pair.has_witness ||
-      !spending.allows(1)) {
-    return false;
-  }
-  const auto still_meets = [&](const TrianglePair& tried) {
-    spending.spend_triangle_pairs(1);
-    if (!meshes.meet(tried)) return false;
-    pair.hits.add(tried);
-    return true;
-  };
-  if (still_meets(pair.witness)) return true;
-  if (!is_short(request, pair)) return false;
-  // Places that were guessed in the runs before: to search again would take what time there is for contacts.
-  for (std::size_t i = 0; i < pair.haste.count(); ++i) {
-    if (!spending.allows(1) || !spending.may_go_on_after(2)) return false;
-    const TrianglePair guessed = pair.haste.pair_of(i);
-    if (!still_meets(guessed)) continue;
-    pair.witness = guessed;
-    return true;
-  }
-  return false;
-}
-
-void remember_witness(Pair::Implementation& pair) noexcept {
-  pair.has_witness = !pair.hits.empty();
-  if (pair.has_witness) pair.witness = pair.hits.pairs().front();
 }
 
 template <volume::BoundingVolume V>
@@ -308,7 +278,8 @@ void search_and_answer(const Tree& a, const Tree& b, const PosedMeshes& meshes, 
     return;
   }
   SearchResult result;
-  const bool is_witnessed = witness_suffices(meshes, request, pair, spending);
+  const bool is_witnessed =
+      order_of(request) == Method::incremental && witness_suffices(meshes, request, pair, spending);
   if (is_witnessed) {
     result.ended = Progressed::enough;
     result.method = Method::incremental;
