@@ -248,7 +248,8 @@ void make_contacts_over_runs(const PosedMeshes& meshes, const math::Pose& pose_b
     pair.carried.keep_proofs(pair.hits.pairs());
   } else if (serves_late(pose_b_in_a, request, pair, spending)) {
     write_late(pose_b_in_a, request, pair);
-  } else if (look_for_corner(pose_b_in_a, pair, spending) && !pair.corners.empty()) {
+  } else if (look_for_corner(pose_b_in_a, pair, spending)) {
+    // There is no time for a guess beside it.
     if (!share_guess(pose_b_in_a, request, pair) && !recall_guess(pose_b_in_a, request, pair)) pair.answer.contacts = {};
   } else if (!share_guess(pose_b_in_a, request, pair)) {
     spending.reserve_for_contacts(pair.endings.rough);
