@@ -51,6 +51,13 @@ bool share_guess(const math::Pose& pose_b_in_a, const Request& request, Pair::Im
   return true;
 }
 
+/// The guess of the run before, or those of many, where a look at corners has left no time for another.
+bool serves_last_guess(const math::Pose& pose_b_in_a, const Request& request, Pair::Implementation& pair,
+                       Spending& spending) noexcept {
+  const bool has_looked = look_for_corner(pose_b_in_a, pair, spending);
+  return share_guess(pose_b_in_a, request, pair) || (has_looked && recall_guess(pose_b_in_a, request, pair));
+}
+
 /// Whether the contacts of earlier poses are of use now, far as the bodies may have moved. Of a wall that a body has
 /// come to since they know nothing.
 bool serves_unmeasured(const math::Pose& pose_b_in_a, const Request& request,
@@ -248,10 +255,7 @@ void make_contacts_over_runs(const PosedMeshes& meshes, const math::Pose& pose_b
     pair.carried.keep_proofs(pair.hits.pairs());
   } else if (serves_late(pose_b_in_a, request, pair, spending)) {
     write_late(pose_b_in_a, request, pair);
-  } else if (look_for_corner(pose_b_in_a, pair, spending)) {
-    // There is no time for a guess beside it.
-    if (!share_guess(pose_b_in_a, request, pair) && !recall_guess(pose_b_in_a, request, pair)) pair.answer.contacts = {};
-  } else if (!share_guess(pose_b_in_a, request, pair)) {
+  } else if (!serves_last_guess(pose_b_in_a, request, pair, spending)) {
     spending.reserve_for_contacts(pair.endings.rough);
     add_hits_of_work(meshes, pair, spending);
     guess_contacts(meshes, pose_b_in_a, known_normal, request, pair, spending);
