@@ -58,6 +58,26 @@ inline constexpr double by_far_shorter = 0.5;
 /// Test: ContactPatch.BoxOverALedgeKeepsTheFaceNormal.
 inline constexpr double snap_from = 0.7;
 inline constexpr double snap_to = 0.95;  ///< see snap_from
+/// A rim that bulges out of a body by less than this part of its size, in the mean, is on one face of it, to within the
+/// rounding of corners in single precision; and one that does by more than that part is about an edge with no corner
+/// beside it. Tests: ConcaveCorners.HoldByEachFace, ConcaveCorners.APillarOnAFloorIsOne.
+inline constexpr double corner_bulge = 1e-7;
+inline constexpr double edge_bulge = 0.1;  ///< see corner_bulge
+/// Cosine (25 degrees) of the angle from which two normals may be of two faces of a corner, and up to which part of the
+/// angle between two of these faces their own normals may spread: else the surface bends on all the way between them.
+/// Tests: ConcaveCorners.HoldByEachFace, ConcaveCorners.AGutterIsNone.
+inline constexpr double corner_bend = 0.906;
+inline constexpr double corner_spread = 0.5;  ///< see corner_bend
+/// Flat faces of one normal whose heights differ by more than this part of the rim's size are two, as treads of stairs
+/// are. Test: ConcaveCorners.APillarOnAFloorIsOne.
+inline constexpr double level_face = 1e-5;
+/// By how much the way out of a face of a corner may be longer than that of all its faces: they were measured at other
+/// places. Test: ConcaveCorners.HoldByEachFace.
+inline constexpr double corner_deeper = 1.5;
+/// Cosine (0.08 degrees) of the angle to which all normals along a rim are those of one flat face, in the mean, and how
+/// far from its plane that may be left, as a part of the rim's size. Test: RoomsOfOneMesh.KeepCratesInTheirCorners.
+inline constexpr double one_face = 1.0 - 1e-6;
+inline constexpr double off_face = 2e-3;  ///< see one_face
 /// Weight of the last normal against the bodies' places when the side of a sheet is chosen.
 /// Test: ContactPatch.SheetPushesTowardsTheBody.
 inline constexpr double previous_side = 0.3;
@@ -224,8 +244,11 @@ inline constexpr double steep = 0.05;
 inline constexpr double flat_overlap = 0.05;
 /// How far inside of a spike's surface the next place is looked for, as a part of the step.
 inline constexpr double inside_surface = 1e-3;  ///< see flat_overlap
-/// An overlap that is nowhere deeper by more than this part of itself is level: more rays would cost time and hardly move
-/// a force. Test: SummitsOfConvex.BodiesAreFound.
+/// What is less deep than this part of its whole rim's size is within the rim. Tests:
+/// RoomsOfOneMesh.KeepCratesInTheirCorners, LeaningSpikes.AreAsDeepAsTheirTips.
+inline constexpr double flat_within_rim = 0.02;
+/// An overlap that is nowhere deeper by more than this part of itself is level: more rays would cost time and hardly
+/// move a force. Test: SummitsOfConvex.BodiesAreFound.
 inline constexpr double level_overlap = 0.001;
 /// What is deeper than the deepest place that was known by more than this part of it is another place, and not the
 /// next corner of the same facets. Test: ContactPatch.SphereOnPlaneHasOneDeepContact.

@@ -102,6 +102,9 @@ struct PatchInput {
 /// direction of least overlap is taken; where the hits are a part of all (`believed_depth`), a direction that is known
 /// better goes before that.
 ///
+/// Where faces of one body form a concave corner (a floor and its walls, all of one mesh), no direction leads out of
+/// one rim over all of them: each face, or each few about an edge, has a patch of its own, of its part of the rim.
+///
 /// All memory is taken by the constructor; `build` is noexcept and does not allocate, lock, or make a system call. The
 /// same input gives the same bits, unless a deadline expires. One builder per thread.
 class PatchBuilder {

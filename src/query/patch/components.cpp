@@ -34,9 +34,12 @@ void RimSums::add(const RimPiece& piece, const PlacedPair& placed, const Vec3& o
   const Vec3 to = piece.to - origin;
   area += 0.5 * from.cross(to);
   gap += to - from;
-  moment += piece.length * 0.5 * (from + to);
+  const Vec3 weighed = piece.length * 0.5 * (from + to);
+  moment += weighed;
   normals_a += piece.length * placed.normal_a;
   normals_b += piece.length * placed.normal_b;
+  heights_a += weighed.dot(placed.normal_a);
+  heights_b += weighed.dot(placed.normal_b);
   length += piece.length;
 }
 
@@ -48,6 +51,8 @@ void RimSums::add(const RimSums& other) noexcept {
   moment += other.moment;
   normals_a += other.normals_a;
   normals_b += other.normals_b;
+  heights_a += other.heights_a;
+  heights_b += other.heights_b;
   length += other.length;
   loose_ends += other.loose_ends;
 }
@@ -59,6 +64,13 @@ Vec3 RimSums::centre(const Vec3& origin) const noexcept {
 
 Vec3 RimSums::vector_area(const Vec3& origin) const noexcept {
   return area - 0.5 * (centre(origin) - origin).cross(gap);
+}
+
+double RimSums::bulge(bool of_b) const noexcept {
+  if (!(length > 0.0)) return 0.0;
+  const double heights = of_b ? heights_b : heights_a;
+  const Vec3& normals = of_b ? normals_b : normals_a;
+  return (heights - normals.dot(moment) / length) / length;
 }
 
 Components::Components(std::size_t most_pieces, std::size_t most_pairs)

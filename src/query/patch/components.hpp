@@ -24,6 +24,8 @@ struct RimSums {
   Vec3 moment = Vec3::Zero();     ///< sum of length * middle
   Vec3 normals_a = Vec3::Zero();  ///< sum of length * normal of A's triangle
   Vec3 normals_b = Vec3::Zero();  ///< sum of length * normal of B's triangle
+  double heights_a = 0.0;         ///< sum of length * height of the middle over the origin along A's normal
+  double heights_b = 0.0;         ///< the same of B
   double length = 0.0;
   std::uint32_t loose_ends = 0;  ///< joints that more pieces enter than leave, or the reverse
 
@@ -37,6 +39,9 @@ struct RimSums {
   [[nodiscard]] Vec3 centre(const Vec3& origin) const noexcept;
   /// Vector area about the centre: independent of `origin` also where the curve is open.
   [[nodiscard]] Vec3 vector_area(const Vec3& origin) const noexcept;
+  /// How far the pieces reach out of one body along their own normals, from their centre, in the mean: 0 on one flat
+  /// face, above 0 about an edge or a tip, and below 0 in a corner, whose faces lie over one another's planes; metres.
+  [[nodiscard]] double bulge(bool of_b) const noexcept;
 };
 
 /// The pieces of one query, sorted by patch.
@@ -59,6 +64,11 @@ class Components {
   /// Sets `component` of every piece to the index of its patch (or `left_out`) and `counts` of copies to false. Returns
   /// the sums of each patch; nothing if the time was up before it was done.
   std::span<const RimSums> group(const Rim& rim, bool solid_a, bool solid_b, Watch& watch) noexcept;
+
+  /// The first pieces that were at the joints where a piece begins and ends; it may be itself. Once it was grouped.
+  [[nodiscard]] std::array<std::uint32_t, 2> first_at_ends_of(std::uint32_t piece) const noexcept {
+    return {joints_[ends_[piece].first].first_piece, joints_[ends_[piece].second].first_piece};
+  }
 
  private:
   struct Joint {

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "odds/math/tolerances.hpp"
 #include "query/patch/eight.hpp"
@@ -46,6 +47,22 @@ Vec3 span_centre(const patch::Rim& rim, std::span<const std::uint32_t> indices, 
   }
   if (!(std::abs(weight) > 0.1 * magnitude)) return middle;
   return (middle + sum / weight).cwiseMax(sums.lower).cwiseMin(sums.upper);
+}
+
+/// Where a whole rim of solids is on one flat face of a body and leads along its normal: through that face.
+std::optional<patch::ExitRange> exit_through_face(const PatchInput& input, const patch::RimSums& sums,
+                                                  const Vec3& origin, const Vec3& normal) noexcept {
+  if (!input.solid_a || !input.solid_b || !sums.closed()) return std::nullopt;
+  const auto all_on = [&](const Vec3& normals) noexcept {
+    return normals.norm() > tolerances::one_face * sums.length &&
+           normals.dot(normal) > tolerances::same_face * sums.length;
+  };
+  const bool of_b = all_on(sums.normals_b);
+  if (!of_b && !all_on(-sums.normals_a)) return std::nullopt;
+  const double height = (of_b ? sums.heights_b : sums.heights_a) / sums.length;
+  const double slack = tolerances::off_face * sums.diagonal();
+  return patch::ExitRange{(of_b ? sums.normals_b : sums.normals_a).normalized(), origin, height - slack, height + slack,
+                          of_b};
 }
 
 }  // namespace
@@ -133,7 +150,10 @@ bool PatchBuilder::Scratch::make_patches(const PatchInput& input, Watch& watch) 
   for (std::size_t i = 0; i < sums.size(); ++i) {
     const Indices indices = pieces_of(i);
     if (indices.empty()) continue;
-    patches[patch_count++] = make_patch(input, sums[i], indices, thorough, watch);
+    patches[patch_count] = make_patch(input, sums[i], indices, thorough, watch);
+    patches[patch_count++].component = i;
+    if (watch.late()) return false;
+    part_in_corner(input, sums[i], {by_patch.data() + first_of_patch[i], indices.size()}, sums.size() - i - 1, watch);
     if (watch.late()) return false;
   }
   if (input.believed_depth > 0.0 || (input.solid_a && input.solid_b && patch_count > 1)) straighten(input, sums, watch);
@@ -184,13 +204,14 @@ void PatchBuilder::Scratch::find_witnesses(Indices indices, const patch::Frame& 
 /// its depth: what lies at its rim bears nothing.
 std::size_t PatchBuilder::Scratch::probe(const PatchInput& input, const patch::RimSums& sums, const Vec3& centre,
                                          double reach, const patch::Frame& frame, const patch::Chosen& spread,
-                                         Measured& measured, Watch& watch) noexcept {
+                                         patch::ExitRanges exits, Measured& measured, Watch& watch) noexcept {
   const auto measure = [&](const Vec3& place, Witness& found) noexcept {
-    return !watch.late() && patch::probe_overlap(input, place, frame.normal, reach, watch, found);
+    return !watch.late() && patch::probe_overlap(input, place, frame.normal, reach, watch, found) &&
+           patch::all_have(exits, found);
   };
   std::size_t count = 0;
   Witness inside;
-  patch::Summit summit(input, frame, centre);
+  patch::Summit summit(input, frame, centre, sums, exits);
   Witness start;  // the deepest, where it was measured
   const auto note = [&](const Witness& w) noexcept {
     summit.add(w);
@@ -215,14 +236,10 @@ std::size_t PatchBuilder::Scratch::probe(const PatchInput& input, const patch::R
   }
   Witness deepest = patch::deepest_of({measured.data(), count}, frame, centre, 0.25 * reach);
   // The last run's summit is near this one's; starting from it, the climb follows one summit and does not flicker. That
-  // of another patch, of another side or beside this one, is not in this overlap, which lies within its rim but for its
-  // depth.
-  const auto is_within = [&sums](const Vec3& place, double beside) noexcept {
-    return ((place - sums.lower).array() >= -beside).all() && ((sums.upper - place).array() >= -beside).all();
-  };
+  // of another patch, of another side or beside this one, is not in this overlap.
   if (input.previous_position != nullptr && input.previous_normal != nullptr &&
       input.previous_normal->dot(frame.normal) > tolerances::same_as_before &&
-      is_within(*input.previous_position, deepest.depth) && measure(*input.previous_position, inside) &&
+      summit.may_be_at(*input.previous_position, deepest.depth) && measure(*input.previous_position, inside) &&
       inside.depth > deepest.depth) {
     note(inside);
     deepest = inside;
@@ -250,15 +267,16 @@ std::size_t PatchBuilder::Scratch::probe(const PatchInput& input, const patch::R
 }
 
 Patch PatchBuilder::Scratch::make_patch(const PatchInput& input, const patch::RimSums& sums, Indices indices,
-                                        const Effort& effort, Watch& watch) noexcept {
+                                        const Effort& effort, Watch& watch, patch::ExitRanges exits) noexcept {
   const patch::PatchView view{input, *kernels, rim, sums, indices, effort.sample};
   const patch::PatchNormal normal = patch::patch_normal(view, watch);
-  const Patch made = patch_along(normal.into_a, input, sums, indices, effort, watch);
+  const Patch made = patch_along(normal.into_a, input, sums, indices, effort, watch, exits);
   return shorter_way_out(made, normal.shortest_way, view, effort, watch);
 }
 
 Patch PatchBuilder::Scratch::patch_along(const Vec3& normal, const PatchInput& input, const patch::RimSums& sums,
-                                         Indices indices, const Effort& effort, Watch& watch) noexcept {
+                                         Indices indices, const Effort& effort, Watch& watch,
+                                         patch::ExitRanges exits) noexcept {
   Patch made;
   made.lower = sums.lower;
   made.upper = sums.upper;
@@ -286,15 +304,18 @@ Patch PatchBuilder::Scratch::patch_along(const Vec3& normal, const PatchInput& i
   Measured measured;
   std::size_t count = made.chosen.count;
   const bool can_measure = input.probe_a && input.probe_b && sums.length > 0.0 && !watch.late();
+  const std::optional<patch::ExitRange> through_face = exit_through_face(input, sums, rim.origin, normal);
+  if (exits.empty() && through_face) exits = {&*through_face, 1};
   const double reach = 2.0 * (sums.diagonal() + made.depth);
   if (can_measure && !patch::is_a_tip(input, rim, sums, indices, deepest)) {
-    count = probe(input, sums, centre, reach, frame, made.chosen, measured, watch);
+    count = probe(input, sums, centre, reach, frame, made.chosen, exits, measured, watch);
     if (watch.late()) return made;
     for (std::size_t i = 0; i < count; ++i) made.depth = std::max(made.depth, measured[i].depth);
   } else {
     for (std::size_t i = 0; i < count; ++i) measured[i] = patch::pulled_in(made.chosen.witnesses[i], deepest);
     // Where there is more than a tip its centre bears, too: no force may jump where it becomes one.
-    if (can_measure && patch::probe_overlap(input, centre, made.normal, reach, watch, measured[count])) {
+    if (can_measure && patch::probe_overlap(input, centre, made.normal, reach, watch, measured[count]) &&
+        patch::all_have(exits, measured[count])) {
       measured[count] = patch::pulled_in(measured[count], deepest);
       ++count;
     }

@@ -78,6 +78,7 @@ void PatchBuilder::Scratch::drop_opposed(const Vec3* previous) noexcept {
       Patch& p = patches[i];
       Patch& q = patches[j];
       if (p.dropped || q.dropped || p.normal.dot(q.normal) > tolerances::opposed) continue;
+      if (p.in_corner && q.in_corner && p.component == q.component) continue;  // from both sides of a groove
       if ((p.lower.array() - p.depth > q.upper.array() + q.depth).any()) continue;
       if ((q.lower.array() - q.depth > p.upper.array() + p.depth).any()) continue;
       // Along p's normal p's overlap reaches down from its rim, q's up from its own.

@@ -1,9 +1,11 @@
 // How far two triangles, or two meshes along a line, overlap in a direction.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <span>
 
 #include "odds/math/tolerances.hpp"
 #include "query/patch/rim.hpp"
@@ -101,6 +103,28 @@ void overlap_corners(const PlacedPair& placed, const Frame& frame, const Vec3& s
       found(on_a, Vec3(on_a + depth * frame.normal), depth);
     }
   }
+}
+
+/// Between which heights along a direction a line leaves one of the bodies, if what it measures is the overlap at a
+/// rim: from a place below the floor beside a wall, a line sideways runs along under the floor to its far end.
+struct ExitRange {
+  Vec3 direction = Vec3::Zero();  ///< unit
+  Vec3 origin = Vec3::Zero();     ///< heights count from here
+  double low = 0.0;
+  double high = 0.0;
+  bool of_b = false;
+
+  [[nodiscard]] bool has(const Witness& measured) const noexcept {
+    const double height = direction.dot((of_b ? measured.on_b : measured.on_a) - origin);
+    return low <= height && height <= high;
+  }
+};
+
+/// Several, all of which count.
+using ExitRanges = std::span<const ExitRange>;
+
+[[nodiscard]] inline bool all_have(ExitRanges ranges, const Witness& measured) noexcept {
+  return std::all_of(ranges.begin(), ranges.end(), [&](const ExitRange& range) { return range.has(measured); });
 }
 
 /// Largest depth of one pair along a direction, at least 0.

@@ -45,6 +45,8 @@ struct Patch {
   double depth = 0.0;
   double length = 0.0;  ///< of the rim
   patch::Chosen chosen;
+  std::size_t component = 0;  ///< of the rim
+  bool in_corner = false;     ///< one of several of its component, each of a face of a concave corner
   bool dropped = false;
 };
 
@@ -75,17 +77,19 @@ struct PatchBuilder::Scratch {
   void straighten(const PatchInput& input, std::span<const patch::RimSums> sums, patch::Watch& watch) noexcept;
   void make_hasty_contacts(const PatchInput& input, const Deadline& last) noexcept;
   patch::Patch make_patch(const PatchInput& input, const patch::RimSums& sums, Indices indices,
-                          const patch::Effort& effort, patch::Watch& watch) noexcept;
+                          const patch::Effort& effort, patch::Watch& watch, patch::ExitRanges exits = {}) noexcept;
   patch::Patch shorter_way_out(const patch::Patch& made, const Vec3& known, const patch::PatchView& view,
                                const patch::Effort& effort, patch::Watch& watch) noexcept;
   void reach_in(const patch::Patch& run_in, const patch::PatchView& view, patch::Patch& made,
                 patch::Watch& watch) noexcept;
+  void part_in_corner(const PatchInput& input, const patch::RimSums& sums, std::span<std::uint32_t> indices,
+                      std::size_t others, patch::Watch& watch) noexcept;
   patch::Patch patch_along(const Vec3& normal, const PatchInput& input, const patch::RimSums& sums, Indices indices,
-                           const patch::Effort& effort, patch::Watch& watch) noexcept;
+                           const patch::Effort& effort, patch::Watch& watch, patch::ExitRanges exits = {}) noexcept;
   void find_witnesses(Indices indices, const patch::Frame& frame, patch::Watch& watch) noexcept;
   void add_witnesses(std::span<const patch::PlacedPair* const> asked, const patch::Frame& frame) noexcept;
   std::size_t probe(const PatchInput& input, const patch::RimSums& sums, const Vec3& centre, double reach,
-                    const patch::Frame& frame, const patch::Chosen& spread, Measured& measured,
+                    const patch::Frame& frame, const patch::Chosen& spread, patch::ExitRanges exits, Measured& measured,
                     patch::Watch& watch) noexcept;
   void drop_crumbs() noexcept;
   void drop_opposed(const Vec3* previous) noexcept;

@@ -49,11 +49,11 @@ void PatchBuilder::Scratch::straighten(const PatchInput& input, std::span<const 
   double deepest = 0.0;
   for (const Patch& patch : made) deepest = agree(patch.normal, direction) ? std::max(deepest, patch.depth) : deepest;
   const double limit = input.believed_depth > 0.0 ? input.believed_depth : deepest + rounding;
-  for (std::size_t i = 0, next = 0; i < sums.size() && !watch.late(); ++i) {
+  for (std::size_t p = 0; p < patch_count && !watch.late(); ++p) {
+    Patch& own = patches[p];
+    if (own.in_corner || agree(own.normal, direction)) continue;
+    const std::size_t i = own.component;
     const Indices indices = pieces_of(i);
-    if (indices.empty()) continue;
-    Patch& own = patches[next++];
-    if (agree(own.normal, direction)) continue;
     // A whole rim has a direction of its own, unless this is by far the shorter way out: as of a lump between faces
     // that are flush to within rounding, which overlaps from one end of them to the other.
     const bool is_whole = sums[i].closed() && sums[i].length > 0.0;
@@ -64,7 +64,9 @@ void PatchBuilder::Scratch::straighten(const PatchInput& input, std::span<const 
     if (!is_of_it && !patch::is_of_direction(view, direction, most, watch)) continue;
     const Patch straight = patch_along(direction, input, sums[i], indices, thorough, watch);
     if (watch.late()) return;  // it was not measured to its end
-    if (straight.depth <= most) own = straight;
+    if (!(straight.depth <= most)) continue;
+    own = straight;
+    own.component = i;
   }
 }
 

@@ -163,6 +163,20 @@ Place Summit::highest(const Place& from, double radius, Watch& watch) const noex
   return place;
 }
 
+/// Whether it can only be within a whole rim: what goes deep may lean out of it, as a spike does.
+bool Summit::is_flat(double depth) const noexcept {
+  return sums_.closed() && depth < tolerances::flat_within_rim * sums_.diagonal();
+}
+
+bool Summit::may_be_at(const Vec3& place, double depth) const noexcept {
+  Vec3 beside = Vec3::Constant(depth);
+  if (is_flat(depth)) {
+    beside = depth * frame_.normal.cwiseAbs() + Vec3::Constant(tolerances::same_joint * sums_.diagonal());
+  }
+  return (place.array() >= (sums_.lower - beside).array()).all() &&
+         (place.array() <= (sums_.upper + beside).array()).all();
+}
+
 bool Summit::measure(const Place& place, const Witness& best, bool may_lean, double reach, Watch& watch,
                      Witness& found) noexcept {
   const double top = of_b_.at(place);
@@ -170,8 +184,10 @@ bool Summit::measure(const Place& place, const Witness& best, bool may_lean, dou
   const bool known = std::isfinite(top) && std::isfinite(bottom);
   const auto at = [&](double height) noexcept {
     const Vec3 point = centre_ + place.u * frame_.u + place.v * frame_.v + height * frame_.normal;
+    if (is_flat(best.depth) && !may_be_at(point, best.depth)) return false;
     Witness there;
     if (!probe_overlap(input_, point, frame_.normal, reach, watch, there)) return false;
+    if (!all_have(exits_, there)) return false;
     // What is deeper than all that is known allows, and does not begin before the point and end after it, is another
     // overlap on the same line, as of a crate with the wall behind the floor that it is on.
     const bool is_here = height_of(there.on_a) <= height && height <= height_of(there.on_b);

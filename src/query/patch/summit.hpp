@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "query/patch/components.hpp"
 #include "query/patch/overlap.hpp"
 
 namespace odds::query::patch {
@@ -49,9 +50,14 @@ class Roof {
 /// cutting-plane method for solving convex programs, SIAM 1960), until that is no deeper than what was measured.
 class Summit {
  public:
-  /// `centre`: near the patch. All must outlive this.
-  Summit(const PatchInput& input, const Frame& frame, const Vec3& centre) noexcept
-      : input_(input), frame_(frame), centre_(centre) {}
+  /// `centre`: near the patch. `sums`: of its rim. `exits`: of what counts. All must outlive this.
+  Summit(const PatchInput& input, const Frame& frame, const Vec3& centre, const RimSums& sums,
+         ExitRanges exits) noexcept
+      : input_(input), frame_(frame), centre_(centre), sums_(sums), exits_(exits) {}
+
+  /// Whether an overlap of that depth within the rim may be at a place: no farther from the rim's box than it is deep,
+  /// and where it is flat only along the normal. Under a wall's foot begins the floor.
+  [[nodiscard]] bool may_be_at(const Vec3& place, double depth) const noexcept;
 
   /// Something that was measured.
   void add(const Witness& measured) noexcept;
@@ -65,6 +71,7 @@ class Summit {
   [[nodiscard]] Roof::Place place_of(const Vec3& point) const noexcept;
   [[nodiscard]] double height_of(const Vec3& point) const noexcept { return frame_.normal.dot(point - centre_); }
   /// Casts the rays that should meet both surfaces there.
+  [[nodiscard]] bool is_flat(double depth) const noexcept;
   bool measure(const Roof::Place& place, const Witness& best, bool may_lean, double reach, Watch& watch,
                Witness& found) noexcept;
   [[nodiscard]] double rounding_of(double radius) const noexcept;
@@ -74,6 +81,8 @@ class Summit {
   const PatchInput& input_;
   const Frame& frame_;
   const Vec3& centre_;
+  const RimSums& sums_;
+  ExitRanges exits_;
   Roof of_b_;  ///< heights of B's upper side
   Roof of_a_;  ///< of A's lower side, upside down: the depth is the sum of both
 };
