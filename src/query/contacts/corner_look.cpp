@@ -32,10 +32,10 @@ Sought sought_of(bool of_b, const math::Pose& pose_b_in_a, const Pair::Implement
 }
 
 /// The corner that is farthest along the way, as far as there is time to look; no_feature: none was seen.
-std::uint32_t farthest_corner(const Sought& sought, Spending& spending) noexcept {
+std::uint32_t farthest_corner(const Sought& sought, const wide::Searches& searches, Spending& spending) noexcept {
   const auto* const tree = std::get_if<tree::WideTree>(&sought.shape.data().tree);
   if (tree == nullptr) return no_feature;
-  const CornerSearch search(sought.shape.mesh(), *tree);
+  const CornerSearch search(sought.shape.mesh(), *tree, searches);
   const BoundAlong bound(search, sought.way);
   std::uint64_t left = most_nodes;
   const auto may_go_on = [&spending] {
@@ -61,7 +61,8 @@ void measure(const SoughtCorner& sought, const math::Pose& pose_b_in_a, Pair::Im
   const Vec3 direction = back.rotation * out;
   RayHit hit;
   const Seen seen = cast_budgeted_ray(other, back * point, direction, farthest * size, spending, hit);
-  if (seen == Seen::unknown && spending.may_make_contacts()) return pair.corners.note_none();  // it takes too many nodes
+  if (seen == Seen::unknown && spending.may_make_contacts())
+    return pair.corners.note_none();  // it takes too many nodes
   if (seen == Seen::unknown) return;
   const double cosine = seen == Seen::surface ? facing(other, hit.triangle, direction) : 0.0;
   // From outside a solid the ray comes to its surface from the front. A sheet has no inside.
@@ -91,9 +92,9 @@ bool look_for_corner(const math::Pose& pose_b_in_a, Pair::Implementation& pair, 
   if (!(spending.left_us() > enough_to_look_us) || !spending.may_make_contacts()) return false;
   corners.note_look();
   if (!corners.sought()) {
-    const bool of_b = pair.size_b < smaller * pair.size_a ||
-                      (smaller * pair.size_b <= pair.size_a && corners.turns_to_b());
-    const std::uint32_t corner = farthest_corner(sought_of(of_b, pose_b_in_a, pair), spending);
+    const bool of_b =
+        pair.size_b < smaller * pair.size_a || (smaller * pair.size_b <= pair.size_a && corners.turns_to_b());
+    const std::uint32_t corner = farthest_corner(sought_of(of_b, pose_b_in_a, pair), *pair.wide, spending);
     if (corner == no_feature) {
       corners.note_none();
       return true;
@@ -115,8 +116,8 @@ void support_by_corners(const math::Pose& pose_b_in_a, const Request& request, P
   if (corners.empty()) return;
   const double size = smaller_size(pair);
   const std::span<Contact> room = room_for_contacts(request, pair);
-  const std::size_t count = corners.put_before(room, pair.answer.contacts.size(), pose_b_in_a, size,
-                                               tolerances::hasty_spacing * size);
+  const std::size_t count =
+      corners.put_before(room, pair.answer.contacts.size(), pose_b_in_a, size, tolerances::hasty_spacing * size);
   pair.answer.contacts = room.first(count);
   if (pair.answer.contact_pairs == 0) pair.answer.contact_pairs = static_cast<std::uint32_t>(count);
 }

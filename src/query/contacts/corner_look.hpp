@@ -6,8 +6,8 @@
 
 namespace odds::query {
 
-/// Searches for the corner that is farthest along the way in which contacts pushed last, and measures how deep it is; if
-/// there is time for one of both only, the next run goes on. False: there was no time for either.
+/// Searches for the corner that is farthest along the way in which contacts pushed last, and measures how deep it is;
+/// if there is time for one of both only, the next run goes on. False: there was no time for either.
 bool look_for_corner(const math::Pose& pose_b_in_a, Pair::Implementation& pair, Spending& spending) noexcept;
 
 /// Looks, if this run has not yet, and puts what is known of corners before the answer's contacts.

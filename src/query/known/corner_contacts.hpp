@@ -40,7 +40,8 @@ class CornerContacts {
     for (std::size_t i = 0; i < count_; ++i) {
       Entry& entry = held_[i];
       const auto [depth, slip] = entry.held.parted(pose);
-      if (++entry.runs > oldest || depth < -tolerances::late_gap * size || slip > tolerances::late_slip * size) continue;
+      if (++entry.runs > oldest || depth < -tolerances::late_gap * size || slip > tolerances::late_slip * size)
+        continue;
       entry.depth.age(depth, tolerances::late_least * size, tolerances::late_rise * size);
       held_[kept++] = entry;
     }

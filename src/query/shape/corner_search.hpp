@@ -23,8 +23,9 @@ class CornerSearch {
   /// A number for each child of a node, or each triangle of a leaf.
   using OfLanes = float[tree::wide_lanes];
 
-  CornerSearch(const mesh::TriangleMesh& mesh, const tree::WideTree& tree) noexcept
-      : mesh_(mesh), tree_(tree), kernels_(*wide::searches_for(InstructionSet::best)) {}
+  CornerSearch(const mesh::TriangleMesh& mesh, const tree::WideTree& tree,
+               const wide::Searches& kernels = *wide::searches_for(InstructionSet::best)) noexcept
+      : mesh_(mesh), tree_(tree), kernels_(kernels) {}
 
   [[nodiscard]] static std::uint32_t triangle_of(std::uint32_t corner) noexcept { return corner / 3; }
   /// Which of the mesh's vertices.
@@ -35,7 +36,6 @@ class CornerSearch {
     return mesh_.vertices()[vertex_of(corner)] - tree_.origin();
   }
   [[nodiscard]] const mesh::TriangleMesh& mesh() const noexcept { return mesh_; }
-  /// Of the best instruction set.
   [[nodiscard]] const wide::Searches& kernels() const noexcept { return kernels_; }
   /// By so much, times a direction's length, extents along it may be off, metres.
   [[nodiscard]] float margin() const noexcept { return 16.0F * 0x1p-24F * static_cast<float>(tree_.reach()); }
