@@ -100,24 +100,19 @@ TEST_F(CapsuleTest, LyingOverAnEdgeItIsHeldThereAndAtItsInnerEnd) {
   const dGeomID capsule = dCreateCapsule(space, 0.1, 0.6);
   for (int round = 0; round < 300; ++round) {
     rotate(table, Vec3(uniform(random), uniform(random), uniform(random)), 3.0 * uniform(random));
-    const auto in_world = [&](const Vec3& v) {
-      dVector3 world;
-      dGeomVectorToWorld(table, v.x(), v.y(), v.z(), world);  // it is at the origin
-      return Vec3(world[0], world[1], world[2]);
-    };
     const Vec3 along = Vec3(1.0, 0.5 * uniform(random), 1e-4 * uniform(random)).normalized();
-    const Vec3 axis = in_world(along);
+    const Vec3 axis = in_world(table, along);
     dMatrix3 lying;
     dRFromZAxis(lying, axis.x(), axis.y(), axis.z());
     dGeomSetRotation(capsule, lying);
     const Vec3 middle(0.95 + 0.1 * uniform(random), 0.5 * uniform(random), 0.299);
-    const Vec3 center = in_world(middle);
+    const Vec3 center = in_world(table, middle);
     dGeomSetPosition(capsule, center.x(), center.y(), center.z());
     const auto contacts = collide(table, capsule);
     expect_sound(contacts, table, capsule);
     for (const double at : {-0.3, (1.0 - middle.x()) / along.x()}) {  // from the middle, along the axis
       const Vec3 on_axis = middle + at * along;
-      const Vec3 place = in_world(Vec3(on_axis.x(), on_axis.y(), 0.2));
+      const Vec3 place = in_world(table, Vec3(on_axis.x(), on_axis.y(), 0.2));
       const double depth = 0.3 - on_axis.z();
       const auto holds = [&](const dContactGeom& contact) {
         return (position_of(contact) - place).norm() < 1e-3 && std::abs(contact.depth - depth) < 1e-6;

@@ -54,6 +54,13 @@ inline std::vector<dContactGeom> collide(dGeomID g1, dGeomID g2, int room = 16, 
 inline Vec3 position_of(const dContactGeom& contact) { return {contact.pos[0], contact.pos[1], contact.pos[2]}; }
 inline Vec3 normal_of(const dContactGeom& contact) { return {contact.normal[0], contact.normal[1], contact.normal[2]}; }
 
+/// A vector in a geom's frame, in the world's axes.
+inline Vec3 in_world(dGeomID geom, const Vec3& vector) {
+  dVector3 world;
+  dGeomVectorToWorld(geom, vector.x(), vector.y(), vector.z(), world);
+  return {world[0], world[1], world[2]};
+}
+
 inline void rotate(dGeomID geom, const Vec3& axis, double angle) {
   dMatrix3 rotation;
   dRFromAxisAndAngle(rotation, axis.x(), axis.y(), axis.z(), angle);
