@@ -258,7 +258,10 @@ void Arena::look_at_depths() {
         apart = apart || box_a[axis] > box_b[axis + 1] || box_b[axis] > box_a[axis + 1];
       }
       if (apart) continue;
-      truly_deepest_m_ = std::max(truly_deepest_m_, truth_.depth(a.mesh, pose_of(a.geom), b.mesh, pose_of(b.geom)));
+      const double depth_m = truth_.depth(a.mesh, pose_of(a.geom), b.mesh, pose_of(b.geom));
+      truly_deepest_m_ = std::max(truly_deepest_m_, depth_m);
+      sum_of_depths_m_ += depth_m;
+      overlaps_ += depth_m > 0.0 ? 1U : 0U;
     }
   }
 }

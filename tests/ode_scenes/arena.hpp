@@ -111,6 +111,10 @@ class Arena {
   [[nodiscard]] double work_of_contacts() const noexcept { return work_j_; }
   /// Metres: how deep meshes really lay in each other, at most, looked at in every tenth step.
   [[nodiscard]] double truly_deepest_m() const noexcept { return truly_deepest_m_; }
+  /// The mean of all pairs that overlapped when it was looked.
+  [[nodiscard]] double mean_true_depth_m() const noexcept {
+    return overlaps_ > 0 ? sum_of_depths_m_ / static_cast<double>(overlaps_) : 0.0;
+  }
 
   std::vector<double> collide_us;  ///< thread time of each dCollide between two meshes that gave contacts
   std::vector<double> frame_us;    ///< thread time of each step: spaces, contacts, solver
@@ -163,6 +167,8 @@ class Arena {
   double most_work_j_ = 0.0;
   Truth truth_;
   double truly_deepest_m_ = 0.0;
+  double sum_of_depths_m_ = 0.0;
+  std::uint64_t overlaps_ = 0;
   std::uint64_t steps_ = 0;
 };
 

@@ -22,6 +22,7 @@ void add_common(Run& run, Arena& arena) {
       {"most", static_cast<double>(counts.most), "", run.ours ? std::optional<double>(8.0) : std::nullopt});
   run.figures.push_back({"deepest", 1e3 * counts.deepest_m, "mm"});
   run.figures.push_back({"truly deepest", 1e3 * arena.truly_deepest_m(), "mm"});
+  run.figures.push_back({"true depth, mean", 1e3 * arena.mean_true_depth_m(), "mm"});
   run.figures.push_back({"most work of contacts", 1e3 * arena.most_work_of_contacts(), "mJ"});
   run.figures.push_back({"in all", 1e3 * arena.work_of_contacts(), "mJ"});
   run.figures.push_back({"collision, p50", percentile(arena.collide_us, 0.5), "µs"});

@@ -25,7 +25,7 @@ std::ptrdiff_t fallen(const Arena& arena) {
   });
 }
 
-Run run_crowd(const Collider& collider) {
+Run run_crowd(const Collider& collider, std::uint64_t seed) {
   Arena arena(collider, physics);
   arena.add(made("terrain:side=2,height=0.04,feature=0.3,depth=0.3,cells=64", false), {});
   for (int side = 0; side < 4; ++side) {  // walls
@@ -35,7 +35,7 @@ Run run_crowd(const Collider& collider) {
   const std::vector<Mesh> kinds{made("torus:ring=0.05,tube=0.02,around=32,across=16"),
                                 made("gear:module=0.006,teeth=16,width=0.04,bore=0.012"),
                                 made("bumpy_sphere:radius=0.05,frequency=8"), made("box:x=0.08,y=0.1,z=0.06,cells=8")};
-  math::Random random(7, 1);
+  math::Random random(seed, 1);
   for (int i = 0; i < bodies; ++i) {
     const Vec3 place(0.15 * (i % 5 - 2), 0.15 * (i / 5 % 5 - 2), 0.2 + 0.15 * (i / 25));
     arena.add(kinds[static_cast<std::size_t>(i) % kinds.size()], {random.rotation().toRotationMatrix(), place}, 1000.0);
@@ -94,7 +94,7 @@ Section crowd(const Plan& plan) {
     all.back().frame_us = frame_us;
   }
   for (const Collider& collider : all) {
-    section.runs.push_back(run_crowd(collider));
+    section.runs.push_back(run_crowd(collider, plan.seed));
     fmt::print("crowd {:<18} {}\n", collider.name(), section.runs.back().note);
     std::fflush(stdout);
   }

@@ -36,7 +36,7 @@ int usage() {
       "                       [--seconds S] [--budgets US,US,...] [--work | --counted NS] [--bricks N,N,...] [--gaps "
       "MM,MM,...] "
       "[--ours] "
-      "[--gimpact]\n"
+      "[--gimpact] [--seed N]\n"
       "       odds_ode_scenes --soak [--seconds S] [--out FOLDER]   (stacks of five, ten minutes)\n"
       "--quick: ten seconds, one gap, stacks of 2 and 5; --bricks, --gaps: of stacks, else 2,5,10 and 0,0.1,0.5,1 mm;\n"
       "--budgets: of ours, else 100,5,10,20 us; --work: as 20 work units each, the same on every run;\n"
@@ -44,6 +44,7 @@ int usage() {
       "between:\n"
       "the same on every run, too, and with contacts that are late;\n"
       "--ours: without those that it is compared with;\n"
+      "--seed: of how the fifty bodies are placed, else 7;\n"
       "--gimpact: Bullet's GImpact, too, if built with Bullet\n");
   return 2;
 }
@@ -83,6 +84,10 @@ bool read(int argc, char** argv, Options& options) {
       std::vector<double> counts;
       if (!read_list(argv[++i], counts, 1.0)) return false;
       options.plan.bricks.assign(counts.begin(), counts.end());
+    } else if (argument == "--seed" && i + 1 < argc) {
+      std::vector<double> one;
+      if (!read_list(argv[++i], one, 0.0) || one.size() != 1 || !(one.front() <= 1e9)) return false;
+      options.plan.seed = static_cast<std::uint64_t>(one.front());
     } else if (argument == "--ours") {
       options.plan.others = false;
     } else if (argument == "--work") {

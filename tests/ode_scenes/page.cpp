@@ -186,7 +186,8 @@ std::string page_of(const std::vector<Section>& sections, double seconds_taken) 
   }
   html +=
       "<footer>Times are of the thread's processor. A collision is one dCollide that gave contacts; depths are those "
-      "that the collider itself states; \"truly deepest\" is looked at by a search without a limit. Colours judge odds "
+      "that the collider itself states; what is \"truly\" and \"true\" is looked at by a search without a limit. "
+      "Colours judge odds "
       "only.</footer>\n</main>\n";
   return html + report::page_end(data_of(sections), chart_script());
 }

@@ -1,6 +1,8 @@
 // The scenes, one file each.
 #pragma once
 
+#include <cstdint>
+
 #include "ode_scenes/arena.hpp"
 #include "ode_scenes/figures.hpp"
 
@@ -14,6 +16,7 @@ struct Plan {
   bool others = true;                                         ///< also the colliders that ours is compared with
   bool gimpact = false;                                       ///< among them Bullet's
   bool in_work = false;                                       ///< ours in work units
+  std::uint64_t seed = 7;                                     ///< of how bodies are placed in the crowd
   long look_ns = 0;                                           ///< of ours, see Collider
   std::vector<double> budgets_us = {100.0, 5.0, 10.0, 20.0};  ///< the usual one, and starved ones
 };
