@@ -5,13 +5,14 @@ namespace odds::tolerances {
 
 /// Largest entry of R^T R - I that still counts as a rotation; no unit. Poses that a program accumulates in doubles
 /// drift by about 1e-12 per million products; beyond 1e-6 a result would be wrong by more than a micrometre a metre.
-/// Test: Pair.RefusesAPoseThatIsNotRigid.
+/// Test: PairOfSpheres.RefusesAPoseThatIsNotRigid.
 inline constexpr double pose_orthonormality = 1e-6;
 
-/// An unproved probability keeps at least this distance from 0 and 1; no unit. Test: Pair.OnlyProofsAreCertain.
+/// An unproved probability keeps at least this distance from 0 and 1; no unit.
+/// Test: PairOfSpheres.OnlyProofsAreCertain.
 inline constexpr double least_uncertainty = 1e-9;
 
-// Contact patches (src/query/patch_*). Without a unit unless said otherwise.
+// Contact patches (src/query/patch/). Without a unit unless said otherwise.
 
 /// A triangle whose area is less than this part of its longest side squared has no normal: rounding of 1e-16 a
 /// coordinate would turn it by more than 1e-4. Test: ContactPatchHard.DegenerateTrianglesGiveFiniteContacts.

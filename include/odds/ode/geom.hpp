@@ -17,6 +17,8 @@ namespace odds::ode {
 /// Holds ODE and the geom class for its life time (oddsInitODE / oddsCloseODE). Must outlive every Geom.
 class Library {
  public:
+  /// oddsInitODE(flags) for the calling thread; counted, so that any number may be open. An error, with the sentence of
+  /// oddsGetLastError(), if ODE refuses. Any thread, for set-up: not while another one collides.
   [[nodiscard]] static Result<Library> open(unsigned flags = 0);
   ~Library() {
     if (open_) oddsCloseODE();
@@ -35,6 +37,10 @@ class Library {
 /// Owns one geom; destroys it at the end. Not needed if ODE owns the geom through its space.
 class Geom {
  public:
+  /// A geom of that shape, which may be shared by any number of geoms, put into `space`, or into none if that is null.
+  /// A space with cleanup would destroy it, too: then release() it. An error, with the sentence of oddsGetLastError(),
+  /// if the library is not open, the shape is null or without polygons, or memory ran out; then nothing was made. For
+  /// set-up: not while another thread uses the space.
   [[nodiscard]] static Result<Geom> make(dSpaceID space, std::shared_ptr<const query::Shape> shape);
   ~Geom() {
     if (id_ != nullptr) dGeomDestroy(id_);

@@ -60,17 +60,19 @@ int oddsFrameBudgetGetSummary(oddsFrameBudgetID budget, oddsFrameSummary* summar
 
 /* dSpaceCollide (data, callback as there) with all pairs of geoms put in order first: the callback, which calls
  * dCollide once for its pair as always, is called for the most important pairs first. Important is what probably
- * touches, touched lately, moves fast against each other, is near to the attention. No pair gets less than it needs for
- * an answer of use, which is learned from what its collisions cost: a share that led to none is doubled, up to half of
- * the frame. Where a frame cannot pay the needs of all, pairs take turns, by importance times the square of the frames
- * waited, and among pairs of like need none has its turns more than four times as rarely as another. One that has not
- * its turn is not called, or, if two meshes touched, gets the contacts that were last made of triangles, moved on with
- * the bodies, as far as time allows (none where the policy for undecided queries is no contact); a body may otherwise
- * sink in for some frames. What the needs leave over goes by importance; what a pair does not use, to the others. The
- * share bounds the collision in addition to the geoms' own budgets. One pair at least is called in every frame. Spaces
- * inside of `space` are searched too, each once, and each pair of geoms is called once. A pair that the broad phase
- * does not give is forgotten. odds allocates nothing here; ODE's hash and sweep-and-prune spaces do. The last error
- * stays as it is. Returns 1, or 0 with an error. */
+ * touches, touched lately, moves fast against each other, is near to the attention. No pair but the first in line gets
+ * less than it needs for an answer of use, which is learned from what its collisions cost: a share that led to none is
+ * doubled, up to half of the frame. Where a frame cannot pay the needs of all, pairs take turns, by importance times
+ * the square of the frames waited, and among pairs of like need none has its turns more than four times as rarely as
+ * another. One that has not its turn is not called. But if two meshes touched, or a mesh and a box, cylinder, capsule
+ * or convex, it gets the contacts that were last made of triangles, moved on with the bodies, as far as time allows
+ * (none where the policy for undecided queries is no contact); a body may otherwise sink in for some frames. What the
+ * needs leave over goes by importance; what a pair does not use, to the others. The share bounds the collision in
+ * addition to the geoms' own budgets. One pair at least is called in every frame. Spaces inside of `space` are searched
+ * too, each once, and each pair of geoms is called once; not so spaces inside of a quad tree, for ODE does not list
+ * what it holds. A pair that the broad phase does not give is forgotten. odds allocates nothing here; ODE's hash and
+ * sweep-and-prune spaces do. The last error stays as it is. Returns 1, or 0 with an error, also within the callback of
+ * another call. */
 int oddsSpaceCollide(dSpaceID space, void* data, dNearCallback* callback, oddsFrameBudgetID budget) ODDS_NOTHROW;
 
 #ifdef __cplusplus

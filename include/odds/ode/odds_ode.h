@@ -150,10 +150,11 @@ int dGeomOddsMeshGetMaxContacts(dGeomID geom) ODDS_NOTHROW;
 int dGeomOddsMeshSetCarryMotion(dGeomID geom, dReal part) ODDS_NOTHROW;
 dReal dGeomOddsMeshGetCarryMotion(dGeomID geom) ODDS_NOTHROW;
 
-/* 1 (default): contacts of two meshes that a budget has no time for, one below 50 us or one that a collision of them was
- * seen to need more than, are made over several collisions, and carried along with the bodies: complete, but some steps late; guessed until then, and hardly deep. Bodies stand, and
- * nothing is thrown. 0: made of what each collision has time for: rougher, but as deep as the bodies, for fast things
- * and contacts that are springs (an odds::ode::World has 0). Of a pair: 1 only if it is set on both. */
+/* 1 (default): where the budget is below 50 us, or below what a collision of this pair was seen to need, contacts of
+ * two meshes are made over several collisions and carried along with the bodies: complete, but some steps late. Until
+ * then they are guessed, and hardly deep. Bodies stand, and nothing is thrown. 0: made of what each collision has time
+ * for: rougher, but as deep as the bodies, for fast things and contacts that are springs (an odds::ode::World has 0).
+ * Of a pair: 1 only if it is set on both. */
 int dGeomOddsMeshSetLateContacts(dGeomID geom, int on) ODDS_NOTHROW;
 int dGeomOddsMeshGetLateContacts(dGeomID geom) ODDS_NOTHROW;
 
@@ -219,13 +220,13 @@ int oddsForgetGeom(dGeomID geom) ODDS_NOTHROW;
 
 /* ---- Pairs ----------------------------------------------------------------------------------------------------- */
 
-/* Takes the memory that collisions between two meshes need (up to 0.5 MB, less of small meshes; and a megabyte that
- * pairs share, or up to 32 for as many threads), in either order, and warms it; a mesh is a
- * geom of this class, a dTriMesh, or a heightfield with a stand-in. Call it before the loop for every pair that can
- * meet in a dSpaceCollide. Returns 1 (also if already prepared, and for a pair of a mesh with a primitive, which needs
- * no memory), or 0 (unlike volumes, out of memory, no mesh). A pair that was not prepared is prepared at its first
- * dCollide, inside the loop, and counted (lazy_pairs); if that fails the collision returns 0 contacts and is counted
- * (failed_pairs). */
+/* Takes the memory that collisions between two meshes need, in either order, and warms it: up to 0.5 MB, less of small
+ * meshes, and what pairs share, a megabyte for each pair up to 32 (or as many as the processor runs threads), and 3.7
+ * MB for late contacts, also where they are off, for each pair up to 64. A mesh is a geom of this class, a dTriMesh, or
+ * a heightfield with a stand-in. Call it before the loop for every pair that can meet in a dSpaceCollide. Returns 1
+ * (also if already prepared, and for a pair of a mesh with a primitive, which needs no memory), or 0 (unlike volumes,
+ * out of memory, no mesh). A pair that was not prepared is prepared at its first dCollide, inside the loop, and counted
+ * (lazy_pairs); if that fails the collision returns 0 contacts and is counted (failed_pairs). */
 int oddsPreparePair(dGeomID g1, dGeomID g2) ODDS_NOTHROW;
 
 enum { ODDS_CLEAR = 0, ODDS_HIT = 1 };
@@ -254,7 +255,9 @@ typedef struct oddsAnswer {
                           * are those of before */
 } oddsAnswer;
 
-/* The last collision of a pair of two geoms of this class, in either order. 0 if they never collided. */
+/* The last collision of a pair, in either order: of geoms of this class, of a dTriMesh that was read or has a stand-in,
+ * of a heightfield with a stand-in. 0 with an error if a geom is none of these, or they never collided. Not while
+ * another thread collides the same pair. */
 int oddsGetLastAnswer(dGeomID g1, dGeomID g2, oddsAnswer* answer) ODDS_NOTHROW;
 
 /* ---- Takeover --------------------------------------------------------------------------------------------------- */

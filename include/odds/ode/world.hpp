@@ -180,6 +180,9 @@ struct StepSummary {
 /// time; other worlds may step in other threads meanwhile.
 class World {
  public:
+  /// An empty world; holds ODE initialised while it lives. Refuses options out of the ranges that they state, with an
+  /// error that says what to do; settings of `query` other than max_contacts are looked at when a body is added. For
+  /// set-up, in any thread. May throw std::bad_alloc.
   static Result<World> make(const WorldOptions& options);
   ~World();
   World(World&&) noexcept;

@@ -34,8 +34,8 @@ struct PairOptions {
   /// Poses on which `make` learns how true the general odds are for this very pair; 0: none. About 0.2 ms each; 240 and
   /// more are worth it. The pair keeps what it learnt. Of shapes with polygons.
   std::uint32_t calibration_poses = 0;
-  /// Memory for Request::late_contacts: 3.1 MB, shared by all pairs with the same capacities, once for each pair but no
-  /// more than 16 times; of more that would use it at once, some make their contacts as without.
+  /// Memory for Request::late_contacts: 3.7 MB, shared by all pairs with the same capacities, once for each pair but no
+  /// more than 64 times; of more that would use it at once, some make their contacts as without.
   bool late_contacts = false;
 };
 

@@ -36,8 +36,8 @@ struct Request {
   int max_contacts = 1;      ///< 0 .. 8; 0: verdict only
   /// Contacts that were made with care are carried along with the bodies, instead of being made anew, while nothing
   /// near them has moved farther than this part of the smaller body's size since; a pair of triangles proves the hit.
-  /// For bodies at rest some 2 us instead of 10 to 100. In [0, 1]; 0: always anew. Of queries for more than one
-  /// contact.
+  /// For bodies at rest about a microsecond instead of 10 to 100. In [0, 1]; 0: always anew. Of queries for more than
+  /// one contact.
   double carry_motion = 0.0;
   /// Whether a mesh that lies wholly within a solid (a closed mesh), where no surfaces meet, is hit too, with one
   /// contact that leads out: the way it came in, or else one of the shortest of some ten; no deeper than the last known

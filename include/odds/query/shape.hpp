@@ -43,6 +43,11 @@ class Shape {
  public:
   struct Data;  // private to src/query
 
+  /// Builds the hierarchy of a mesh, whose coordinates are metres, in its own frame. An error names the mesh, what is
+  /// wrong and what to do: no mesh, `leaf_triangles` or `tau` out of range, a wide tree of too many nodes. For set-up,
+  /// not for a loop: it allocates, and takes a microsecond or two a triangle, of large meshes divided among threads of
+  /// its own. The shape does not depend on how many. Any number of threads may build at once, of one mesh too. May
+  /// throw std::bad_alloc, and what `progress` throws.
   static Result<std::shared_ptr<const Shape>> build(std::shared_ptr<const mesh::TriangleMesh> mesh,
                                                     const ShapeOptions& options = {}, const Progress& progress = {});
   /// For src/query, where Data is known.

@@ -75,6 +75,11 @@ struct LoadedMesh {
 /// Not copyable, not movable: the renderer points into it.
 class Simulation {
  public:
+  /// Loads the meshes, builds the world, opens the device and takes all memory of the loop: seconds, for large meshes.
+  /// An error says where in the scene, if it can, and what to do: a run that is too long or whose records would not fit
+  /// into memory, a mesh that is missing or bad, a body, an effect or settings that cannot be, a device that is
+  /// unknown, does not open or gives no position. The device stays open until the end. For set-up, in any thread; one
+  /// thread at a time uses what is made. May throw std::bad_alloc.
   static Result<std::unique_ptr<Simulation>> make(Scene scene, const SimulationOptions& options);
   ~Simulation();
   Simulation(const Simulation&) = delete;

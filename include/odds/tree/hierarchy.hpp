@@ -71,7 +71,7 @@ class Hierarchy {
                                        const Progress& progress = {});
 
   Hierarchy() = default;
-  /// Precondition: as `build` makes them (`find_defect` in saved_tree.hpp tells).
+  /// Precondition: as `build` makes them (`find_defect` in src/tree/tree_defect.hpp tells).
   explicit Hierarchy(Parts parts) : parts_(std::move(parts)) {}
 
   [[nodiscard]] const Parts& parts() const noexcept { return parts_; }

@@ -24,10 +24,10 @@ inline constexpr std::size_t kCellsPerNode = 512;  ///< kCellsPerAxis^3
 class CellCounter {
  public:
   /// Starts a node: the box {center + axes * x : |x_i| <= half_extents_i}; lengths in metres, `axes` orthonormal with
-  /// the box's directions as columns, half extents finite and >= 0. An extent below kThinnestExtent of the largest is
-  /// widened to that, and the grid is shifted along it by half a cell: a flat surface then fills one layer of cells
-  /// instead of wobbling, by rounding, between the two layers that meet in the middle. If all extents are 0, no cell
-  /// can be filled.
+  /// the box's directions as columns, half extents finite and >= 0. An extent below tolerances::thinnest_extent of the
+  /// largest is widened to that, and the grid is shifted along it by half a cell: a flat surface then fills one layer
+  /// of cells instead of wobbling, by rounding, between the two layers that meet in the middle. If all extents are 0,
+  /// no cell can be filled.
   void begin(const Vec3& center, const Mat3& axes, const Vec3& half_extents) noexcept;
 
   /// Adds a triangle (metres, same frame as the box, finite). What sticks out of the box counts for the nearest cell,

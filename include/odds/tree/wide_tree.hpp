@@ -101,7 +101,7 @@ class WideTree {
                                       const Progress& progress = {});
 
   WideTree() = default;
-  /// Precondition: as `build` makes them (`find_defect` in saved_tree.hpp tells).
+  /// Precondition: as `build` makes them (`find_defect` in src/tree/tree_defect.hpp tells).
   explicit WideTree(Parts parts) : parts_(std::move(parts)) {}
 
   [[nodiscard]] const Parts& parts() const noexcept { return parts_; }
