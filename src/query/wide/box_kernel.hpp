@@ -193,6 +193,9 @@ ODDS_LANES_INLINE typename K::F gaps(const typename K::Nodes& nodes, const typen
   const F(&d)[3] = placed.d;
   const F(&h)[3] = placed.h;
   const F(&own_h)[3] = placed.own_h;
+  // The longest chain of sums first: what ends a search's wait for a pair is the end of that.
+  F of_slabs = L::all(0.0F);
+  if constexpr (looks_at_slabs<L>) of_slabs = slab_gaps<K>(nodes, boxes, turn, placed);
   F one[3];
   const auto legs = [&one]() noexcept {
     const F none = L::all(0.0F);
@@ -213,7 +216,7 @@ ODDS_LANES_INLINE typename K::F gaps(const typename K::Nodes& nodes, const typen
   }
   gap = L::max(gap, L::max(L::max(one[0], one[1]), one[2]));
   if constexpr (far) gap = L::max(gap, legs());
-  if constexpr (looks_at_slabs<L>) gap = L::max(gap, slab_gaps<K>(nodes, boxes, turn, placed));
+  if constexpr (looks_at_slabs<L>) gap = L::max(gap, of_slabs);
   return gap;
 }
 

@@ -90,6 +90,10 @@ struct Avx2 {
     const __m256i chosen = _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(static_cast<int>(mask)), bits), bits);
     return {_mm256_blendv_ps(b.v, a.v, _mm256_castsi256_ps(chosen))};
   }
+  /// `a` in the lanes where x <= bound, `b` in the others.
+  ODDS_LANES_INLINE static Float choose_at_most(Float x, Float bound, Float a, Float b) noexcept {
+    return {_mm256_blendv_ps(b.v, a.v, _mm256_cmp_ps(x.v, bound.v, _CMP_LE_OQ))};
+  }
   /// Writes the lanes of the mask, in order, to `to`, and anything to the rest of to[0 .. 8).
   ODDS_LANES_INLINE static void write_some(float* to, Float a, unsigned mask) noexcept {
     const __m128i packed = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(lane_order.of[mask]));
@@ -226,6 +230,12 @@ struct Sse2 : WritesInOrder<Sse2> {
         _mm_castsi128_ps(_mm_cmpeq_epi32(_mm_and_si128(_mm_set1_epi32(static_cast<int>(mask)), bits), bits));
     return _mm_or_ps(_mm_and_ps(chosen, a), _mm_andnot_ps(chosen, b));
   }
+  ODDS_LANES_INLINE static Float choose_at_most(Float x, Float bound, Float a, Float b) noexcept {
+    const __m128 lo = _mm_cmple_ps(x.lo, bound.lo);
+    const __m128 hi = _mm_cmple_ps(x.hi, bound.hi);
+    return {_mm_or_ps(_mm_and_ps(lo, a.lo), _mm_andnot_ps(lo, b.lo)),
+            _mm_or_ps(_mm_and_ps(hi, a.hi), _mm_andnot_ps(hi, b.hi))};
+  }
   ODDS_LANES_INLINE static float least_value(Float a) noexcept { return _mm_cvtss_f32(least_in_all(a)); }
   ODDS_LANES_INLINE static unsigned least(Float a) noexcept {
     const __m128 m = least_in_all(a);
@@ -298,6 +308,9 @@ struct Neon {
   ODDS_LANES_INLINE static Float choose(unsigned mask, Float a, Float b) noexcept {
     return {vbslq_f32(vtstq_u32(vdupq_n_u32(mask), lower_bits()), a.lo, b.lo),
             vbslq_f32(vtstq_u32(vdupq_n_u32(mask), upper_bits()), a.hi, b.hi)};
+  }
+  ODDS_LANES_INLINE static Float choose_at_most(Float x, Float bound, Float a, Float b) noexcept {
+    return {vbslq_f32(vcleq_f32(x.lo, bound.lo), a.lo, b.lo), vbslq_f32(vcleq_f32(x.hi, bound.hi), a.hi, b.hi)};
   }
   ODDS_LANES_INLINE static void write_some(float* to, Float a, unsigned mask) noexcept {
     write_permuted(reinterpret_cast<std::uint8_t*>(to), vreinterpretq_u8_f32(a.lo), vreinterpretq_u8_f32(a.hi), mask);
@@ -426,6 +439,12 @@ struct Portable : WritesInOrder<Portable> {
   ODDS_LANES_INLINE static Float choose(unsigned mask, const Float& a, const Float& b) noexcept {
     Float result;
     for (unsigned i = 0; i < 8; ++i) result.v[i] = (mask >> i & 1U) != 0 ? a.v[i] : b.v[i];
+    return result;
+  }
+  ODDS_LANES_INLINE static Float choose_at_most(const Float& x, const Float& bound, const Float& a,
+                                                const Float& b) noexcept {
+    Float result;
+    for (unsigned i = 0; i < 8; ++i) result.v[i] = x.v[i] <= bound.v[i] ? a.v[i] : b.v[i];
     return result;
   }
   ODDS_LANES_INLINE static float least_value(const Float& a) noexcept { return a.v[least(a)]; }

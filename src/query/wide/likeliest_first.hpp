@@ -116,8 +116,8 @@ class LikeliestFirst {
     }
     const F thickness = L::max(found.thickness, L::all(least_thickness));
     // Finite: of surfaces without any thickness, 1e9 m large, a gap that rounding may hide is not.
-    const F ratio = L::min(L::divide(found.gap, thickness), L::all(std::numeric_limits<float>::max()));
-    const F keys = L::choose(found.open, ratio, L::all(nothing));
+    const F ratio = L::min(found.gap * L::divide(L::all(1.0F), thickness), L::all(std::numeric_limits<float>::max()));
+    const F keys = L::choose_at_most(found.gap, found.bound, ratio, L::all(nothing));
     const auto lane = L::least(keys);
     const unsigned others = found.open & ~(1U << lane);
     L::write_some(keys_ + window + open.size, keys, others);

@@ -1,6 +1,8 @@
 // Pairs of slots that an exact search has yet to open, and how it opens them.
 #pragma once
 
+#include <limits>
+
 #include "query/wide/opening.hpp"
 #include "query/wide/two_pairs.hpp"
 
@@ -94,6 +96,7 @@ ODDS_LANES_INLINE void add_leaves(const Opened& opened, unsigned lanes, SlotPair
 template <class L>
 struct FoundLanes {
   typename L::Float gap;
+  typename L::Float bound;      ///< of the gaps of lanes that are open: no gap is as small where both are leaves
   typename L::Float thickness;  ///< of both surfaces
   unsigned leaf_pairs;          ///< that overlap, both of them leaves
   unsigned open;                ///< that overlap, not both of them leaves
@@ -109,9 +112,11 @@ template <class L, class Turned>
   const typename One::Nodes node{*opened.node};
   const Placed<One> placed(node, box, turn);
   const F gap = gaps<One>(node, box, turn, placed);
-  const unsigned overlapping = L::less_equal(gap, L::all(margin));
   const bool other_is_leaf = opened.box.child().is_leaf();
   const unsigned leaves = L::highest_bits(opened.node->child);
+  const F bound =
+      L::choose(other_is_leaf ? leaves : 0U, L::all(-std::numeric_limits<float>::infinity()), L::all(margin));
+  const unsigned overlapping = L::less_equal(gap, L::all(margin));
   const unsigned leaf_pairs = other_is_leaf ? overlapping & leaves : 0U;
   // Which is opened next: the larger of both, or what is no leaf.
   const F size = (placed.h[0] * placed.h[0] + placed.h[1] * placed.h[1]) + placed.h[2] * placed.h[2];
@@ -119,7 +124,7 @@ template <class L, class Turned>
   const float box_size = other_is_leaf ? -1.0F : squared_radius(opened.box);
   const float other_size = std::bit_cast<float>(std::bit_cast<std::uint32_t>(box_size) + opened.side);
   const unsigned opens_lane = L::less_equal(L::all(other_size), size) & ~leaves;
-  return {gap, node.thickness() + box.thickness(), leaf_pairs, overlapping & ~leaf_pairs, opens_lane};
+  return {gap, bound, node.thickness() + box.thickness(), leaf_pairs, overlapping & ~leaf_pairs, opens_lane};
 }
 
 /// Opens pairs: what overlaps is added to `open`, or to `leaf_pairs` where both are leaves.
