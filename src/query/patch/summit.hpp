@@ -70,8 +70,8 @@ class Summit {
  private:
   [[nodiscard]] Roof::Place place_of(const Vec3& point) const noexcept;
   [[nodiscard]] double height_of(const Vec3& point) const noexcept { return frame_.normal.dot(point - centre_); }
-  /// Casts the rays that should meet both surfaces there.
   [[nodiscard]] bool is_flat(double depth) const noexcept;
+  /// Casts the rays that should meet both surfaces there.
   bool measure(const Roof::Place& place, const Witness& best, bool may_lean, double reach, Watch& watch,
                Witness& found) noexcept;
   [[nodiscard]] double rounding_of(double radius) const noexcept;
