@@ -191,7 +191,8 @@ std::span<const query::Contact> HeldContacts::at(const math::Pose& b_in_a, doubl
   for (std::size_t i = 0; i < count_; ++i) {
     const query::HeldContact held = held_[i];
     const auto [depth, slip] = held.parted(b_in_a);
-    if (!(slip <= most_slid * size && depth >= -most_gap * size)) continue;
+    const bool is_near = depth >= -most_gap * size && depth - held.depth() <= most_come * size;
+    if (!(slip <= most_slid * size && is_near)) continue;
     touching_[kept] = held.at(b_in_a);
     move(i, kept++);
   }
