@@ -85,9 +85,9 @@ class HeldContacts {
   /// let go.
   void note_apart(const math::Pose& b_in_a) noexcept;
 
-  /// Lets go what has slid, parted or come far by the new pose; the others as contacts, deepest first, those that have
-  /// parted by less with depth 0. Valid until the next call. `size`: diameter of the smaller body; `most_slid`: part of
-  /// it.
+  /// Lets go what has slid, parted, come far or turned over by the new pose; the others as contacts, deepest first,
+  /// those that have parted by less with depth 0. Valid until the next call. `size`: diameter of the smaller body;
+  /// `most_slid`: part of it.
   [[nodiscard]] std::span<const query::Contact> at(const math::Pose& b_in_a, double size,
                                                    double most_slid = most_slip) noexcept;
 
@@ -104,7 +104,8 @@ class HeldContacts {
   void move(std::size_t from, std::size_t to) noexcept;
 
   std::array<query::HeldContact, most> held_;
-  std::array<int, most> added_{};  ///< of each, in how many runs contacts were added since it was found
+  std::array<Vec3, most> normals_on_b_;  ///< of each, in B's mesh frame
+  std::array<int, most> added_{};        ///< of each, in how many runs contacts were added since it was found
   std::array<query::Contact, most> touching_;
   std::size_t count_ = 0;
   math::Pose made_at_;
