@@ -248,6 +248,34 @@ TEST(HeldContacts, WhereNothingIsDecidedThePlaneOfTheLastTouchHolds) {
   EXPECT_TRUE(held.best_of(undecided, moved({1.2 * HeldContacts::most_slip_undecided, 0, 0}), 1.0).empty());
 }
 
+// A body that was put beyond what it had touched, where no budget told that they were apart, was pulled back by all of
+// the way that it had gone.
+TEST(HeldContacts, WhatHasComeFartherThanHalfOfTheSizeIsLetGo) {
+  HeldContacts held;
+  const query::Contact found[] = {contact_at({0, 0, 0}, Vec3::UnitZ(), 0.001)};
+  held.keep(found, {}, true, true);
+  query::Answer undecided;
+  undecided.basis = query::Basis::budget;
+  EXPECT_EQ(held.best_of(undecided, moved({0, 0, 0.9 * HeldContacts::most_come}), 1.0).size(), 1U);
+  EXPECT_TRUE(held.best_of(undecided, moved({0, 0, 1.1 * HeldContacts::most_come}), 1.0).empty());
+  EXPECT_TRUE(held.best_of(undecided, {}, 1.0).empty()) << "let go for good";
+}
+
+// A torus that lay on the ground and was turned over was pushed into it by what had held it up.
+TEST(HeldContacts, WhatIsTurnedOverIsLetGo) {
+  const query::Contact found[] = {contact_at({0, 0, 0}, Vec3::UnitZ(), 0.001)};
+  query::Answer undecided;
+  undecided.basis = query::Basis::budget;
+  const auto given_after = [&](double angle, const Vec3& axis) {
+    HeldContacts held;
+    held.keep(found, {}, true, true);
+    return held.best_of(undecided, {Eigen::AngleAxisd(angle, axis).toRotationMatrix(), Vec3::Zero()}, 1.0).size();
+  };
+  EXPECT_EQ(given_after(3.0, Vec3::UnitX()), 0U);
+  EXPECT_EQ(given_after(0.2, Vec3::UnitX()), 1U) << "it rocks";
+  EXPECT_EQ(given_after(3.0, Vec3::UnitZ()), 1U) << "it spins where it lies";
+}
+
 /// What is given where two contacts of a finished run are held, and a starved one, 20 runs later and after `motion`,
 /// finds one that pushes along x.
 std::vector<query::Contact> given_beside_two(const Vec3& motion) {

@@ -156,5 +156,35 @@ TEST(ProvedHits, OfAPairThatWasResetAreThoseOfANewOne) {
   EXPECT_TRUE(pair.crossings().empty()) << "a refused run finds nothing";
 }
 
+// Rays that tell that a body is within a solid may take all that there was for those that look for a way out: the hit
+// was proved, and had no contact.
+TEST(ProvedHits, OfABodyWithinASolidHaveAWayOut) {
+  const auto ball = shape_of(made_mesh("made:bumpy_sphere:frequency=12,radius=1"));
+  const auto body = shape_of(made_mesh("made:bolt"));
+  const Vec3 place(0.3, 0.1, 0.2);
+  for (const bool exchanged : {false, true}) {
+    int hits = 0;
+    for (std::uint64_t units = 1; units <= 400; ++units) {
+      Pair pair = (exchanged ? Pair::make(body, ball) : Pair::make(ball, body)).value();
+      Request request;
+      request.method = Method::incremental;
+      request.max_contacts = 4;
+      request.solids = true;
+      request.budget = Budget::work(units);
+      const math::Pose pose{Mat3::Identity(), place};
+      for (int run = 0; run < 2; ++run) {
+        const Answer& answer = pair.run(exchanged ? pose.inverse() : pose, request);
+        if (answer.basis != Basis::proved || answer.verdict != Verdict::hit) continue;
+        ++hits;
+        ASSERT_FALSE(answer.contacts.empty()) << units << " units, exchanged " << exchanged << ", run " << run;
+        const Contact& out = answer.contacts.front();
+        EXPECT_GT((exchanged ? 1.0 : -1.0) * out.normal.dot(place), 0.0) << "away from the middle";
+        EXPECT_GT(out.depth, 0.0);
+      }
+    }
+    EXPECT_GT(hits, 100);
+  }
+}
+
 }  // namespace
 }  // namespace odds::query

@@ -181,5 +181,40 @@ TEST(SheetInAHurry, ABallFarFromTheMiddleOfTheGroundIsPushedUp) {
   }
 }
 
+// In the frame of the ball, which was the first body, what lies below it seemed to have come from above, and what
+// pushed it up pushed it down once it had turned: it was drawn through the ground by all of its diameter.
+TEST(SheetInAHurry, ABallThatTurnsKnowsItsSideInEitherOrder) {
+  const auto ground = uneven_ground();
+  const auto small = shape_of(mesh::made::make_shape("icosphere:radius=0.05,frequency=8").value());
+  for (const bool ground_first : {true, false}) {
+    for (const double microseconds : {std::numeric_limits<double>::infinity(), 20.0, 5.0}) {
+      for (int way = 0; way < 24; ++way) {
+        const Vec3 axis = Vec3(std::cos(way), std::sin(way), 0.2).normalized();
+        const auto pose = [&](double turned, double z) {
+          const math::Pose there{Eigen::AngleAxisd(turned, axis).toRotationMatrix(), {0.2, 0.1, z}};
+          return ground_first ? there : there.inverse();
+        };
+        const PairOptions options{.late_contacts = true};
+        Pair pair =
+            std::move(ground_first ? Pair::make(ground, small, options) : Pair::make(small, ground, options)).value();
+        realtime::ManualClock clock(100);
+        Request request = testing::short_request(clock, microseconds);
+        request.solids = true;
+        const auto expect_upwards = [&](double turned, const char* when) {
+          for (const Contact& contact : pair.run(pose(turned, 0.048), request).contacts) {
+            const Vec3 normal =
+                ground_first ? Vec3(-contact.normal) : Vec3(pose(turned, 0.0).inverse().rotation * contact.normal);
+            EXPECT_GT(normal.z(), 0.5) << when << ", ground first " << ground_first << ", " << microseconds << " us";
+          }
+        };
+        static_cast<void>(pair.run(pose(0.0, 0.055), request));
+        expect_upwards(2.0, "comes down");
+        for (int run = 0; run < 20; ++run) static_cast<void>(pair.run(pose(2.0, 0.048), request));
+        expect_upwards(2.0 + 3.0, "turns");
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace odds::query

@@ -114,6 +114,7 @@ void HeldContacts::add_one(const query::Contact& contact, bool trusted, const ma
   if (place == most) place = shallowest_above(contact.depth, b_in_a);
   if (place == most) return;
   held_[place] = query::HeldContact(contact, b_in_a);
+  normals_on_b_[place] = b_in_a.rotation.transpose() * contact.normal;
   complete_[place] = false;
   added_[place] = 0;
   count_ = std::max(count_, place + 1);
@@ -146,6 +147,7 @@ bool HeldContacts::agrees(const Vec3& normal, const math::Pose& b_in_a) const no
 
 void HeldContacts::move(std::size_t from, std::size_t to) noexcept {
   held_[to] = held_[from];
+  normals_on_b_[to] = normals_on_b_[from];
   added_[to] = added_[from];
   complete_[to] = complete_[from];
 }
@@ -168,6 +170,7 @@ void HeldContacts::add_apart(const HeldContacts& before, const math::Pose& b_in_
     };
     if (std::any_of(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(count_), is_there)) continue;
     held_[count_] = before.held_[i];
+    normals_on_b_[count_] = before.normals_on_b_[i];
     complete_[count_] = false;
     added_[count_] = before.added_[i];
     ++count_;
@@ -177,7 +180,10 @@ void HeldContacts::add_apart(const HeldContacts& before, const math::Pose& b_in_
 void HeldContacts::keep(std::span<const query::Contact> found, const math::Pose& b_in_a, bool careful,
                         bool complete) noexcept {
   count_ = std::min(found.size(), most);
-  for (std::size_t i = 0; i < count_; ++i) held_[i] = query::HeldContact(found[i], b_in_a);
+  for (std::size_t i = 0; i < count_; ++i) {
+    held_[i] = query::HeldContact(found[i], b_in_a);
+    normals_on_b_[i] = b_in_a.rotation.transpose() * found[i].normal;
+  }
   added_.fill(0);
   made_at_ = b_in_a;
   complete_.fill(complete);
@@ -191,7 +197,10 @@ std::span<const query::Contact> HeldContacts::at(const math::Pose& b_in_a, doubl
   for (std::size_t i = 0; i < count_; ++i) {
     const query::HeldContact held = held_[i];
     const auto [depth, slip] = held.parted(b_in_a);
-    if (!(slip <= most_slid * size && depth >= -most_gap * size)) continue;
+    const bool is_near = depth >= -most_gap * size && depth - held.depth() <= most_come * size;
+    // One that is turned over has its normal in A's frame, but may be of B's surface.
+    const bool is_turned = !(held.normal().dot(b_in_a.rotation * normals_on_b_[i]) > same_side);
+    if (!(slip <= most_slid * size && is_near) || is_turned) continue;
     touching_[kept] = held.at(b_in_a);
     move(i, kept++);
   }

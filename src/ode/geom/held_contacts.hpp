@@ -24,6 +24,9 @@ class HeldContacts {
   static constexpr double most_slip = 0.02;
   static constexpr double most_slip_undecided = 0.1;
   static constexpr double most_gap = 0.002;
+  /// The same: how much deeper a contact may become than it was found, until it is let go. Bodies that have come
+  /// farther may be anywhere, also apart on the other side.
+  static constexpr double most_come = 0.5;
   /// Of the smaller body's size: nearer to each other two contacts are one.
   static constexpr double same_place = tolerances::same_contact_place;
   /// Runs that add contacts and do not find one again, after which it is let go, unless its triangle meets the other
@@ -82,8 +85,9 @@ class HeldContacts {
   /// let go.
   void note_apart(const math::Pose& b_in_a) noexcept;
 
-  /// Lets go what has slid or parted by the new pose; the others as contacts, deepest first, those that have parted by
-  /// less with depth 0. Valid until the next call. `size`: diameter of the smaller body; `most_slid`: part of it.
+  /// Lets go what has slid, parted, come far or turned over by the new pose; the others as contacts, deepest first,
+  /// those that have parted by less with depth 0. Valid until the next call. `size`: diameter of the smaller body;
+  /// `most_slid`: part of it.
   [[nodiscard]] std::span<const query::Contact> at(const math::Pose& b_in_a, double size,
                                                    double most_slid = most_slip) noexcept;
 
@@ -100,7 +104,8 @@ class HeldContacts {
   void move(std::size_t from, std::size_t to) noexcept;
 
   std::array<query::HeldContact, most> held_;
-  std::array<int, most> added_{};  ///< of each, in how many runs contacts were added since it was found
+  std::array<Vec3, most> normals_on_b_;  ///< of each, in B's mesh frame
+  std::array<int, most> added_{};        ///< of each, in how many runs contacts were added since it was found
   std::array<query::Contact, most> touching_;
   std::size_t count_ = 0;
   math::Pose made_at_;

@@ -114,12 +114,17 @@ void note_first_contact(const PosedMeshes& meshes, Pair::Implementation& pair) n
 }
 
 /// Bodies that met since they were apart: whence, by the motion of the first place that was found, once it is more than
-/// a tremor.
+/// a tremor. Of the smaller body as the larger one sees it: what lies below a ball that spins would seem to have come
+/// from the other side of it.
 void note_side(const PosedMeshes& meshes, Pair::Implementation& pair) noexcept {
   if (!pair.apart_at) return;
   // Not of its triangles: the middle of one of a floor is far away, and where bodies turn it goes elsewhere.
   const Vec3 place = Crossing::of(meshes, pair.hits.pairs().front()).middle();
-  const Vec3 came = math::motion_of(place, *pair.apart_at, meshes.pose());
+  const math::Pose& now = meshes.pose();
+  const math::Pose back = now.inverse();
+  const Vec3 came = pair.size_b <= pair.size_a
+                        ? math::motion_of(place, *pair.apart_at, now)
+                        : Vec3(-(now.rotation * math::motion_of(back * place, pair.apart_at->inverse(), back)));
   if (!(came.norm() > unmeasured_depth(pair))) return;
   pair.came = came.normalized();
   pair.apart_at.reset();

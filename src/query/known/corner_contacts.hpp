@@ -53,6 +53,8 @@ class CornerContacts {
   /// Unit, into A: in which contacts pushed last, all of them; zero: they did not.
   [[nodiscard]] const Vec3& normal() const noexcept { return normal_; }
   void note_normal(const Vec3& normal) noexcept { normal_ = normal; }
+  /// It is to be another one in A's frame.
+  void turn(const Mat3& turned) noexcept { normal_ = turned * normal_; }
   /// A look may take two runs: a corner that a search has found, and nobody has measured yet.
   [[nodiscard]] const std::optional<SoughtCorner>& sought() const noexcept { return sought_; }
   void note_sought(const SoughtCorner& sought) noexcept { sought_ = sought; }

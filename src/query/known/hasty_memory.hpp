@@ -75,6 +75,11 @@ class HastyMemory {
     }
     count_ = left;
   }
+  /// Directions are to be others in A's frame.
+  void turn(const Mat3& turned) noexcept {
+    lean_ = turned * lean_;
+    for (Place& place : std::span(places_).first(count_)) place.normal = turned * place.normal;
+  }
   /// `sum` of votes' directions times weights, and of the weights.
   void see(const Vec3& sum, double weight) noexcept {
     if (!sum.allFinite() || !(weight > 0.0)) return;

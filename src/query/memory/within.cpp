@@ -40,17 +40,24 @@ Vec3 outwards(const Shape& solid, const Vec3& point) noexcept {
   return length > 1e-9 * solid.mesh().size() ? Vec3(away / length) : Vec3(Vec3(0.48, 0.6, 0.64));
 }
 
-/// surface: the point is inside; none: outside.
-Seen holds(const Shape& outer, const Vec3& point, Spending& spending) noexcept {
+/// surface: the point is inside, and the nearest exit that was seen is noted; none: outside.
+Seen holds(const Shape& outer, const Vec3& point, Exit& nearest, Spending& spending) noexcept {
   if (!can_hold(outer, point)) return Seen::none;
+  const auto look = [&](const Vec3& direction) noexcept {
+    RayHit hit;
+    const Seen seen = exit_along(outer, point, direction, spending, hit);
+    if (seen == Seen::surface && (nearest.direction.isZero() || hit.distance < nearest.hit.distance)) {
+      nearest = {direction, hit};
+    }
+    return seen;
+  };
   const Vec3 direction = outwards(outer, point);
-  RayHit ignored;
-  const Seen one = exit_along(outer, point, direction, spending, ignored);
+  const Seen one = look(direction);
   if (one == Seen::unknown) return one;
-  const Seen other = exit_along(outer, point, -direction, spending, ignored);
+  const Seen other = look(-direction);
   if (other == one || other == Seen::unknown) return other;
   // One of them grazed an edge: a third decides.
-  return exit_along(outer, point, direction.unitOrthogonal(), spending, ignored);
+  return look(direction.unitOrthogonal());
 }
 
 /// The outer shape, the inner one and its pose, in the outer one's frame.
@@ -89,22 +96,26 @@ bool may_be_within(const Shape& a, const Shape& b, const math::Pose& b_in_a) noe
          (b.is_solid() && can_hold(b, b_in_a.inverse() * first_vertex(a)));
 }
 
-Within within(const Shape& a, const Shape& b, const math::Pose& b_in_a, Spending& spending) noexcept {
-  const Seen b_held = holds(a, b_in_a * first_vertex(b), spending);
+Within within(const Shape& a, const Shape& b, const math::Pose& b_in_a, Exit& exit, Spending& spending) noexcept {
+  exit = {};
+  const Seen b_held = holds(a, b_in_a * first_vertex(b), exit, spending);
   if (b_held == Seen::surface) return Within::b_in_a;
-  const Seen a_held = holds(b, b_in_a.inverse() * first_vertex(a), spending);
+  exit = {};
+  const Seen a_held = holds(b, b_in_a.inverse() * first_vertex(a), exit, spending);
   if (a_held == Seen::surface) return Within::a_in_b;
   return b_held == Seen::none && a_held == Seen::none ? Within::neither : Within::unknown;
 }
 
 std::optional<Contact> way_out(const Shape& a, const Shape& b, const math::Pose& b_in_a, Within which,
-                               std::span<const Vec3> preferred, Spending& spending) noexcept {
+                               std::span<const Vec3> preferred, const Exit& known, Spending& spending) noexcept {
   if (which != Within::b_in_a && which != Within::a_in_b) return std::nullopt;
   const bool b_inside = which == Within::b_in_a;
   const Nested nested = b_inside ? Nested{a, b, b_in_a} : Nested{b, a, b_in_a.inverse()};
   const Vec3 centre = nested.pose * middle(nested.inner);
-  const bool centre_is_inside = holds(nested.outer, centre, spending) == Seen::surface;
-  const Vec3 point = centre_is_inside ? centre : nested.pose * first_vertex(nested.inner);
+  Exit of_centre;
+  const bool centre_is_inside = holds(nested.outer, centre, of_centre, spending) == Seen::surface;
+  const Vec3 vertex = nested.pose * first_vertex(nested.inner);
+  Vec3 point = centre_is_inside ? centre : vertex;
   Vec3 best = Vec3::Zero();
   RayHit exit;
   double least = endless;
@@ -124,7 +135,12 @@ std::optional<Contact> way_out(const Shape& a, const Shape& b, const math::Pose&
     offer(Vec3::Unit(axis), 1.0);
     offer(-Vec3::Unit(axis), 1.0);
   }
-  if (!(least < endless)) return std::nullopt;
+  if (!(least < endless)) {
+    if (known.direction.isZero()) return std::nullopt;
+    point = vertex;
+    exit = known.hit;
+    best = known.direction;
+  }
   Contact contact = contact_along(nested, point, best, exit, spending);
   if (!std::isfinite(contact.depth) || !contact.position.allFinite()) return std::nullopt;
   if (b_inside) {

@@ -217,12 +217,23 @@ Apart known_apart(const tree::WideTree& a, const tree::WideTree& b, const PosedM
   return wide::Encounter::are_roots_apart(a, b, meshes.pose()) ? Apart::far : Apart::unknown;
 }
 
+/// Directions are kept in A's frame, but where a small body turns on a large one they stay as they are in that one's:
+/// those of one that turns slowly are seen anew before that tells.
+void turn_with_larger(const math::Pose& before, const math::Pose& now, Pair::Implementation& pair) noexcept {
+  if (pair.size_b <= pair.size_a || !(math::turn_between(before, now) > tolerances::late_turn)) return;
+  const Mat3 turned = now.rotation * before.rotation.transpose();
+  for (Vec3* direction : {&pair.previous_normal, &pair.came}) *direction = turned * *direction;
+  pair.haste.turn(turned);
+  pair.corners.turn(turned);
+}
+
 /// Bodies that have gone by more than half of the smaller one between two runs may have been anywhere: nothing is known
 /// of the sides that they touched before.
 void forget_if_elsewhere(const PosedMeshes& meshes, Pair::Implementation& pair) noexcept {
   constexpr double elsewhere = 0.5;
   const math::Pose& now = meshes.pose();
   if (pair.known_at) {
+    turn_with_larger(*pair.known_at, now, pair);
     const Vec3 motion = centre_of_smaller(now, pair) - centre_of_smaller(*pair.known_at, pair);
     if (motion.norm() > elsewhere * smaller_size(pair)) {
       pair.came.setZero();

@@ -13,9 +13,10 @@ namespace {
 /// from one run to the next.
 constexpr double stays_within = 0.9;
 
-/// The contact that leads the inner one of two nested shapes out.
-void make_way_out(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, double most_depth, bool enters,
-                  Pair::Implementation& pair, Spending& spending) noexcept {
+/// The contact that leads the inner one of two nested shapes out, by the `known` exit if there is no time to look for
+/// another. Whether there is one.
+bool make_way_out(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, double most_depth, bool enters,
+                  const Exit& known, Pair::Implementation& pair, Spending& spending) noexcept {
   std::array<Vec3, 2> preferred;
   std::size_t count = 0;
   if (!pair.previous_normal.isZero()) preferred[count++] = -pair.previous_normal;
@@ -24,9 +25,9 @@ void make_way_out(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, doub
                                                   : Vec3(-pair.known_depth.motion_of_a(meshes.pose()));
   if (enters && came.norm() > tolerances::resting_motion * smaller_size(pair)) preferred[count++] = -came.normalized();
   const std::optional<Contact> out =
-      way_out(*pair.a, *pair.b, pose_b_in_a, pair.within, std::span(preferred).first(count), spending);
+      way_out(*pair.a, *pair.b, pose_b_in_a, pair.within, std::span(preferred).first(count), known, spending);
   pair.answer.contacts_complete = out.has_value();
-  if (!out) return;
+  if (!out) return false;
   Contact& contact = pair.contacts.front();
   contact = *out;
   // It cannot be deeper than it has come: a body that was clear a moment ago is not thrown out of a mountain.
@@ -37,6 +38,7 @@ void make_way_out(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, doub
   pair.apart_at.reset();
   pair.previous_normal = contact.normal;
   pair.previous_position = contact.position;
+  return true;
 }
 
 }  // namespace
@@ -64,7 +66,8 @@ bool answer_within(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   if (!may_be) return false;
   Answer& answer = pair.answer;
   spending.reserve_for_contacts(pair.endings.ray);
-  const Within now = same ? pair.within : within(*pair.a, *pair.b, pose_b_in_a, spending);
+  Exit exit;
+  const Within now = same ? pair.within : within(*pair.a, *pair.b, pose_b_in_a, exit, spending);
   if (now == Within::unknown) {
     pair.within_is_of_front = false;
     answer.basis = Basis::budget;
@@ -78,7 +81,10 @@ bool answer_within(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
       pair.carried.forget();
       if (request.max_contacts > 0) {
         const double most_depth = pair.known_depth.most(meshes.pose(), reaches);
-        make_way_out(meshes, pose_b_in_a, most_depth, !before, pair, spending);
+        if (!make_way_out(meshes, pose_b_in_a, most_depth, !before, exit, pair, spending)) {
+          answer.basis = Basis::budget;
+          answer.probability = stays_within;
+        }
       }
     }
   }
