@@ -64,6 +64,23 @@ TYPED_TEST(Lanes, AreChosenAndTheLeastFound) {
   }
 }
 
+TYPED_TEST(Lanes, AreChosenByABoundThatCountsAsWithin) {
+  math::Random random(5);
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  alignas(64) float x[wide_lanes];
+  alignas(64) float bound[wide_lanes];
+  alignas(64) float kept[wide_lanes];
+  for (int i = 0; i < 2000; ++i) {
+    for (unsigned lane = 0; lane < wide_lanes; ++lane) {
+      x[lane] = static_cast<float>(random.below(6)) - 3.0F;
+      bound[lane] = random.below(4) == 0 ? -infinity : static_cast<float>(random.below(6)) - 3.0F;
+    }
+    TypeParam::store(kept, TypeParam::choose_at_most(TypeParam::load(x), TypeParam::load(bound), TypeParam::all(1.0F),
+                                                     TypeParam::all(infinity)));
+    for (unsigned lane = 0; lane < wide_lanes; ++lane) ASSERT_EQ(kept[lane], x[lane] <= bound[lane] ? 1.0F : infinity);
+  }
+}
+
 /// Of any size, of either sign, zero, and now and then none.
 template <class T>
 T any_number(math::Random& random) {
