@@ -13,6 +13,7 @@
 #include "odds/mesh/made/box.hpp"
 #include "odds/mesh/made/by_name.hpp"
 #include "odds/query/pair.hpp"
+#include "support/blocks.hpp"
 #include "support/contact_scene.hpp"
 
 namespace odds::query {
@@ -141,22 +142,8 @@ TEST(Summits, OfBodiesFarFromTheirOriginsAreFound) {
 
 /// A floor, 2 m long, with a wall of 1.5 m: one solid, seen from its side an L, along y.
 mesh::TriangleMesh floor_with_wall() {
-  const std::vector<Vec3> profile = {{-0.5, 0, -0.5}, {2, 0, -0.5}, {2, 0, 0}, {0, 0, 0}, {0, 0, 1.5}, {-0.5, 0, 1.5}};
-  const auto count = static_cast<std::uint32_t>(profile.size());
-  std::vector<Vec3> corners;
-  for (const double y : {-1.0, 1.0}) {
-    for (const Vec3& corner : profile) corners.push_back(corner + Vec3(0.0, y, 0.0));
-  }
-  std::vector<mesh::Triangle> triangles;
-  for (std::uint32_t k = 0; k < count; ++k) {
-    const std::uint32_t next = (k + 1) % count;
-    triangles.push_back({k, count + next, next});
-    triangles.push_back({k, count + k, count + next});
-  }
-  for (const auto& [a, b, c] : {mesh::Triangle{0, 1, 2}, {0, 2, 3}, {0, 3, 5}, {3, 4, 5}}) {
-    triangles.push_back({a, b, c});
-    triangles.push_back({count + a, count + c, count + b});
-  }
+  auto [corners, triangles] = test::surface_of(
+      {{{{-0.5, 0.0, 2.0}, {-1.0, 1.0}, {-0.5, 0.0, 1.5}}}, [](int i, int, int k) { return i == 0 || k == 0; }});
   return mesh::TriangleMesh::make(std::move(corners), std::move(triangles)).value();
 }
 
