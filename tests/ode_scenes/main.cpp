@@ -87,6 +87,7 @@ bool read(int argc, char** argv, Options& options) {
     } else if (argument == "--seed" && i + 1 < argc) {
       std::vector<double> one;
       if (!read_list(argv[++i], one, 0.0) || one.size() != 1 || !(one.front() <= 1e9)) return false;
+      if (one.front() != std::floor(one.front())) return false;
       options.plan.seed = static_cast<std::uint64_t>(one.front());
     } else if (argument == "--ours") {
       options.plan.others = false;
