@@ -188,7 +188,9 @@ inline constexpr double resting_motion = 1e-5;
 /// by less, and turn against each other by less than late_turn, radians: carried over ten times that, turns of a thread
 /// pushed a bolt that had left them. Tests: LateManifold.FollowsTheBodies, LateManifold.EndsWhereBodiesTurn.
 inline constexpr double slid_motion = 0.16;
-inline constexpr double late_turn = 0.02;  ///< see slid_motion
+/// See slid_motion. From there on known directions also stay with the larger body, on which a small one turns; of what
+/// turns more slowly they are seen anew. Test: SheetInAHurry.ABallThatTurnsKnowsItsSideInEitherOrder.
+inline constexpr double late_turn = 0.02;
 /// Radians a run: bodies that turn by more against each other do not slide. Test: LateManifold.GivesTheShareOfARun.
 inline constexpr double late_turning = 1e-3;
 /// Of the smaller body's size: a late contact that has slid by more than the first is measured anew; by more than the
