@@ -300,7 +300,7 @@ Patch PatchBuilder::Scratch::patch_along(const Vec3& normal, const PatchInput& i
   made.centre = centre;
   const double lever = patch::lever_of(input, centre);
   made.depth = deepest.depth;
-  made.chosen = patch::choose(extremes.all(), frame, most_contacts, patch::spacing(made.depth, lever));
+  made.chosen = patch::choose(extremes.all(), frame, most_contacts, patch::spacing(made.depth, lever), &watch);
   Measured measured;
   std::size_t count = made.chosen.count;
   const bool can_measure = input.probe_a && input.probe_b && sums.length > 0.0 && !watch.late();
@@ -320,7 +320,8 @@ Patch PatchBuilder::Scratch::patch_along(const Vec3& normal, const PatchInput& i
       ++count;
     }
   }
-  made.chosen = patch::choose({measured.data(), count}, frame, most_contacts, patch::spacing(made.depth, lever));
+  made.chosen =
+      patch::choose({measured.data(), count}, frame, most_contacts, patch::spacing(made.depth, lever), &watch);
   made.low = std::numeric_limits<double>::infinity();
   made.high = -made.low;
   for (std::size_t i = 0; i < indices.size(); ++i) {
@@ -358,7 +359,7 @@ std::span<const Contact> PatchBuilder::build(const PatchInput& input, const Dead
     s.make_hasty_contacts(input, last);
   } else {
     s.drop_crumbs();
-    s.drop_opposed(input.previous_normal);
+    s.drop_opposed(input.previous_normal, watch);
     s.write(input, watch);
   }
   return {s.contacts.data(), s.contact_count};

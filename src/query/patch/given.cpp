@@ -68,12 +68,13 @@ void PatchBuilder::Scratch::drop_crumbs() noexcept {
 
 /// Two patches that push against each other through the same stuff (a rod that has run through a plate) cannot both be
 /// obeyed: the shorter way out stays.
-void PatchBuilder::Scratch::drop_opposed(const Vec3* previous) noexcept {
+void PatchBuilder::Scratch::drop_opposed(const Vec3* previous, Watch& watch) noexcept {
   const auto cost = [previous](const Patch& p) noexcept {
     return p.depth *
            (previous != nullptr && previous->dot(p.normal) > tolerances::same_as_before ? tolerances::hysteresis : 1.0);
   };
   for (std::size_t i = 0; i < patch_count; ++i) {
+    static_cast<void>(watch.late(i));  // work over several queries pauses here
     for (std::size_t j = i + 1; j < patch_count; ++j) {
       Patch& p = patches[i];
       Patch& q = patches[j];

@@ -438,7 +438,7 @@ bool is_of_direction(const PatchView& view, const Vec3& direction, double depth,
   const std::size_t stride = std::max<std::size_t>(1, (view.pieces.size() + view.sample - 1) / view.sample);
   for (std::size_t i = 0; i < view.pieces.size(); i += stride) {
     const PlacedPair& placed = view.rim.pairs[view.rim.pieces[view.pieces[i]].pair];
-    if (!(pair_depth(placed, frame, Vec3::Zero()) <= depth)) return false;
+    if (watch.late(i / stride) || !(pair_depth(placed, frame, Vec3::Zero()) <= depth)) return false;
   }
   return true;
 }

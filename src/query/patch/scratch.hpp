@@ -92,7 +92,7 @@ struct PatchBuilder::Scratch {
                     const patch::Frame& frame, const patch::Chosen& spread, patch::ExitRanges exits, Measured& measured,
                     patch::Watch& watch) noexcept;
   void drop_crumbs() noexcept;
-  void drop_opposed(const Vec3* previous) noexcept;
+  void drop_opposed(const Vec3* previous, patch::Watch& watch) noexcept;
   void write(const PatchInput& input, patch::Watch& watch) noexcept;
   void write_pieces(const Vec3& normal, const patch::RimSums& sums, Indices indices) noexcept;
 

@@ -145,13 +145,15 @@ std::span<const Witness> Extremes::all() noexcept {
   return {found_.data(), count};
 }
 
-Chosen choose(std::span<const Witness> witnesses, const Frame& frame, std::size_t most, double spacing) noexcept {
+Chosen choose(std::span<const Witness> witnesses, const Frame& frame, std::size_t most, double spacing,
+              Watch* watch) noexcept {
   Chosen chosen;
   Candidates candidates = gather(witnesses, frame);
   std::array<Vec3, most_contacts> polygon;
   std::size_t corners = 0;
   most = std::min<std::size_t>(most, most_contacts);
   while (chosen.count < most) {
+    if (watch != nullptr && chosen.count > 0) static_cast<void>(watch->late());
     Candidate* best = nullptr;
     double best_score = 0.0;
     for (std::size_t i = 0; i < candidates.count; ++i) {

@@ -9,6 +9,7 @@
 
 #include "odds/math/tolerances.hpp"
 #include "query/patch/overlap.hpp"
+#include "query/patch/watch.hpp"
 
 namespace odds::query::patch {
 
@@ -78,9 +79,10 @@ struct Chosen {
 
 /// Orders at most `most` of the witnesses: the deepest (of those equally deep to 2 %, one far out), the farthest from
 /// it, the one that adds the largest triangle, and so on while the area grows. Leaves out shallow ones and ones nearer
-/// to a chosen one than `spacing`.
-[[nodiscard]] Chosen choose(std::span<const Witness> witnesses, const Frame& frame, std::size_t most,
-                            double spacing) noexcept;
+/// to a chosen one than `spacing`. Asks the watch, if any, between two, so that work over several queries can pause
+/// there; the answer does not depend on it.
+[[nodiscard]] Chosen choose(std::span<const Witness> witnesses, const Frame& frame, std::size_t most, double spacing,
+                            Watch* watch = nullptr) noexcept;
 
 /// The deepest; of those equally deep to 2 %, one far from `centre` (up to about `radius`). Precondition: not empty.
 [[nodiscard]] Witness deepest_of(std::span<const Witness> witnesses, const Frame& frame, const Vec3& centre,

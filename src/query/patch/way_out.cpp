@@ -92,7 +92,7 @@ void PatchBuilder::Scratch::reach_in(const Patch& run_in, const patch::PatchView
   for (std::size_t i = 0; i < count; ++i) all[i] = patch::pulled_in(all[i], deepest);
   made.depth = deepest.depth;
   made.chosen = patch::choose({all.data(), count}, frame, most_contacts,
-                              patch::spacing(made.depth, patch::lever_of(view.input, made.centre)));
+                              patch::spacing(made.depth, patch::lever_of(view.input, made.centre)), &watch);
   made.centre.setZero();
   for (std::size_t i = 0; i < made.chosen.count; ++i) {
     const Witness& w = made.chosen.witnesses[i];
