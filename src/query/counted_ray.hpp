@@ -5,11 +5,25 @@
 #include <cstdint>
 #include <optional>
 
+#include "odds/query/deadline.hpp"
 #include "odds/query/ray.hpp"
 
 namespace odds::query {
 
-/// `finished`: false if the nodes ran out; then what was found need not be the first crossing, nor nothing none.
+/// What one ray may take.
+struct RayAllowance {
+  static constexpr std::uint64_t between_looks = 2;  ///< at the deadline
+
+  std::uint64_t nodes;
+  Deadline deadline{};
+
+  /// Before it visits another node.
+  [[nodiscard]] bool is_up(std::uint64_t visited) const noexcept {
+    return visited >= nodes || (visited % between_looks == between_looks - 1 && deadline());
+  }
+};
+
+/// `finished`: false if its allowance was up; then what was found need not be the first crossing, nor nothing none.
 struct RayEffort {
   std::uint64_t nodes = 0;
   bool finished = true;
@@ -17,7 +31,7 @@ struct RayEffort {
 
 /// As cast_ray.
 [[nodiscard]] std::optional<RayHit> cast_counted_ray(const Shape& shape, const Vec3& origin, const Vec3& direction,
-                                                     double max_distance, std::uint64_t budget_nodes,
+                                                     double max_distance, const RayAllowance& allowance,
                                                      RayEffort& effort) noexcept;
 
 /// One of two rays.

@@ -41,11 +41,11 @@ TEST(NearestSurface, OfASpikeTheSideIsRightWhereverTheSearchEnds) {
     const Vec3 point = random.uniform(0.8, 2.0) * random.direction();
     std::uint64_t all = std::numeric_limits<std::uint64_t>::max();
     bool finished = false;
-    const auto right = ode::nearest_surface(*mesh, point, anywhere, query::no_feature, {}, 0, 0, all, finished);
+    const auto right = ode::nearest_surface(*mesh, point, anywhere, query::no_feature, {}, 0, {0}, all, finished);
     ASSERT_TRUE(right && finished);
     inside += right->inside ? 1 : 0;
     std::uint64_t few = 4 + random.below(12);
-    const auto early = ode::nearest_surface(*mesh, point, anywhere, query::no_feature, {}, 0, 1000, few, finished);
+    const auto early = ode::nearest_surface(*mesh, point, anywhere, query::no_feature, {}, 0, {1000}, few, finished);
     unfinished += finished ? 0 : 1;
     if (!early) continue;
     EXPECT_EQ(early->inside, right->inside) << point.transpose();

@@ -15,7 +15,7 @@ double depth_of(const Vec3& point, const ode::PreparedMesh& in) {
   std::uint64_t units = std::numeric_limits<std::uint64_t>::max();
   bool finished = false;
   const auto nearest = ode::nearest_surface(in, point, std::numeric_limits<double>::infinity(), query::no_feature, {},
-                                            0, 0, units, finished);
+                                            0, {0}, units, finished);
   return nearest && nearest->inside ? nearest->distance : 0.0;
 }
 

@@ -82,12 +82,12 @@ TEST(InstructionSets, CastTheSameRays) {
     for (int i = 0; i < 500; ++i) {
       const std::uint64_t nodes = i % 4 == 0 ? 1 + static_cast<std::uint64_t>(i) / 20 : UINT64_MAX;
       RayEffort effort;
-      const wide::RayTask task{*mesh, tree,  1.5 * random.uniform() * random.direction(), random.direction(), 5.0,
-                               nodes, effort};
+      const wide::RayTask task{*mesh,   tree,  1.5 * random.uniform() * random.direction(), random.direction(), 5.0,
+                               {nodes}, effort};
       const auto expected = portable->ray(task);
       const RayEffort portable_effort = effort;
       RayEffort other_effort;
-      const wide::RayTask other{*mesh, tree, task.direction, -task.direction, 5.0, nodes, other_effort};
+      const wide::RayTask other{*mesh, tree, task.direction, -task.direction, 5.0, {nodes}, other_effort};
       const auto expected_of_other = portable->ray(other);
       for (const wide::Searches* of : {portable, searches}) {
         effort = other_effort = {};

@@ -164,7 +164,7 @@ TEST_P(Rays, FromAfarPassBetweenNoTrianglesAndSeeNoMoreNodes) {
       if (direction.dot(on) > -0.3) direction = -(on + 0.5 * direction).normalized();
       direction *= 1.0 + random.uniform(-4e-7, 4e-7);  // unit, as single precision would have it and more
       RayEffort effort;
-      const auto hit = cast_counted_ray(*shape, on - way * direction, direction, INFINITY, UINT64_MAX, effort);
+      const auto hit = cast_counted_ray(*shape, on - way * direction, direction, INFINITY, {UINT64_MAX}, effort);
       ASSERT_TRUE(hit) << way << " ray " << i;
       const double rounding = 1e-12 + 1e-14 * way;  // of the origin: as far off is where the ray meets the surface
       ASSERT_NEAR(hit->distance, way, 10.0 * rounding) << i;
@@ -175,6 +175,37 @@ TEST_P(Rays, FromAfarPassBetweenNoTrianglesAndSeeNoMoreNodes) {
     if (way == 2.0) nodes_near = nodes;
     EXPECT_LT(nodes, 1.2 * nodes_near) << way;
   }
+}
+
+// A deadline that passes at some look ends a ray there, as so many nodes would have; one that never does changes nothing.
+TEST_P(Rays, EndWhereALookFindsTheTimeUp) {
+  const auto shape = Shape::build(testing::wavy_sphere(40), {.volume = GetParam()}).value();
+  math::Random random(3);
+  int ended = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 origin = 2.0 * random.direction();
+    const Vec3 direction = (0.5 * random.direction() - origin).normalized();
+    RayEffort whole;
+    const auto hit = cast_counted_ray(*shape, origin, direction, 5.0, {UINT64_MAX}, whole);
+    ASSERT_TRUE(whole.finished);
+    for (int passes_at = 1; passes_at <= 8; ++passes_at) {
+      int looks_left = passes_at;
+      const Deadline deadline{[](void* left) noexcept { return --*static_cast<int*>(left) == 0; }, &looks_left};
+      RayEffort timed;
+      const auto seen = cast_counted_ray(*shape, origin, direction, 5.0, {UINT64_MAX, deadline}, timed);
+      const std::uint64_t nodes = RayAllowance::between_looks * static_cast<std::uint64_t>(passes_at) - 1;
+      RayEffort counted;
+      const auto expected = cast_counted_ray(*shape, origin, direction, 5.0, {nodes}, counted);
+      ASSERT_EQ(timed.nodes, std::min(nodes, whole.nodes)) << i << " " << passes_at;
+      ASSERT_EQ(timed.finished, counted.finished) << i << " " << passes_at;
+      ASSERT_EQ(seen ? seen->distance : -1.0, expected ? expected->distance : -1.0) << i << " " << passes_at;
+      if (timed.finished) {
+        ASSERT_EQ(seen ? seen->distance : -1.0, hit ? hit->distance : -1.0) << i << " " << passes_at;
+      }
+      ended += timed.finished ? 0 : 1;
+    }
+  }
+  EXPECT_GT(ended, 200);
 }
 
 /// Two shapes of one volume, two of which one is of the default's.

@@ -10,6 +10,7 @@
 #include "odds/math/types.hpp"
 #include "odds/mesh/triangle_mesh.hpp"
 #include "odds/query/answer.hpp"
+#include "odds/query/deadline.hpp"
 
 namespace odds::query {
 
@@ -46,14 +47,6 @@ struct ProbeRay {
   bool found = false;
   double distance = 0.0;  ///< metres, in [0, max_distance]
   std::uint32_t triangle = 0;
-};
-
-/// Says whether the time is up. Null: never. Polled every microsecond or two.
-struct Deadline {
-  bool (*expired)(void* self) noexcept = nullptr;
-  void* self = nullptr;
-
-  [[nodiscard]] bool operator()() const noexcept { return expired != nullptr && expired(self); }
 };
 
 /// What contacts are made from. All points in A's mesh frame and metres, except B's vertices, which are in B's own

@@ -278,10 +278,12 @@ void add_last_over_ground(const PreparedMesh& mesh, const Capsule& capsule, cons
 // The surface at the first place, as it is seen from the axis. The nearest point of the surface to the axis is the
 // nearest to that point of the axis, too, and its pseudo-normal tells the side.
 // Nothing if that takes long.
-std::optional<NearestSurface> seen_from_axis(const PreparedMesh& mesh, const CapsulePlaces& places) noexcept {
+std::optional<NearestSurface> seen_from_axis(const PreparedMesh& mesh, const CapsulePlaces& places,
+                                             Limit& limit) noexcept {
   const CapsulePlace& place = places.all[0];
   if (!places.nearest_is_sure) {
-    return surface_towards(mesh, place.on_axis, place.on_surface, place.triangle, nodes_of_a_ray);
+    return surface_towards(mesh, place.on_axis, place.on_surface, place.triangle,
+                           ray_to_tell_side(Wanted::what_is_met, limit));
   }
   const Vec3 outward = outward_at(mesh, place.on_surface, place.triangle, place.on_axis);
   return NearestSurface{place.on_surface, place.distance, place.triangle, outward,
@@ -292,7 +294,7 @@ std::optional<NearestSurface> seen_from_axis(const PreparedMesh& mesh, const Cap
 void add_beside(const PreparedMesh& mesh, const Capsule& capsule, CapsulePlaces& places, Limit& limit,
                 CapsuleContacts& contacts) noexcept {
   if (mesh.closed && places.count > 0) {
-    const std::optional<NearestSurface> seen = seen_from_axis(mesh, places);
+    const std::optional<NearestSurface> seen = seen_from_axis(mesh, places, limit);
     if (!seen) return;
     if (seen->inside) {
       add_ends_behind(capsule, seen->point, seen->outward, seen->triangle, contacts);

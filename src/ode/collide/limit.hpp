@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "odds/query/deadline.hpp"
 #include "odds/realtime/clock.hpp"
 #include "ode/budget_clock.hpp"
 #include "ode/frame/frame_share.hpp"
@@ -37,6 +38,7 @@ class Limit {
       time_ns_ -= std::clamp(1e3 * choosing_us, shortest_choice * whole_ns_, longest_choice * whole_ns_);
     }
     start_ns_ = begun_ns ? *begun_ns : clock_();
+    past_ns_ = start_ns_ + static_cast<std::int64_t>(ns);
   }
 
   [[nodiscard]] static std::int64_t now() noexcept { return realtime::without_waiting(budget_clock())(); }
@@ -46,6 +48,12 @@ class Limit {
 
   /// Whether nothing may be begun any more: contacts that are chosen have to do.
   [[nodiscard]] bool is_over() const noexcept { return timed_ && clock_() >= over_ns(); }
+
+  /// Says whether all of the budget is gone, the part for its ending, too: what takes long on the way to its end gives
+  /// up, but not because the machine was elsewhere for so long that it is late anyway. Good as long as this is.
+  [[nodiscard]] query::Deadline past() noexcept {
+    return {[](void* self) noexcept { return static_cast<const Limit*>(self)->is_past(); }, this};
+  }
 
   /// The share of the time that is gone; 0 where there is no limit.
   [[nodiscard]] double used() const noexcept {
@@ -103,6 +111,8 @@ class Limit {
   static constexpr double longest_ending = 0.4;
   static constexpr double longest_choice = 0.3;
   static constexpr double shortest_choice = 0.12;
+  // Between two looks of one ray much less goes by.
+  static constexpr std::int64_t elsewhere_ns = 3000;
   // A collision that ended before so much of its time was gone tells nothing of endings.
   static constexpr double pressed = 0.9;
   static constexpr std::uint64_t most_units = std::uint64_t{1} << 40;
@@ -115,12 +125,18 @@ class Limit {
     const std::int64_t now = clock_();
     if (now > end_ns(pressed)) endings_.note(geom_class_, now - over_ns());
   }
+  [[nodiscard]] bool is_past() const noexcept {
+    if (!timed_) return false;
+    const std::int64_t beyond_ns = clock_() - past_ns_;
+    return beyond_ns >= 0 && beyond_ns < elsewhere_ns;
+  }
   [[nodiscard]] std::uint64_t spent() const noexcept { return begun_with_ - units + beside_; }
 
   realtime::Clock clock_;
   EndingTimes& endings_;
   int geom_class_;
   std::int64_t start_ns_ = 0;
+  std::int64_t past_ns_ = 0;
   double whole_ns_ = 0.0;
   double time_ns_ = 0.0;  ///< of it, until contacts are chosen
   bool timed_ = false;

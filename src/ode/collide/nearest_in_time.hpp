@@ -8,6 +8,7 @@
 #include "ode/collide/end_of_share.hpp"
 #include "ode/collide/limit.hpp"
 #include "ode/mesh/nearest_surface.hpp"
+#include "query/counted_ray.hpp"
 
 namespace odds::ode {
 
@@ -18,8 +19,13 @@ enum class Wanted : std::uint8_t {
   something,    ///< the same, and a little longer if it takes that to meet anything
 };
 
-/// For the ray that tells the side of what may not be the nearest.
-constexpr std::uint64_t nodes_of_a_ray = 24;
+/// For the ray that tells the side of what may not be the nearest. Where that takes until the budget is gone, the side
+/// stays unknown, unless there would be nothing then.
+[[nodiscard]] inline query::RayAllowance ray_to_tell_side(Wanted wanted, Limit& limit) noexcept {
+  constexpr std::uint64_t most_nodes = 24;
+  if (wanted == Wanted::nothing) return {0};
+  return {most_nodes, wanted == Wanted::something ? query::Deadline() : limit.past()};
+}
 
 /// The way, unit, to a point from a place of the surface that may not be the nearest: that of the surface there, if it
 /// faces the point, and straight from the place if it does so from its side only. On a smooth surface the former is
@@ -42,7 +48,7 @@ constexpr std::uint64_t nodes_of_a_ray = 24;
   EndOfShare end(limit, share, 0);
   const auto nearest = nearest_surface(mesh, point, reach, guess, end.deadline(),
                                        wanted == Wanted::something ? EndOfShare::to_a_triangle : 0,
-                                       wanted == Wanted::nothing ? 0 : nodes_of_a_ray, left, finished);
+                                       ray_to_tell_side(wanted, limit), left, finished);
   limit.spend(nodes - left);
   return nearest;
 }

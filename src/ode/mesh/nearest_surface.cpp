@@ -98,7 +98,7 @@ Vec3 outward_at(const PreparedMesh& mesh, const Vec3& point, std::uint32_t trian
 
 std::optional<NearestSurface> nearest_surface(const PreparedMesh& mesh, const Vec3& point, double reach,
                                               std::uint32_t guess, const query::Deadline& deadline, int sure_nodes,
-                                              std::uint64_t nodes_of_a_ray, std::uint64_t& units,
+                                              const query::RayAllowance& ray, std::uint64_t& units,
                                               bool& finished) noexcept {
   bool has_seen_any = false;
   const auto distance = [&](std::uint32_t t) {
@@ -121,7 +121,7 @@ std::optional<NearestSurface> nearest_surface(const PreparedMesh& mesh, const Ve
   // There may be nearer triangles, and of one that is not the nearest the side tells nothing: a ball in a cavity would
   // be pushed out through its walls.
   if (!finished && nearest.distance > 0.0) {
-    return surface_towards(mesh, point, nearest.point, triangle, nodes_of_a_ray);
+    return surface_towards(mesh, point, nearest.point, triangle, ray);
   }
   nearest.outward = outward_at(mesh, nearest.point, triangle, point);
   nearest.inside = mesh.closed && nearest.outward.dot(point - nearest.point) < 0.0;
@@ -129,8 +129,8 @@ std::optional<NearestSurface> nearest_surface(const PreparedMesh& mesh, const Ve
 }
 
 std::optional<NearestSurface> surface_towards(const PreparedMesh& mesh, const Vec3& point, const Vec3& place,
-                                              std::uint32_t triangle, std::uint64_t most_nodes) noexcept {
-  if (most_nodes == 0) return std::nullopt;
+                                              std::uint32_t triangle, const query::RayAllowance& ray) noexcept {
+  if (ray.nodes == 0) return std::nullopt;
   // Aimed a little into the triangle: at its rim the ray might meet a neighbour that faces the other way, at the tip of
   // a spike for one.
   constexpr double inwards = 1e-3;  // of the way to its middle
@@ -139,7 +139,7 @@ std::optional<NearestSurface> surface_towards(const PreparedMesh& mesh, const Ve
   const double length = (target - point).norm();
   const Vec3 direction = (target - point) / length;
   query::RayEffort effort;
-  const auto hit = query::cast_counted_ray(*mesh.shape, point, direction, length * (1.0 + 1e-9), most_nodes, effort);
+  const auto hit = query::cast_counted_ray(*mesh.shape, point, direction, length * (1.0 + 1e-9), ray, effort);
   if (!effort.finished) return std::nullopt;
   NearestSurface met = {place, (place - point).norm(), triangle, unit_normal(corners), false};
   if (hit && hit->triangle != triangle) {

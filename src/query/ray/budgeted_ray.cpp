@@ -24,7 +24,7 @@ Seen cast_budgeted_ray(const Shape& shape, const Vec3& point, const Vec3& direct
     most = std::min(most, shape.volume() == volume::Kind::wide ? most_wide_nodes : most_generic_nodes);
   }
   RayEffort effort;
-  const std::optional<RayHit> hit = cast_counted_ray(shape, point, direction, length, most, effort);
+  const std::optional<RayHit> hit = cast_counted_ray(shape, point, direction, length, {most}, effort);
   spending.spend_node_pairs(static_cast<std::uint32_t>(effort.nodes));
   if (!effort.finished) return Seen::unknown;
   if (hit) found = *hit;

@@ -18,14 +18,14 @@ namespace {
 
 template <volume::BoundingVolume V>
 std::optional<RayHit> cast(const tree::Hierarchy<V>& hierarchy, const Vec3& origin, const Vec3& direction,
-                           double length, std::uint64_t budget_nodes, RayEffort& effort) noexcept {
+                           double length, const RayAllowance& allowance, RayEffort& effort) noexcept {
   volume::RaySegment segment = volume::RaySegment::make(origin, direction, length, hierarchy.reach());
   std::array<std::uint32_t, stack_capacity> stack;
   std::size_t size = 0;
   stack[size++] = 0;
   std::optional<RayHit> nearest;
   std::uint64_t visited = 0;
-  for (; size != 0 && visited < budget_nodes; ++visited) {
+  for (; size != 0 && !allowance.is_up(visited); ++visited) {
     const auto& node = hierarchy.nodes()[stack[--size]];
     if (!met_by(node.volume, segment)) continue;
     if (!node.is_leaf()) {
@@ -50,16 +50,16 @@ std::optional<RayHit> cast(const tree::Hierarchy<V>& hierarchy, const Vec3& orig
 }
 
 std::optional<RayHit> cast(const mesh::TriangleMesh& mesh, const tree::WideTree& tree, const Vec3& origin,
-                           const Vec3& direction, double length, std::uint64_t budget_nodes,
+                           const Vec3& direction, double length, const RayAllowance& allowance,
                            RayEffort& effort) noexcept {
-  return wide::searches_for(InstructionSet::best)->ray({mesh, tree, origin, direction, length, budget_nodes, effort});
+  return wide::searches_for(InstructionSet::best)->ray({mesh, tree, origin, direction, length, allowance, effort});
 }
 
 template <volume::BoundingVolume V>
 std::optional<RayHit> cast(const mesh::TriangleMesh&, const tree::Hierarchy<V>& hierarchy, const Vec3& origin,
-                           const Vec3& direction, double length, std::uint64_t budget_nodes,
+                           const Vec3& direction, double length, const RayAllowance& allowance,
                            RayEffort& effort) noexcept {
-  return cast(hierarchy, origin, direction, length, budget_nodes, effort);
+  return cast(hierarchy, origin, direction, length, allowance, effort);
 }
 
 bool is_castable(const Shape& shape, const Vec3& origin, const Vec3& direction, double max_distance) noexcept {
@@ -70,12 +70,12 @@ bool is_castable(const Shape& shape, const Vec3& origin, const Vec3& direction, 
 template <class Tree>
 [[gnu::noinline]] std::optional<RayHit> cast_from_afar(const mesh::TriangleMesh& mesh, const Tree& tree,
                                                        const Vec3& local, const Vec3& direction, double max_distance,
-                                                       std::uint64_t budget_nodes, RayEffort& effort) noexcept {
+                                                       const RayAllowance& allowance, RayEffort& effort) noexcept {
   const double skipped = skipped_way(tree.reach(), local, direction);
   if (!(skipped <= max_distance)) return std::nullopt;
   const Vec3 nearer = local + skipped * direction;
   const double length = length_within(tree.reach(), nearer.norm(), max_distance - skipped);
-  std::optional<RayHit> hit = cast(mesh, tree, nearer, direction, length, budget_nodes, effort);
+  std::optional<RayHit> hit = cast(mesh, tree, nearer, direction, length, allowance, effort);
   if (hit) hit->distance += skipped;
   return hit;
 }
@@ -93,11 +93,11 @@ const tree::WideTree* castable_wide_tree(const CountedRay& ray) noexcept {
 std::optional<RayHit> cast_ray(const Shape& shape, const Vec3& origin, const Vec3& direction, double max_distance,
                                std::uint64_t budget_nodes) noexcept {
   RayEffort effort;
-  return cast_counted_ray(shape, origin, direction, max_distance, budget_nodes, effort);
+  return cast_counted_ray(shape, origin, direction, max_distance, {budget_nodes}, effort);
 }
 
 std::optional<RayHit> cast_counted_ray(const Shape& shape, const Vec3& origin, const Vec3& direction,
-                                       double max_distance, std::uint64_t budget_nodes, RayEffort& effort) noexcept {
+                                       double max_distance, const RayAllowance& allowance, RayEffort& effort) noexcept {
   effort = {};
   if (!is_castable(shape, origin, direction, max_distance)) return {};
   return std::visit(
@@ -105,8 +105,8 @@ std::optional<RayHit> cast_counted_ray(const Shape& shape, const Vec3& origin, c
         const Vec3 local = origin - tree.origin();
         const double away = local.norm();
         if (is_far_off(tree.reach(), away)) [[unlikely]]
-          return cast_from_afar(shape.mesh(), tree, local, direction, max_distance, budget_nodes, effort);
-        return cast(shape.mesh(), tree, local, direction, length_within(tree.reach(), away, max_distance), budget_nodes,
+          return cast_from_afar(shape.mesh(), tree, local, direction, max_distance, allowance, effort);
+        return cast(shape.mesh(), tree, local, direction, length_within(tree.reach(), away, max_distance), allowance,
                     effort);
       },
       shape.data().tree);
@@ -125,11 +125,20 @@ std::array<std::optional<RayHit>, 2> cast_two_rays(const CountedRay& first, cons
   const Vec3 local = first.origin - tree->origin();
   const Vec3 other_local = second.origin - other_tree->origin();
   return wide::searches_for(InstructionSet::best)
-      ->two_rays(
-          {first.shape.mesh(), *tree, local, first.direction,
-           length_within(tree->reach(), local.norm(), first.max_distance), budget_nodes, effort},
-          {second.shape.mesh(), *other_tree, other_local, second.direction,
-           length_within(other_tree->reach(), other_local.norm(), second.max_distance), budget_nodes, other_effort});
+      ->two_rays({first.shape.mesh(),
+                  *tree,
+                  local,
+                  first.direction,
+                  length_within(tree->reach(), local.norm(), first.max_distance),
+                  {budget_nodes},
+                  effort},
+                 {second.shape.mesh(),
+                  *other_tree,
+                  other_local,
+                  second.direction,
+                  length_within(other_tree->reach(), other_local.norm(), second.max_distance),
+                  {budget_nodes},
+                  other_effort});
 }
 
 }  // namespace odds::query

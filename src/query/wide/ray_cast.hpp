@@ -85,7 +85,7 @@ class RayCast {
     }
   }
 
-  [[nodiscard]] bool at_end() const noexcept { return top_ == stack_.data() || visited_ >= task_.budget_nodes; }
+  [[nodiscard]] bool at_end() const noexcept { return top_ == stack_.data() || task_.allowance.is_up(visited_); }
 
   ODDS_LANES_INLINE void step() noexcept {
     ++visited_;

@@ -66,7 +66,7 @@ struct RayTask {
   Vec3 origin;     ///< tree's frame, metres
   Vec3 direction;  ///< unit
   double length;   ///< finite, metres
-  std::uint64_t budget_nodes;
+  RayAllowance allowance;
   RayEffort& effort;  ///< what it took
   /// The same ray in the mesh's frame, where it is to slip through no edge; null: crossings are those of
   /// primitive::distance_along_ray.
