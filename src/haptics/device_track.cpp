@@ -147,7 +147,7 @@ Result<DeviceState> to_state(const std::array<double, quantities>& v, std::int64
   state.angular_velocity_rad_per_s = Vec3(v[wx], v[wy], v[wz]);
   state.buttons = static_cast<std::uint32_t>(v[buttons]);
   state.fresh = v[is_fresh] != 0.0;
-  if (!make_usable(state)) {  // all is finite: the quaternion
+  if (!make_usable(state)) {  // no number is beyond: the quaternion
     return Error{name, place,
                  fmt::format("the quaternion has length {:.6g}, so it is not a rotation",
                              state.orientation.coeffs().stableNorm()),

@@ -145,6 +145,29 @@ TEST_P(RecordedCompass, ReplaysToTheSameForcesBitForBit) {
 
 INSTANTIATE_TEST_SUITE_P(Drifts, RecordedCompass, ::testing::Values(1e-4, std::nan("")));
 
+/// Says absurd numbers now and then.
+class Wild final : public testing::DeviceAround {
+ public:
+  using DeviceAround::DeviceAround;
+  [[nodiscard]] bool read(std::int64_t now_ns, haptics::DeviceState& state) noexcept override {
+    const bool told = DeviceAround::read(now_ns, state);
+    if (now_ns == 100 * ms) state.velocity_m_per_s.x() = 1e300;
+    if (now_ns == 200 * ms) state.position_m.y() = -2e12;
+    if (now_ns == 300 * ms) state.angular_velocity_rad_per_s.z() = 1e13;
+    return told;
+  }
+};
+
+// A track's reader refuses numbers beyond 1e12, and so the whole recording of which one row had one.
+TEST(RecordedNonsense, OfNumbersBeyondAllMeasureIsAFailedRead) {
+  const testing::TemporaryFolder folder;
+  const RunOutcome original = run(scripted, folder.path(), [](std::unique_ptr<haptics::Device> hand) {
+    return std::make_unique<Wild>(std::move(hand));
+  });
+  EXPECT_EQ(original.failed_reads, 3U);
+  expect_same_replay(original, folder);
+}
+
 /// Says nothing from one time to another, of a hand that moves.
 class Silent final : public testing::DeviceAround {
  public:
