@@ -23,23 +23,23 @@ constexpr double greatest_number = 1e12;  // as in scenes: differences of more o
 
 constexpr std::uintmax_t largest_file = std::uintmax_t{1} << 30;  // three hours at 1 kHz need a tenth of it
 
-enum Quantity : std::size_t { t, px, py, pz, qw, qx, qy, qz, vx, vy, vz, wx, wy, wz, buttons, quantities };
+enum Quantity : std::size_t { t, px, py, pz, qw, qx, qy, qz, vx, vy, vz, wx, wy, wz, buttons, is_fresh, quantities };
 constexpr std::array<std::string_view, quantities> quantity_names = {
-    "t_ns",       "px_m",       "py_m",       "pz_m",         "qw",           "qx",           "qy",     "qz",
-    "vx_m_per_s", "vy_m_per_s", "vz_m_per_s", "wx_rad_per_s", "wy_rad_per_s", "wz_rad_per_s", "buttons"};
+    "t_ns",       "px_m",       "py_m",       "pz_m",         "qw",           "qx",           "qy",      "qz",
+    "vx_m_per_s", "vy_m_per_s", "vz_m_per_s", "wx_rad_per_s", "wy_rad_per_s", "wz_rad_per_s", "buttons", "fresh"};
 
 struct ColumnName {
   std::string_view name;
   Quantity quantity;
   double factor;  // to nanoseconds, metres
 };
-constexpr std::array<ColumnName, 21> column_names = {
-    {{"t_ns", t, 1.0},         {"t_us", t, 1e3},          {"t_ms", t, 1e6},          {"t_s", t, 1e9},
-     {"px_m", px, 1.0},        {"py_m", py, 1.0},         {"pz_m", pz, 1.0},         {"px_mm", px, 1e-3},
-     {"py_mm", py, 1e-3},      {"pz_mm", pz, 1e-3},       {"qw", qw, 1.0},           {"qx", qx, 1.0},
-     {"qy", qy, 1.0},          {"qz", qz, 1.0},           {"vx_m_per_s", vx, 1.0},   {"vy_m_per_s", vy, 1.0},
-     {"vz_m_per_s", vz, 1.0},  {"wx_rad_per_s", wx, 1.0}, {"wy_rad_per_s", wy, 1.0}, {"wz_rad_per_s", wz, 1.0},
-     {"buttons", buttons, 1.0}}};
+constexpr std::array<ColumnName, 22> column_names = {
+    {{"t_ns", t, 1.0},          {"t_us", t, 1e3},          {"t_ms", t, 1e6},          {"t_s", t, 1e9},
+     {"px_m", px, 1.0},         {"py_m", py, 1.0},         {"pz_m", pz, 1.0},         {"px_mm", px, 1e-3},
+     {"py_mm", py, 1e-3},       {"pz_mm", pz, 1e-3},       {"qw", qw, 1.0},           {"qx", qx, 1.0},
+     {"qy", qy, 1.0},           {"qz", qz, 1.0},           {"vx_m_per_s", vx, 1.0},   {"vy_m_per_s", vy, 1.0},
+     {"vz_m_per_s", vz, 1.0},   {"wx_rad_per_s", wx, 1.0}, {"wy_rad_per_s", wy, 1.0}, {"wz_rad_per_s", wz, 1.0},
+     {"buttons", buttons, 1.0}, {"fresh", is_fresh, 1.0}}};
 
 std::vector<std::string_view> split(std::string_view line) {
   std::vector<std::string_view> cells;
@@ -130,6 +130,9 @@ std::optional<Error> read_row(std::string_view line, const Columns& columns, con
       return Error{name, place, fmt::format("'{}' is not a set of buttons", cells[i]),
                    "give a whole number from 0 to 4294967295"};
     }
+    if (column.quantity == is_fresh && value != 0.0 && value != 1.0) {
+      return Error{name, place, fmt::format("'{}' does not say whether the row is news", cells[i]), "give 1 or 0"};
+    }
   }
   return std::nullopt;
 }
@@ -143,8 +146,8 @@ Result<DeviceState> to_state(const std::array<double, quantities>& v, std::int64
   state.velocity_m_per_s = Vec3(v[vx], v[vy], v[vz]);
   state.angular_velocity_rad_per_s = Vec3(v[wx], v[wy], v[wz]);
   state.buttons = static_cast<std::uint32_t>(v[buttons]);
-  state.fresh = true;
-  if (!make_usable(state)) {  // all is finite: the quaternion
+  state.fresh = v[is_fresh] != 0.0;
+  if (!make_usable(state)) {  // no number is beyond: the quaternion
     return Error{name, place,
                  fmt::format("the quaternion has length {:.6g}, so it is not a rotation",
                              state.orientation.coeffs().stableNorm()),
@@ -193,6 +196,7 @@ Result<DeviceTrack> parse_track(std::string_view text, const std::string& name) 
       continue;
     }
     std::array<double, quantities> values{};
+    values[is_fresh] = 1.0;  // of a track that does not say
     std::int64_t time_ns = 0;
     if (auto error = read_row(line, *columns, name, place, values, time_ns)) return *error;
     Result<DeviceState> state = to_state(values, time_ns, name, place);
@@ -241,8 +245,8 @@ std::optional<Error> write_track(const std::filesystem::path& path, const Device
     const Vec3& v = s.velocity_m_per_s;
     const Vec3& w = s.angular_velocity_rad_per_s;
     // {} of fmt is the shortest text that reads back to the same bits.
-    file.write(fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", s.t_ns, p.x(), p.y(), p.z(), q.w(), q.x(),
-                           q.y(), q.z(), v.x(), v.y(), v.z(), w.x(), w.y(), w.z(), s.buttons));
+    file.write(fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", s.t_ns, p.x(), p.y(), p.z(), q.w(),
+                           q.x(), q.y(), q.z(), v.x(), v.y(), v.z(), w.x(), w.y(), w.z(), s.buttons, s.fresh ? 1 : 0));
   }
   return file.commit();
 }

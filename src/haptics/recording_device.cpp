@@ -2,13 +2,6 @@
 #include "odds/haptics/recording_device.hpp"
 
 namespace odds::haptics {
-namespace {
-
-bool is_elsewhere(const DeviceState& a, const DeviceState& b) noexcept {
-  return a.position_m != b.position_m || a.orientation.coeffs() != b.orientation.coeffs();
-}
-
-}  // namespace
 
 RecordingDevice::RecordingDevice(std::unique_ptr<Device> inner, std::size_t capacity)
     : inner_(std::move(inner)), states_(capacity) {}
@@ -33,16 +26,15 @@ void RecordingDevice::note(std::int64_t now_ns, const DeviceState& state, bool f
     lost_ += fresh ? 1 : 0;
     return;
   }
-  // The end of a track that is replayed may lie between two ticks: the next one finds it, and says that it is over.
-  const bool is_news = fresh || (written_ > 0 && is_elsewhere(state, states_[written_ - 1]));
   if (!again) ++written_;
-  states_[written_ - 1] = state;
-  states_[written_ - 1].t_ns = now_ns;
-  if (is_news) used_ = written_;
+  DeviceState& noted = states_[written_ - 1];
+  noted = state;
+  noted.t_ns = now_ns;
+  noted.fresh = fresh;
 }
 
 DeviceTrack RecordingDevice::track() const {
-  return {{states_.begin(), states_.begin() + static_cast<std::ptrdiff_t>(used_)}};
+  return {{states_.begin(), states_.begin() + static_cast<std::ptrdiff_t>(written_)}};
 }
 
 }  // namespace odds::haptics

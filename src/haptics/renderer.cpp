@@ -124,7 +124,7 @@ bool Renderer::ask_device(std::int64_t now_ns, DeviceState& said, DeviceState& s
   said = sensed(hand_->device->spec(), said, own_);
   if (!told || !make_usable(said)) return false;
   state = hand_->scale.in_scene(said);
-  return make_usable(state);  // no scale has carried it out of all numbers
+  return state.position_m.allFinite() && state.velocity_m_per_s.allFinite();  // which a scale may have taken away
 }
 
 void Renderer::read_device(std::int64_t now_ns) noexcept {

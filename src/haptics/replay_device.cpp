@@ -37,6 +37,7 @@ bool ReplayDevice::read(std::int64_t now_ns, DeviceState& state) noexcept {
     state.fresh = false;
   } else if (next != rows.end() && now_ns > a.t_ns) {
     const DeviceState& b = *next;
+    state.fresh = b.fresh;
     const double share = static_cast<double>(now_ns - a.t_ns) / static_cast<double>(b.t_ns - a.t_ns);
     state.position_m += share * (b.position_m - a.position_m);
     state.orientation = a.orientation.slerp(share, b.orientation);

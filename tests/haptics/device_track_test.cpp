@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstring>
 #include <filesystem>
 #include <numbers>
@@ -97,12 +98,28 @@ TEST(DeviceTrack, AnEndBetweenTwoTicksIsRecordedToo) {
     ASSERT_TRUE(recording.read(static_cast<std::int64_t>(i) * 1'000'000, seen[i]));
   }
   EXPECT_EQ(seen[3].position_m.x(), 0.01);
-  EXPECT_EQ(recording.track().states.size(), 4U);
+  ASSERT_EQ(recording.track().states.size(), 6U);
+  EXPECT_TRUE(recording.track().states[2].fresh);
+  EXPECT_FALSE(recording.track().states[3].fresh) << "nothing new is said, though it is elsewhere";
   ReplayDevice again(recording.track());
   for (const DeviceState& expected : seen) {
     DeviceState state;
     ASSERT_TRUE(again.read(expected.t_ns, state));
     EXPECT_TRUE(same_bits(state, expected)) << expected.t_ns;
+    EXPECT_EQ(state.fresh, expected.fresh) << expected.t_ns;
+  }
+}
+
+TEST(DeviceTrack, SaysWhatIsNewsAndWhatIsNot) {
+  const auto track = parse_track(
+      "t_ms,px_m,py_m,pz_m,qw,qx,qy,qz,fresh\n0,0,0,0,1,0,0,0,1\n2,0,0,0,1,0,0,0,0\n4,0,0,0,1,0,0,0,1\n", "a.csv");
+  ASSERT_TRUE(track.ok()) << track.error().message();
+  ReplayDevice device(track.value());
+  const std::array<bool, 6> fresh = {true, false, false, true, true, false};
+  for (std::size_t i = 0; i < fresh.size(); ++i) {
+    DeviceState state;
+    ASSERT_TRUE(device.read(static_cast<std::int64_t>(i) * 1'000'000, state));
+    EXPECT_EQ(state.fresh, fresh[i]) << i;
   }
 }
 
@@ -202,6 +219,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Malformed{"LongQuaternion", header + "0,0,0,0,2,0,0,0\n", "2", "not a rotation"},
                     Malformed{"NegativeButtons", "t_ns,px_m,py_m,pz_m,qw,qx,qy,qz,buttons\n0,0,0,0,1,0,0,0,-1\n", "2",
                               "buttons"},
+                    Malformed{"HalfFresh", "t_ns,px_m,py_m,pz_m,qw,qx,qy,qz,fresh\n0,0,0,0,1,0,0,0,0.5\n", "2", "news"},
                     Malformed{"EmptyValue", header + "0,,0,0,1,0,0,0\n", "2", "''"}),
     [](const auto& tested) { return tested.param.name; });
 

@@ -74,8 +74,9 @@ class Compass final : public testing::DeviceAround {
 
 using UseDevice = std::function<std::unique_ptr<haptics::Device>(std::unique_ptr<haptics::Device>)>;
 
-RunOutcome run(const std::string& device, const std::filesystem::path& base, const UseDevice& use_device = {}) {
-  Result<Scene> parsed = parse_scene(world + device + effects, "test.toml", base);
+RunOutcome run(const std::string& device, const std::filesystem::path& base, const UseDevice& use_device = {},
+               const std::string& more_effects = "") {
+  Result<Scene> parsed = parse_scene(world + device + effects + more_effects, "test.toml", base);
   EXPECT_TRUE(parsed.ok()) << parsed.error().message();
   SimulationOptions options;
   options.simulated_time = true;
@@ -91,9 +92,11 @@ bool same(const haptics::TickRecord& a, const haptics::TickRecord& b) {
          a.force_n == b.force_n && a.torque_nm == b.torque_nm;
 }
 
-void expect_same_replay(const RunOutcome& original, const testing::TemporaryFolder& folder) {
+void expect_same_replay(const RunOutcome& original, const testing::TemporaryFolder& folder,
+                        const std::string& more_effects = "") {
   ASSERT_FALSE(haptics::write_track(folder / "device.csv", original.device_track).has_value());
-  const RunOutcome again = run("[device.hand]\ntype = \"replay\"\nfile = \"device.csv\"\n", folder.path());
+  const RunOutcome again =
+      run("[device.hand]\ntype = \"replay\"\nfile = \"device.csv\"\n", folder.path(), {}, more_effects);
   ASSERT_EQ(original.ticks.size(), again.ticks.size());
   const auto different = std::mismatch(original.ticks.begin(), original.ticks.end(), again.ticks.begin(), same);
   EXPECT_EQ(different.first, original.ticks.end()) << "from tick " << different.first->tick << " on";
@@ -113,6 +116,19 @@ TEST_P(RecordedHardware, ReplaysToTheSameForcesBitForBit) {
 // Faster than the loop, slower, and by turns.
 INSTANTIATE_TEST_SUITE_P(Periods, RecordedHardware, ::testing::Values(400'000, 1'300'000, 2'000'000, 3'700'000));
 
+// The controller asks for how long the hand took for its way: the replay said in every tick that all was new.
+TEST_P(RecordedHardware, ReplaysBitForBitUnderAPassivityController) {
+  const std::string more = "[effects.passivity_control]\n[effects.gravity]\n";  // the weight gives the hand energy
+  const testing::TemporaryFolder folder;
+  const RunOutcome original = run(
+      scripted, folder.path(),
+      [](std::unique_ptr<haptics::Device> hand) { return std::make_unique<Hardware>(std::move(hand), GetParam()); },
+      more);
+  EXPECT_LT(original.least_energy_j, 0.0);
+  EXPECT_GT(original.effects.back().evaluations, 20U) << original.effects.back().name;
+  expect_same_replay(original, folder, more);
+}
+
 class RecordedCompass : public ::testing::TestWithParam<double> {};
 
 TEST_P(RecordedCompass, ReplaysToTheSameForcesBitForBit) {
@@ -128,6 +144,63 @@ TEST_P(RecordedCompass, ReplaysToTheSameForcesBitForBit) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Drifts, RecordedCompass, ::testing::Values(1e-4, std::nan("")));
+
+/// Says absurd numbers now and then.
+class Wild final : public testing::DeviceAround {
+ public:
+  using DeviceAround::DeviceAround;
+  [[nodiscard]] bool read(std::int64_t now_ns, haptics::DeviceState& state) noexcept override {
+    const bool told = DeviceAround::read(now_ns, state);
+    if (now_ns == 100 * ms) state.velocity_m_per_s.x() = 1e300;
+    if (now_ns == 200 * ms) state.position_m.y() = -2e12;
+    if (now_ns == 300 * ms) state.angular_velocity_rad_per_s.z() = 1e13;
+    return told;
+  }
+};
+
+// A track's reader refuses numbers beyond 1e12, and so the whole recording of which one row had one.
+TEST(RecordedNonsense, OfNumbersBeyondAllMeasureIsAFailedRead) {
+  const testing::TemporaryFolder folder;
+  const RunOutcome original = run(scripted, folder.path(), [](std::unique_ptr<haptics::Device> hand) {
+    return std::make_unique<Wild>(std::move(hand));
+  });
+  EXPECT_EQ(original.failed_reads, 3U);
+  expect_same_replay(original, folder);
+}
+
+/// Says nothing from one time to another, of a hand that moves.
+class Silent final : public testing::DeviceAround {
+ public:
+  Silent(std::unique_ptr<haptics::Device> hand, std::int64_t from_ns, std::int64_t to_ns, bool fails)
+      : DeviceAround(std::move(hand)), from_(from_ns), to_(to_ns), fails_(fails) {}
+  [[nodiscard]] bool read(std::int64_t now_ns, haptics::DeviceState& state) noexcept override {
+    const bool silent = now_ns > from_ && now_ns < to_;
+    if (silent && fails_) return false;
+    if (!DeviceAround::read(silent ? from_ : now_ns, state)) return false;
+    state.fresh = !silent;
+    return true;
+  }
+
+ private:
+  std::int64_t from_;
+  std::int64_t to_;
+  bool fails_;
+};
+
+// A recording did not say that a device was silent: the force that had decayed stayed in the replay.
+TEST(RecordedSilence, DecaysInTheReplayAsItDidBitForBit) {
+  for (const bool fails : {false, true}) {
+    for (const std::int64_t to_ms : {310, 1000}) {
+      const testing::TemporaryFolder folder;
+      const RunOutcome original = run(scripted, folder.path(), [&](std::unique_ptr<haptics::Device> hand) {
+        return std::make_unique<Silent>(std::move(hand), 250 * ms, to_ms * ms, fails);
+      });
+      EXPECT_GT(original.safety.stale, 30U);
+      EXPECT_EQ(original.device_track.states.size(), original.ticks.size());
+      expect_same_replay(original, folder);
+    }
+  }
+}
 
 }  // namespace
 }  // namespace odds::scene

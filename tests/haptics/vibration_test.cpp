@@ -28,5 +28,29 @@ TEST(Vibration, AToolThatSlidesAlongAFloorRingsAtTheWallThatItMeets) {
   EXPECT_LE(most_n, 1.0 + 1e-9);
 }
 
+// A tool that had no turn in a frame, or whose query saw it touch and had no time for a contact, struck anew
+// afterwards.
+TEST(Vibration, AToolThatIsNotKnownToHaveLeftStrikesNothingAnew) {
+  std::string scene =
+      "[[body]]\nname = \"tip\"\nmesh = \"ball\"\nmotion = \"dynamic\"\nmass_kg = 0.02\ndevice = \"hand\"\n"
+      "[device.hand]\ntype = \"scripted\"\nposition_m = [0, 0, 0.015]\n[[device.hand.motion]]\nkind = \"slide\"\n"
+      "duration_s = 0.4\nby_m = [0.2, 0, -0.03]\n"
+      "[effects.virtual_coupling]\n[effects.gravity]\ng_m_per_s2 = [0.5, 0, 0]\n";
+  for (int i = 0; i < 20; ++i) scene += moving("ball" + std::to_string(i), "ball", -1.5 + 0.06 * i, 0.0);
+  for (const int units : {2, 8}) {
+    const auto run = [&](const std::string& more) {
+      std::string text = on_floor(scene + more, 0.4);
+      text.insert(text.find("work_units"), "frame_work_units = " + std::to_string(units) + "\n");
+      return simulate(text)->run();
+    };
+    const RunOutcome rings = run("[effects.vibration]\n");
+    const RunOutcome plain = run("[effects.events]\n");
+    EXPECT_GT(rings.pairs_left_out, 100U) << "else nothing is tried";
+    for (std::size_t i = 0; i < rings.ticks.size(); ++i) {  // it begins at rest, in the floor
+      ASSERT_NEAR(rings.ticks[i].force_n[2], plain.ticks[i].force_n[2], 0.02) << units << " units, tick " << i;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace odds::scene

@@ -41,8 +41,8 @@ struct DeviceState {
   bool fresh = false;         ///< false: nothing new since the last read; the rest repeats the last state
 };
 
-/// Whether a state can be used: all of it is finite, and its quaternion has length 1 to within 1e-3. That is then made
-/// a unit quaternion; one of length 1 to within 1e-12 keeps its bits. What cannot be used is left alone.
+/// Whether a state can be used: no number is beyond 1e12, and its quaternion has length 1 to within 1e-3. That is then
+/// made a unit quaternion; one of length 1 to within 1e-12 keeps its bits. What cannot be used is left alone.
 [[nodiscard]] bool make_usable(DeviceState& state) noexcept;
 
 /// What a device senses of what it says; the rest stays as it is in `last`, at rest.

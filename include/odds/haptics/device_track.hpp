@@ -30,6 +30,7 @@ struct Velocities {
 ///   qw qx qy qz                       orientation, a unit quaternion within 1e-3
 ///   vx_m_per_s ... wx_rad_per_s ...   optional, all six: velocities; otherwise differences of the poses
 ///   buttons                           optional, a whole number
+///   fresh                             optional, 1 or 0: DeviceState::fresh; otherwise every row is
 /// in any order; other columns are refused with the nearest valid name. Errors name file and line.
 Result<DeviceTrack> read_track(const std::filesystem::path& path);
 /// The same from text; `name` stands in error messages.

@@ -11,10 +11,10 @@
 namespace odds::haptics {
 
 /// Passes every call on. What is recorded is what the loop knew at each of its times, whatever the device's own rate
-/// and stamps: where a read brings nothing new, or fails, the last state once more, so that a replay gives every tick
-/// what it had. What the device does not sense (DeviceSpec) is as in the first state that could be used, for the loop
-/// too, whatever the device says later. Memory for the track is taken, and its pages touched, at construction; when it
-/// is full further states pass unrecorded and are counted.
+/// and stamps: where a read brings nothing new, or fails, the last state once more, as one that is not fresh, so that a
+/// replay gives every tick what it had. What the device does not sense (DeviceSpec) is as in the first state that could
+/// be used, for the loop too, whatever the device says later. Memory for the track is taken, and its pages touched, at
+/// construction; when it is full further states pass unrecorded and are counted.
 class RecordingDevice final : public Device {
  public:
   RecordingDevice(std::unique_ptr<Device> inner, std::size_t capacity);
@@ -27,8 +27,8 @@ class RecordingDevice final : public Device {
   bool enable_forces(bool on) noexcept override { return inner_->enable_forces(on); }
   [[nodiscard]] std::string_view last_error() const noexcept override { return inner_->last_error(); }
 
-  /// What was read so far, one state that can be used per time of the loop, the last one of that time; up to the last
-  /// that was fresh or elsewhere, for a track's end is silent when it is replayed. Not while the loop runs.
+  /// What was read so far, one state that can be used per time of the loop, the last one of that time. Not while the
+  /// loop runs.
   [[nodiscard]] DeviceTrack track() const;
   [[nodiscard]] std::size_t lost() const noexcept { return lost_; }
 
@@ -38,8 +38,7 @@ class RecordingDevice final : public Device {
   std::unique_ptr<Device> inner_;
   std::vector<DeviceState> states_;
   std::optional<DeviceState> start_;
-  std::size_t used_ = 0;     // up to the last that was fresh, or elsewhere
-  std::size_t written_ = 0;  // with those after it, which count once something new follows
+  std::size_t written_ = 0;
   std::size_t lost_ = 0;
 };
 

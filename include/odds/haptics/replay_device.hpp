@@ -10,7 +10,8 @@
 namespace odds::haptics {
 
 /// Between two rows positions and velocities are interpolated linearly, orientations along the great arc; exactly at a
-/// row the row's numbers come back bit for bit. After the last row the pose is held and no longer fresh.
+/// row the row's numbers come back bit for bit. What lies before a row that is not fresh is not fresh either. After the
+/// last row the pose is held and no longer fresh.
 class ReplayDevice final : public Device {
  public:
   explicit ReplayDevice(DeviceTrack track);

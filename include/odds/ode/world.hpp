@@ -134,7 +134,8 @@ struct Coupling {
   double damping_ns_per_m = 0.0;
   double angular_stiffness_nm_per_rad = 0.0;
   double angular_damping_nms_per_rad = 0.0;
-  double max_spring_force_n = std::numeric_limits<double>::infinity();  ///< the spring stretches no further than this
+  /// The spring pulls with no more, to within its way in a step, and with so much however stiff it is.
+  double max_spring_force_n = std::numeric_limits<double>::infinity();
   double max_spring_torque_nm = std::numeric_limits<double>::infinity();
 };
 

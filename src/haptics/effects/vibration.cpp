@@ -40,11 +40,13 @@ class Vibration final : public Effect {
   void keep() noexcept override { kept_ = now_; }
   void put_back() noexcept override { now_ = kept_; }
   std::uint32_t meet(const TickView& tick, ode::Meeting& meeting) noexcept override {
-    if (tick.device == nullptr || !involves(meeting, tick.tool) || meeting.contacts.empty()) return 0;
+    if (tick.device == nullptr || !involves(meeting, tick.tool)) return 0;
+    const bool touches = !meeting.contacts.empty();
     // A tool that slides along a floor strikes the wall at its end.
     const std::uint32_t other = meeting.a == tick.tool ? meeting.b.index : meeting.a.index;
-    now_.touches[other] = true;
-    if (now_.touched[other]) return 0;
+    // What is known to meet, but for whose contact a budget was too short, is not struck by the next one.
+    now_.touches[other] = touches || (now_.touched[other] && meeting.verdict == query::Verdict::hit);
+    if (!touches || now_.touched[other]) return 0;
     Ringing& ring = now_.ring;
     const ode::ContactPoint& point = meeting.contacts.front();
     const double approach = std::max(0.0, -point.velocity_m_per_s.dot(point.normal));
@@ -57,6 +59,11 @@ class Vibration final : public Effect {
     return 0;
   }
   std::uint32_t after_step(const TickView& tick) noexcept override {
+    if (tick.step->pairs_left_out > 0) {  // of a pair for which the frame had no time nothing new is known
+      for (std::uint32_t i = 0; i < now_.touched.size(); ++i) {
+        if (now_.touched[i] && tick.world->had_no_turn(tick.tool, {i})) now_.touches[i] = true;
+      }
+    }
     now_.touched.swap(now_.touches);
     std::fill(now_.touches.begin(), now_.touches.end(), false);
     now_.ring.since_s += tick.step_s;

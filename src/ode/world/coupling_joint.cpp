@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace odds::ode {
 namespace {
@@ -16,13 +17,17 @@ struct Rows {
 Rows rows(const Vec3& error, const Vec3& target_velocity, double stiffness, double damping, double most,
           double step_s) {
   Rows result;
-  const double weight = step_s * stiffness + damping;
   Vec3 spring = stiffness * error;
   const double length = spring.stableNorm();
-  if (length > most) spring *= most / length;
+  // At its limit it is as stiff as what gives the limit there: a force that changes no more may not damp as the spring.
+  if (length > most) {
+    spring *= most / length;
+    stiffness *= most / length;
+  }
+  const double weight = step_s * stiffness + damping;
   result.velocity = (spring + damping * target_velocity) / weight;
   result.softness = 1.0 / weight;
-  result.on = weight > 0.0 && result.velocity.allFinite();
+  result.on = weight > 0.0 && result.velocity.allFinite() && std::isfinite(result.softness / step_s);
   return result;
 }
 

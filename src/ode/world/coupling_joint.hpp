@@ -9,7 +9,8 @@ namespace odds::ode {
 
 /// Two motors, one linear and one angular, whose softness makes them an implicit spring and damper: with step h the row
 /// v + CFM lambda = c, CFM = 1 / (h k + b), c = (k e + b v_target) / (h k + b) is lambda = k (e - h v) + b (v_target -
-/// v), the backward Euler step. Owned by the world (destroyed with it). Must not move: ODE writes its feedback here.
+/// v), the backward Euler step. A spring at its limit L has k = L / |e|. Owned by the world (destroyed with it). Must
+/// not move: ODE writes its feedback here.
 class CouplingJoint {
  public:
   CouplingJoint(dWorldID world, dBodyID body);

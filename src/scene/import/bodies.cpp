@@ -46,6 +46,9 @@ class Assembly {
     if (planes_ > 0) {
       assume(fmt::format("{} planes are slabs of {} m by {} m", planes_, 2 * plane_half_side_m, 2 * plane_half_side_m));
     }
+    if (resources_.inside_out() > 0) {
+      assume(fmt::format("{} mesh files were inside out, and are turned", resources_.inside_out()));
+    }
     if (open_ > 0) {
       assume(
           fmt::format("{} meshes whose densities give masses are not closed: what they enclose, and so the mass, is a "

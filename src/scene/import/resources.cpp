@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <optional>
 #include <string_view>
+#include <utility>
 
+#include "odds/mesh/enclosed_volume.hpp"
 #include "odds/mesh/read.hpp"
 #include "odds/mesh/repair.hpp"
 
@@ -139,7 +142,19 @@ std::shared_ptr<const mesh::TriangleMesh> Resources::mesh(const std::string& uri
       read.value(),
       {.weld = false, .drop_degenerate = false, .drop_duplicates = false, .orient = false, .drop_unused = true});
   if (!lean) fail(place, lean.error().message(), "use another mesh");
-  return read_[path] = std::make_shared<const mesh::TriangleMesh>(std::move(lean).value().mesh);
+  return read_[path] = std::make_shared<const mesh::TriangleMesh>(outwards(std::move(lean).value().mesh));
+}
+
+// Who mirrors a part may forget its triangles. Beside other parts of a body it would be a hole.
+mesh::TriangleMesh Resources::outwards(mesh::TriangleMesh mesh) {
+  const std::optional<double> volume_m3 = mesh::enclosed_volume(mesh);
+  if (!volume_m3 || !(*volume_m3 < 0.0)) return mesh;
+  ++inside_out_;
+  std::vector<mesh::Triangle> triangles(mesh.triangles().begin(), mesh.triangles().end());
+  for (mesh::Triangle& t : triangles) std::swap(t[1], t[2]);
+  Result<mesh::TriangleMesh> turned =
+      mesh::TriangleMesh::make({mesh.vertices().begin(), mesh.vertices().end()}, std::move(triangles), mesh.name());
+  return turned ? std::move(turned).value() : mesh;
 }
 
 std::vector<fs::path> Resources::files() const {
