@@ -33,7 +33,9 @@ struct Request {
   Budget budget = {};
   double p_min = 1.0;        ///< in (0, 1]; 1: never stop on probability. A pair of nodes with p >= p_min counts ...
   std::uint32_t k_min = 10;  ///< ... and k_min such pairs end the query with an estimated hit (>= 1)
-  int max_contacts = 1;      ///< 0 .. 8; 0: verdict only
+  /// 0 .. 8. 0: verdict only. 1: one of the first hit that is found, somewhere at the rim of what overlaps: it has a
+  /// place and a direction, but hardly a depth. What is to push needs 2 or more: the deepest is then among them.
+  int max_contacts = 1;
   /// Contacts that were made with care are carried along with the bodies, instead of being made anew, while nothing
   /// near them has moved farther than this part of the smaller body's size since; a pair of triangles proves the hit.
   /// For bodies at rest about a microsecond instead of 10 to 100. In [0, 1]; 0: always anew. Of queries for more than
