@@ -7,18 +7,24 @@
 namespace odds::haptics {
 namespace {
 
-// Shortens to `limit`, direction kept. True if it was longer.
-bool clamp_length(Vec3& v, double limit) noexcept {
+// Shortens to a length, direction kept, if it is longer. True if it was.
+bool shorten(Vec3& v, double longest, double length_then) noexcept {
   const double length = v.stableNorm();
-  if (!(length > limit)) return false;
-  v *= limit / length;
+  if (!(length > longest)) return false;
+  v *= length_then / length;
   return true;
+}
+
+// To `limit`, less what whoever measures it might find beyond by rounding.
+bool clamp_length(Vec3& v, double limit) noexcept {
+  constexpr double rounding = 2e-15;
+  return shorten(v, limit, (1.0 - rounding) * limit);
 }
 
 // Lets `v` differ from `last` by at most `limit`. True if it differed more.
 bool limit_change(Vec3& v, const Vec3& last, double limit) noexcept {
   Vec3 change = v - last;
-  if (!clamp_length(change, limit)) return false;
+  if (!shorten(change, limit, limit)) return false;
   v = last + change;
   return true;
 }

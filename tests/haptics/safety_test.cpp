@@ -32,6 +32,19 @@ TEST(Safety, ClampsTheMagnitudeAndKeepsTheDirection) {
   EXPECT_EQ(c.flags, unsigned{safety_force_clamped | safety_torque_clamped});
 }
 
+// Rounding carried some beyond the limit, by parts in 1e16.
+RC_GTEST_PROP(Safety, LeavesNothingBeyondTheLimit, ()) {
+  const auto part = [] { return 1e-3 * *rc::gen::inRange(-1000000, 1000000); };
+  const double limit = 1e-3 * *rc::gen::inRange(1, 20000);
+  Safety safety({.max_force_n = limit, .max_torque_nm = limit});
+  for (int i = 0; i < 20; ++i) {
+    DeviceCommand c = command({part(), part(), part()}, {part(), part(), part()});
+    safety.apply(c, dt, 0.0);
+    RC_ASSERT(c.force_n.norm() <= limit);
+    RC_ASSERT(c.torque_nm.norm() <= limit);
+  }
+}
+
 TEST(Safety, LimitsTheChangePerSecond) {
   Safety safety({.max_force_slew_n_per_s = 500.0});
   for (int i = 1; i <= 10; ++i) {
