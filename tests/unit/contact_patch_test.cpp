@@ -288,7 +288,7 @@ TEST(ContactPatch, InnerRimOfARingDoesNotPullWhereTheOuterIsMissing) {
     const Vec3 middle = (torus.vertices[t[0]] + torus.vertices[t[1]] + torus.vertices[t[2]]) / 3.0;
     return middle.head<2>().norm() < 0.1;
   };
-  for (const std::size_t every : {1000000, 40, 7}) {
+  for (const std::size_t every : {1000000U, 40U, 7U}) {
     scene.hits.clear();
     for (std::size_t i = 0; i < all.size(); ++i) {
       if (is_inner(all[i]) || i % every == every - 1) scene.hits.push_back(all[i]);
