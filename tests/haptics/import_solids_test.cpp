@@ -30,10 +30,10 @@ TEST_F(Import, MeshesThatAreInsideOutAreTurned) {
       const mesh::TriangleMesh& mesh = imported.meshes[0].mesh;
       const auto count = static_cast<double>(mesh.triangles().size()) / static_cast<double>(box.triangles().size());
       EXPECT_NEAR(mesh::enclosed_volume(mesh).value_or(0.0), 6.0 * count, 1e-9) << parts;
-      EXPECT_TRUE(assumes(imported, "1 mesh files were inside out"));
+      EXPECT_TRUE(assumes(imported, "1 mesh files have triangles that face the wrong way"));
     }
   }
-  EXPECT_FALSE(assumes(good("r.urdf", urdf(link("a", good_part))), "inside out"));
+  EXPECT_FALSE(assumes(good("r.urdf", urdf(link("a", good_part))), "face the wrong way"));
 }
 
 }  // namespace

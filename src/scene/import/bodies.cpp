@@ -46,8 +46,8 @@ class Assembly {
     if (planes_ > 0) {
       assume(fmt::format("{} planes are slabs of {} m by {} m", planes_, 2 * plane_half_side_m, 2 * plane_half_side_m));
     }
-    if (resources_.inside_out() > 0) {
-      assume(fmt::format("{} mesh files were inside out, and are turned", resources_.inside_out()));
+    if (resources_.turned() > 0) {
+      assume(fmt::format("{} mesh files have triangles that face the wrong way, and are turned", resources_.turned()));
     }
     if (open_ > 0) {
       assume(

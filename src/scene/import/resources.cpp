@@ -6,11 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <optional>
 #include <string_view>
-#include <utility>
 
-#include "odds/mesh/enclosed_volume.hpp"
 #include "odds/mesh/read.hpp"
 #include "odds/mesh/repair.hpp"
 
@@ -137,24 +134,14 @@ std::shared_ptr<const mesh::TriangleMesh> Resources::mesh(const std::string& uri
   }
   Result<mesh::TriangleMesh> read = mesh::read(path);
   if (!read) fail(place, read.error().message(), read.error().remedy.empty() ? "use another mesh" : "");
-  // Each collision takes a copy: a million idle vertices would be a million in each.
+  // Each collision takes a copy: a million idle vertices would be a million in each. And a part that faces inwards, as
+  // who mirrors it may leave it, would be a hole beside other parts of its body.
   Result<mesh::Repaired> lean = mesh::repair(
       read.value(),
-      {.weld = false, .drop_degenerate = false, .drop_duplicates = false, .orient = false, .drop_unused = true});
+      {.weld = false, .drop_degenerate = false, .drop_duplicates = false, .orient = true, .drop_unused = true});
   if (!lean) fail(place, lean.error().message(), "use another mesh");
-  return read_[path] = std::make_shared<const mesh::TriangleMesh>(outwards(std::move(lean).value().mesh));
-}
-
-// Who mirrors a part may forget its triangles. Beside other parts of a body it would be a hole.
-mesh::TriangleMesh Resources::outwards(mesh::TriangleMesh mesh) {
-  const std::optional<double> volume_m3 = mesh::enclosed_volume(mesh);
-  if (!volume_m3 || !(*volume_m3 < 0.0)) return mesh;
-  ++inside_out_;
-  std::vector<mesh::Triangle> triangles(mesh.triangles().begin(), mesh.triangles().end());
-  for (mesh::Triangle& t : triangles) std::swap(t[1], t[2]);
-  Result<mesh::TriangleMesh> turned =
-      mesh::TriangleMesh::make({mesh.vertices().begin(), mesh.vertices().end()}, std::move(triangles), mesh.name());
-  return turned ? std::move(turned).value() : mesh;
+  if (lean.value().log.turned_triangles > 0) ++turned_;
+  return read_[path] = std::make_shared<const mesh::TriangleMesh>(std::move(lean).value().mesh);
 }
 
 std::vector<fs::path> Resources::files() const {

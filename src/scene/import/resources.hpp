@@ -22,22 +22,21 @@ class Resources {
   [[nodiscard]] const std::filesystem::path& description() const { return description_; }
   /// In the file's own units. Throws ImportFailure, which names the description, the place of the collision and every
   /// path that was tried.
-  /// Without vertices that no triangle uses; a closed one whose triangles face inwards is turned.
+  /// Without vertices that no triangle uses; triangles agree with their neighbours, and closed parts face outwards.
   std::shared_ptr<const mesh::TriangleMesh> mesh(const std::string& uri, haptics::Place place);
-  /// How many files were so.
-  [[nodiscard]] std::size_t inside_out() const { return inside_out_; }
+  /// In how many files some had to be turned for that.
+  [[nodiscard]] std::size_t turned() const { return turned_; }
   /// The mesh files that were read so far.
   [[nodiscard]] std::vector<std::filesystem::path> files() const;
 
  private:
   [[nodiscard]] std::filesystem::path locate(const std::string& uri, haptics::Place place) const;
   [[nodiscard]] std::vector<std::filesystem::path> candidates(const std::string& uri) const;
-  [[nodiscard]] mesh::TriangleMesh outwards(mesh::TriangleMesh mesh);
   [[noreturn]] void fail(haptics::Place place, const std::string& what, const std::string& remedy) const;
 
   std::filesystem::path description_;
   const ImportOptions& options_;
-  std::size_t inside_out_ = 0;
+  std::size_t turned_ = 0;
   std::map<std::filesystem::path, std::shared_ptr<const mesh::TriangleMesh>> read_;
 };
 
