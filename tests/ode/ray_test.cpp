@@ -178,6 +178,23 @@ TEST_F(RayTest, AMovedMeshIsMetWhereItIs) {
   EXPECT_NEAR(contacts[0].normal[1], std::sqrt(0.5), 1e-9);
 }
 
+// One search took up to 5 microseconds without a look, so that a ray with 5 to spend ended at 8.
+TEST_F(RayTest, LooksAtTheClockOnTheWay) {
+  const auto shape = shape_of(mesh::made::TorusKnot{.along = 600, .across = 50});
+  const dGeomID mesh = mesh_geom(shape, space);
+  ASSERT_EQ(dGeomOddsMeshSetBudget(mesh, 1e6), 1);
+  const Vec3 corner = shape->mesh().vertices()[0];
+  const dGeomID ray = ray_of(4.0 * shape->mesh().size(), Vec3::Zero(), Vec3::UnitX());
+  for (int i = 0; i < 100; ++i) {
+    const Vec3 direction = Vec3(uniform(random), uniform(random), uniform(random)).normalized();
+    const Vec3 origin = corner - 2.0 * shape->mesh().size() * direction;
+    dGeomRaySet(ray, origin.x(), origin.y(), origin.z(), direction.x(), direction.y(), direction.z());
+    const SlowLooks looks(100);
+    const std::size_t crossings = collide(mesh, ray).size();
+    EXPECT_GT(looks.clock.readings(), 5 * static_cast<std::int64_t>(crossings + 1)) << i;
+  }
+}
+
 TEST_F(RayTest, AnExhaustedBudgetIsCounted) {
   const dGeomID mesh = mesh_geom(sphere_shape(1, 20), space);
   const dGeomID ray = ray_of(100, Vec3(0, 0, 5), Vec3(0, 0.01, -1).normalized());

@@ -18,7 +18,7 @@ class RayCrossings : public ::testing::TestWithParam<double> {
   [[nodiscard]] std::vector<RayHit> all(Crossings& crossings) const {
     std::vector<RayHit> found;
     RayEffort effort;
-    while (const auto hit = crossings.next(UINT64_MAX, effort)) {
+    while (const auto hit = crossings.next({UINT64_MAX}, effort)) {
       EXPECT_TRUE(effort.finished);
       found.push_back(*hit);
       if (found.size() > 100) break;
@@ -96,10 +96,10 @@ TEST_P(RayCrossings, OfAClosedSurfaceComeInPairsFromAnyDistance) {
 TEST_P(RayCrossings, SayWhereTheNodesRanOut) {
   Crossings crossings(mesh, *sphere.tree, middle + Vec3(3, 0.1, 0.2), -Vec3::UnitX(), INFINITY, false);
   RayEffort effort;
-  EXPECT_FALSE(crossings.next(2, effort));
+  EXPECT_FALSE(crossings.next({2}, effort));
   EXPECT_FALSE(effort.finished);
   EXPECT_EQ(effort.nodes, 2u);
-  EXPECT_TRUE(crossings.next(UINT64_MAX, effort)) << "nothing is lost by that";
+  EXPECT_TRUE(crossings.next({UINT64_MAX}, effort)) << "nothing is lost by that";
   EXPECT_TRUE(effort.finished);
 }
 

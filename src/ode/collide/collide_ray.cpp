@@ -49,7 +49,7 @@ int collide_ray(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int s
   bool cut_off = false;
   while (!writer.full() && !cut_off) {
     query::RayEffort effort;
-    const auto hit = crossings.next(limit.nodes_in_time(1.0), effort);
+    const auto hit = crossings.next({limit.nodes_in_time(1.0), limit.up()}, effort);
     limit.spend(effort.nodes);
     cut_off = !effort.finished || limit.time_is_up();
     if (!hit) break;

@@ -49,6 +49,11 @@ class Limit {
   /// Whether nothing may be begun any more: contacts that are chosen have to do.
   [[nodiscard]] bool is_over() const noexcept { return timed_ && clock_() >= over_ns(); }
 
+  /// Says what time_is_up() does. Good as long as this is.
+  [[nodiscard]] query::Deadline up() noexcept {
+    return {[](void* self) noexcept { return static_cast<const Limit*>(self)->time_is_up(); }, this};
+  }
+
   /// Says whether all of the budget is gone, the part for its ending, too: what takes long on the way to its end gives
   /// up, but not because the machine was elsewhere for so long that it is late anyway. Good as long as this is.
   [[nodiscard]] query::Deadline past() noexcept {

@@ -25,10 +25,10 @@ Crossings::Crossings(const mesh::TriangleMesh& mesh, const tree::WideTree& tree,
       length_(length_within(tree.reach(), origin_.norm(), length - skipped_)),
       ray_(origin + skipped_ * direction, direction, front_only) {}
 
-std::optional<RayHit> Crossings::next(std::uint64_t most_nodes, RayEffort& effort) noexcept {
+std::optional<RayHit> Crossings::next(const RayAllowance& allowance, RayEffort& effort) noexcept {
   effort = {};
   if (!(length_ >= 0.0)) return std::nullopt;
-  const wide::RayTask task = {mesh_, tree_, origin_, direction_, length_, {most_nodes}, effort, &ray_, after_};
+  const wide::RayTask task = {mesh_, tree_, origin_, direction_, length_, allowance, effort, &ray_, after_};
   std::optional<RayHit> hit = wide::searches_for(InstructionSet::best)->ray(task);
   if (!hit) return hit;
   after_ = hit->distance * (1.0 + same_crossing) + 1e-300;

@@ -20,9 +20,9 @@ class Crossings {
   Crossings(const mesh::TriangleMesh& mesh, const tree::WideTree& tree, const Vec3& origin, const Vec3& direction,
             double length, bool front_only) noexcept;
 
-  /// The next one; nothing if there is none. Visits at most `most_nodes` nodes: where `effort` says that it did not
-  /// finish, there may be others before what is given. noexcept, no allocation.
-  [[nodiscard]] std::optional<RayHit> next(std::uint64_t most_nodes, RayEffort& effort) noexcept;
+  /// The next one; nothing if there is none. Where `effort` says that the allowance was up, there may be others before
+  /// what is given. noexcept, no allocation.
+  [[nodiscard]] std::optional<RayHit> next(const RayAllowance& allowance, RayEffort& effort) noexcept;
 
  private:
   const mesh::TriangleMesh& mesh_;
