@@ -154,8 +154,11 @@ void Renderer::write_device(std::int64_t now_ns, const ode::Wrench& on_hand, Tic
   if (!actuates_force_) command.force_n.setZero();
   if (!actuates_torque_) command.torque_nm.setZero();
   safety_->apply(command, period_s_, 1e-9 * static_cast<double>(age_ns_), passed_s_);
-  if (!hand_->device->write(command)) safety_->trip();  // a device that takes no commands must not keep an old one
-  energy_.sent(command.force_n, command.torque_nm);
+  if (hand_->device->write(command)) {
+    energy_.sent(command.force_n, command.torque_nm);
+  } else {
+    safety_->trip();  // a device that takes no commands must not keep an old one; as long as it does, it works by that
+  }
   copy(command.force_n, record.force_n);
   copy(command.torque_nm, record.torque_nm);
   record.safety = command.flags;

@@ -29,13 +29,14 @@ class Puppet final : public Device {
     return true;
   }
   bool write(const DeviceCommand& command) noexcept override {
-    told = command;
-    return true;
+    if (takes_commands) told = command;
+    return takes_commands;
   }
   bool enable_forces(bool on) noexcept override { return !on || takes_forces; }
   [[nodiscard]] std::string_view last_error() const noexcept override { return takes_forces ? "" : "motor off"; }
 
   bool takes_forces = true;
+  bool takes_commands = true;
   DeviceState says;
   DeviceCommand told;
 
@@ -314,6 +315,23 @@ TEST(MissedTicks, ThePassivityControllerTakesTheSpeedOverTheWholeGap) {
   const double at_once = damped(1).second;
   const double after_gap = damped(20).second;
   EXPECT_NEAR(at_once - after_gap, 1.0 - 1.0 / 20.0, 1e-9) << "1 N s/m at 1 m/s, and at a twentieth of it";
+}
+
+// What a device did not take does no work: the hand moves under the force that it took last.
+TEST(DeviceLimits, WorkIsThatOfTheForceThatTheDeviceTook) {
+  Stage stage("");
+  stage.puppet->says.position_m = Vec3(0.001, 0, 0);
+  static_cast<void>(stage.tick(0));
+  const TickRecord last_taken = stage.tick(ms);
+  const Vec3 taken = stage.puppet->told.force_n;
+  ASSERT_LT(taken.x(), -0.01) << "back to the tool";
+  stage.puppet->takes_commands = false;
+  double energy_j = last_taken.observed_energy_j;
+  for (int i = 2; i < 6; ++i) {
+    stage.puppet->says.position_m.x() += 0.001;
+    energy_j -= 0.001 * taken.x();
+    EXPECT_NEAR(stage.tick(i * ms).observed_energy_j, energy_j, 1e-12) << i;
+  }
 }
 
 }  // namespace

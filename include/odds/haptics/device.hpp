@@ -91,7 +91,8 @@ class Device {
   /// Returns false, and leaves `state` alone, if there is none (last_error() says why). A state that make_usable()
   /// refuses counts as none.
   [[nodiscard]] virtual bool read(std::int64_t now_ns, DeviceState& state) noexcept = 0;
-  /// Hands over force and torque. Returns false if the device did not take them.
+  /// Hands over force and torque. Returns false if the device did not take them: then the last ones that it took are
+  /// counted as those on the hand.
   virtual bool write(const DeviceCommand& command) noexcept = 0;
   /// Forces are off after open.
   virtual bool enable_forces(bool on) noexcept = 0;

@@ -15,7 +15,7 @@ class PassivityObserver {
   void reset(const DeviceState& state) noexcept;
   /// The hand has moved to `state` under the force of the last sent().
   void moved(const DeviceState& state) noexcept;
-  /// Force and torque on the hand from now on, as sent.
+  /// Force and torque on the hand from now on, as sent and taken by the device.
   void sent(const Vec3& force_n, const Vec3& torque_nm) noexcept;
 
   [[nodiscard]] double energy_j() const noexcept { return energy_j_; }
