@@ -138,6 +138,26 @@ TEST_F(PairTest, StatisticsAddUp) {
 }
 
 // With one unit of work nothing can be proved of two overlapping spheres.
+// Of more pairs of triangles than are kept, a search that goes on from run to run was taken for cut off by its budget
+// however long that was, and such an overlap was never more than a ten-thousandth deep.
+TEST_F(PairTest, ADeepOverlapOfManyTrianglesIsAsDeepWithinTimeForAllAsWithoutALimit) {
+  const auto fine = sphere_shape(1.0, 48);
+  const dGeomID unlimited_a = mesh_geom(fine, space);
+  const dGeomID unlimited_b = mesh_geom(fine, space);
+  const dGeomID limited_a = mesh_geom(fine, space);
+  const dGeomID limited_b = mesh_geom(fine, space);
+  for (const dGeomID other : {unlimited_b, limited_b}) dGeomSetPosition(other, 1.3, 0.1, 0.05);
+  dGeomOddsMeshSetBudget(limited_a, 1e6);
+  const SlowLooks looks(100);  // the time is counted, a fraction of that budget whatever the machine
+  const auto without = collide(unlimited_a, unlimited_b);
+  const auto within = collide(limited_a, limited_b);
+  ASSERT_FALSE(without.empty());
+  ASSERT_FALSE(within.empty());
+  EXPECT_GT(without[0].depth, 0.5);
+  EXPECT_NEAR(within[0].depth, without[0].depth, 1e-6);
+  EXPECT_LT(answer_of(limited_a, limited_b).overshoot_us, 1e-9);
+}
+
 class UndecidedPair : public PairTest {
  protected:
   void SetUp() override {

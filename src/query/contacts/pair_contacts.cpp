@@ -263,10 +263,9 @@ void make_contacts(const PosedMeshes& meshes, const math::Pose& pose_b_in_a, con
   // Other searches stop at as many as there is time for.
   const bool found_all = searched.method == Method::incremental && pair.a->volume() == volume::Kind::wide;
   if (found_all) input.most_pairs = hits_in(spending.left_us(), found_hits_per_microsecond);
-  // As many hits as there was time for are a part of them; as many as were asked for, or as are kept, are what was
-  // asked.
-  const bool as_many_as_kept =
-      pair.hits.size() == pair.hits.capacity() && !(found_all && std::isfinite(request.budget.microseconds));
+  // As many hits as there was time for are a part of them; as many as were asked for, or as are kept where there is
+  // time for more, are what was asked.
+  const bool as_many_as_kept = pair.hits.size() == pair.hits.capacity() && pair.hits.capacity() <= input.most_pairs;
   const bool part = request.max_contacts > 1 &&
                     ((ended == Progressed::enough && !as_many_as_kept) || pair.hits.size() > input.most_pairs);
   const bool all = ended != Progressed::spent && !part;
