@@ -137,7 +137,6 @@ TEST_F(PairTest, StatisticsAddUp) {
   EXPECT_EQ(now.queries_budget, 1u);
 }
 
-// With one unit of work nothing can be proved of two overlapping spheres.
 // Of more pairs of triangles than are kept, a search that goes on from run to run was taken for cut off by its budget
 // however long that was, and such an overlap was never more than a ten-thousandth deep.
 TEST_F(PairTest, ADeepOverlapOfManyTrianglesIsAsDeepWithinTimeForAllAsWithoutALimit) {
@@ -158,6 +157,7 @@ TEST_F(PairTest, ADeepOverlapOfManyTrianglesIsAsDeepWithinTimeForAllAsWithoutALi
   EXPECT_LT(answer_of(limited_a, limited_b).overshoot_us, 1e-9);
 }
 
+// With one unit of work nothing can be proved of two overlapping spheres.
 class UndecidedPair : public PairTest {
  protected:
   void SetUp() override {
