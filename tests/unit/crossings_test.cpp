@@ -105,6 +105,30 @@ TEST_P(RayCrossings, SayWhereTheNodesRanOut) {
 
 INSTANTIATE_TEST_SUITE_P(About, RayCrossings, ::testing::Values(0.0, 1e3, -1e6));
 
+// Weights of corners are nothing but rounding there, and put the crossing anywhere between them.
+TEST(WatertightRay, CrossesWhatItSeesEdgeOnWhereItIs) {
+  math::Random random(3, 7);
+  int crossed = 0;
+  for (int round = 0; round < 20000; ++round) {
+    const Mat3 turn = random.rotation().toRotationMatrix();
+    const Vec3 place = random.direction();
+    const bool without_area = round % 2 == 0;
+    const Vec3 corners[3] = {place, place + turn * Vec3(without_area ? 0.3 : 0.5, without_area ? 0.0 : 0.7, 0.0),
+                             place + turn * Vec3(1.0, 0.0, 0.0)};
+    const Vec3 aim = place + turn * Vec3(without_area ? random.uniform() : 0.0, 0.0, 0.0);
+    // At a point of the needle from anywhere, or in the triangle's plane past its corner.
+    const Vec3 local =
+        without_area ? Vec3(random.direction()) : Vec3(Vec3(-0.8, random.uniform(0.6, 2.0), 0.0).normalized());
+    const Vec3 direction = (turn * local).normalized();
+    const double expected = random.uniform(1.0, 5.0);
+    const double distance = primitive::WatertightRay(aim - expected * direction, direction, false).crossing(corners);
+    if (distance < 0.0) continue;
+    ++crossed;
+    ASSERT_NEAR(distance, expected, 1e-9) << round;
+  }
+  EXPECT_GT(crossed, 1000);
+}
+
 TEST(WatertightRay, LetsNoRayThroughFansAndStrips) {
   math::Random random(3, 1);
   for (int round = 0; round < 2000; ++round) {
