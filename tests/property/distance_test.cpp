@@ -142,6 +142,7 @@ TEST_F(Distance, BadQuestionsAndFarBodiesGetBoundsThatAreTrue) {
   EXPECT_GT(far.lower, 1e6 - 4.0);
   EXPECT_LT(far.lower, 1e6);
   EXPECT_TRUE(pair_.distance({Mat3::Identity(), {1e6, 0, 0}}, {.within = 1.0}).proved);
+  EXPECT_LE(pair_.distance({Mat3::Identity(), {1e160, 0, 0}}).lower, 1e160) << "whose square is infinite";
 }
 
 TEST_F(Distance, NestedShellsAreApartByTheirGap) {

@@ -62,8 +62,8 @@ class Pair {
 
   /// How far both shapes are apart in one pose, and where they are nearest; 0 where they meet. Branch and bound on the
   /// wide engine: with another bounding volume, without polygons, or with a pose or request that is not usable, the
-  /// answer is that nothing is known (lower 0, upper infinite, not proved). Beyond 1000 times the size of both bodies
-  /// together only the bounds are given. Touches no coherence of `run`.
+  /// answer is that nothing is known (lower 0, upper infinite, not proved). Beyond 1000 times the radii of both bodies
+  /// together (of balls about the middles of their boxes) only the bounds are given. Touches no coherence of `run`.
   [[nodiscard]] DistanceAnswer distance(const math::Pose& pose_b_in_a,
                                         const DistanceRequest& request = {}) const noexcept;
 

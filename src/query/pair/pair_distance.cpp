@@ -41,7 +41,8 @@ DistanceAnswer Pair::distance(const math::Pose& pose_b_in_a, const DistanceReque
   if (a == nullptr || b == nullptr || pair.polygon_free || !usable(pose_b_in_a, request)) return answer;
   Spending spending(request.budget);
   const PosedMeshes meshes(pair.a->mesh(), pair.b->mesh(), a->origin(), b->origin(), pose_b_in_a);
-  const double apart = meshes.pose().translation.norm();
+  // The square of what is beyond 1e154 metres would be infinite, and so the lower bound.
+  const double apart = meshes.pose().translation.stableNorm();
   const double reach = a->reach() + b->reach();
   answer.lower = std::max(0.0, apart - reach * most_stretch);
   const double farthest = (apart + reach) * most_stretch;
