@@ -178,7 +178,7 @@ TEST_F(RayTest, AMovedMeshIsMetWhereItIs) {
   EXPECT_NEAR(contacts[0].normal[1], std::sqrt(0.5), 1e-9);
 }
 
-// One search took up to 5 microseconds without a look, so that a ray with 5 to spend ended at 8.
+// One search took 3 microseconds and more without a look, of rays with 5 to spend.
 TEST_F(RayTest, LooksAtTheClockOnTheWay) {
   const auto shape = shape_of(mesh::made::TorusKnot{.along = 600, .across = 50});
   const dGeomID mesh = mesh_geom(shape, space);

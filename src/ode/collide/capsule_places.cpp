@@ -94,7 +94,7 @@ void keep_crossings(const PreparedMesh& mesh, const Capsule& capsule, Limit& lim
   query::Crossings crossings(mesh.mesh(), *mesh.wide_tree, capsule.ends[0], axis / length, length, false);
   while (places.count < most_crossings && !limit.time_is_up()) {
     query::RayEffort effort;
-    const auto hit = crossings.next({limit.nodes_in_time(1.0), limit.past()}, effort);
+    const auto hit = crossings.next({limit.nodes_in_time(1.0), limit.up()}, effort);
     limit.spend(effort.nodes);
     if (!hit) return;
     const auto is_it = [&](const CapsulePlace& place) { return place.triangle == hit->triangle; };
