@@ -243,7 +243,9 @@ TEST(LeaningSpikes, AreAsDeepAsTheirTips) {
     EXPECT_LT(answer.contacts.front().depth, 1.01 * depth) << i;
     shallow += answer.contacts.front().depth < 0.7 * depth ? 1 : 0;
   }
-  EXPECT_LT(shallow, 125);  // 98; it was 156 when what lay beside the middle was not followed
+  // 44; it was 98 when a second start began with the longest step, and 156 when what lay beside the middle was not
+  // followed.
+  EXPECT_LT(shallow, 60);
 }
 
 }  // namespace

@@ -253,6 +253,9 @@ inline constexpr double flat_within_rim = 0.02;
 /// An overlap that is nowhere deeper by more than this part of itself is level: more rays would cost time and hardly
 /// move a force. Test: SummitsOfConvex.BodiesAreFound.
 inline constexpr double level_overlap = 0.001;
+/// A shorter step towards where the last one led out of an overlap is worth its rays if this part of the depth may be
+/// gained on it. Test: SummitsOfPlates.AreFoundWithFewRays.
+inline constexpr double worth_a_step = 0.02;
 /// What is deeper than the deepest place that was known by more than this part of it is another place, and not the
 /// next corner of the same facets. Test: ContactPatch.SphereOnPlaneHasOneDeepContact.
 inline constexpr double another_summit = 0.01;

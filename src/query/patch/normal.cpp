@@ -272,6 +272,7 @@ class LeastOverlap {
           seen = true;
           break;
         case Probing::unknown:
+        case Probing::missed:
           break;
       }
     }

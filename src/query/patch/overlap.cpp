@@ -51,6 +51,8 @@ class Exit {
   /// Once the first is cast; null if that has told all.
   [[nodiscard]] ProbeRay* second() noexcept { return is_ahead() ? nullptr : &behind_; }
 
+  /// Once both are cast: whether there is nothing of the body, as far as they reach.
+  [[nodiscard]] bool is_missed() const noexcept { return !ahead_.found && !behind_.found; }
   /// Once both are cast: the signed distance from the point along the line, and the triangle. False: it does not leave.
   [[nodiscard]] bool place(double& distance, std::uint32_t& triangle) const noexcept {
     if (is_ahead()) return give(ahead_, 1.0, distance, triangle);
@@ -107,14 +109,14 @@ Probing probe_line(const PatchInput& input, const Vec3& point, const Vec3& norma
   double down = 0.0;
   double up = 0.0;
   Witness found;
+  if (of_a.is_missed() || of_b.is_missed()) return Probing::missed;
   if (!of_a.place(down, found.triangle_a) || !of_b.place(up, found.triangle_b)) return Probing::unknown;
   found.depth = up + down;
   if (!std::isfinite(found.depth)) return Probing::unknown;
-  if (!(found.depth >= 0.0)) return Probing::apart;
   found.on_a = point - down * normal;
   found.on_b = point + up * normal;
   witness = found;
-  return Probing::overlap;
+  return found.depth >= 0.0 ? Probing::overlap : Probing::apart;
 }
 
 bool probe_overlap(const PatchInput& input, const Vec3& point, const Vec3& normal, double reach, Watch& watch,

@@ -131,14 +131,15 @@ using ExitRanges = std::span<const ExitRange>;
 [[nodiscard]] double pair_depth(const PlacedPair& placed, const Frame& frame, const Vec3& shift) noexcept;
 
 enum class Probing : std::uint8_t {
-  unknown,  ///< a probe is missing, or has found no surface
+  unknown,  ///< a probe is missing, or has not seen where the line leaves a body
+  missed,   ///< one of the bodies is not on the line
   apart,    ///< the bodies do not overlap on the line
   overlap,
 };
 
 /// The overlap on the line through `point` along `normal`, by the probes: from A's surface up to B's. For solids the
-/// crossing at which the line leaves the body, for sheets the nearest within `reach`. Writes `witness` where they
-/// overlap.
+/// crossing at which the line leaves the body, for sheets the nearest within `reach`. Writes `witness` where both are
+/// found; where they are apart its depth is below 0.
 [[nodiscard]] Probing probe_line(const PatchInput& input, const Vec3& point, const Vec3& normal, double reach,
                                  Watch& watch, Witness& witness) noexcept;
 

@@ -87,6 +87,44 @@ double way_to_next(const Roof& roof, const Ridge& ridge, const Place& place, con
   return least;
 }
 
+double length_of(const Place& way) noexcept { return std::max(std::abs(way.u), std::abs(way.v)); }
+
+/// How far to go next, along each axis.
+class Stride {
+ public:
+  explicit Stride(double radius) noexcept : radius_(radius), length_(radius) {}
+
+  [[nodiscard]] double length() const noexcept { return length_; }
+
+  /// A step led out of the overlap.
+  void led_out(const Place& from, const Place& to) noexcept {
+    constexpr double shorter = 0.35;
+    outside_ = to;
+    knows_outside_ = true;
+    length_ = shorter * length_of(along(to, -1.0, from));
+  }
+  /// A step led deeper: the next one is longer, but no farther than half-way to where a step led out, if it goes there.
+  void went(const Place& from, const Place& to) noexcept {
+    constexpr double longer = 4.0;
+    constexpr double same_way = 0.8;  // cosine
+    if (!(length_ < radius_)) return;
+    const Place done = along(to, -1.0, from);
+    const Place left = along(outside_, -1.0, to);
+    const double room = length_of(left);
+    if (knows_outside_ && dot(left, done) > same_way * std::sqrt(dot(left, left) * dot(done, done))) {
+      length_ = std::min(std::sqrt(length_ * room), 0.5 * room);
+    } else {
+      length_ = std::min(radius_, longer * length_);
+    }
+  }
+
+ private:
+  double radius_;
+  double length_;
+  Place outside_{0.0, 0.0};
+  bool knows_outside_ = false;
+};
+
 }  // namespace
 
 void Roof::add(const Plane& plane) noexcept {
@@ -182,12 +220,15 @@ bool Summit::measure(const Place& place, const Witness& best, bool may_lean, dou
   const double top = of_b_.at(place);
   const double bottom = -of_a_.at(place);
   const bool known = std::isfinite(top) && std::isfinite(bottom);
+  bool missed = false;
   const auto at = [&](double height) noexcept {
     const Vec3 point = centre_ + place.u * frame_.u + place.v * frame_.v + height * frame_.normal;
     if (is_flat(best.depth) && !may_be_at(point, best.depth)) return false;
     Witness there;
-    if (!probe_overlap(input_, point, frame_.normal, reach, watch, there)) return false;
-    if (!all_have(exits_, there)) return false;
+    const Probing told = probe_line(input_, point, frame_.normal, reach, watch, there);
+    missed = told == Probing::missed;
+    if (told == Probing::apart) add(there);  // how far they are apart there bounds how deep they are beside it
+    if (told != Probing::overlap || !all_have(exits_, there)) return false;
     // What is deeper than all that is known allows, and does not begin before the point and end after it, is another
     // overlap on the same line, as of a crate with the wall behind the floor that it is on.
     const bool is_here = height_of(there.on_a) <= height && height <= height_of(there.on_b);
@@ -197,7 +238,7 @@ bool Summit::measure(const Place& place, const Witness& best, bool may_lean, dou
     return true;
   };
   if (at(known ? 0.5 * (top + bottom) : height_of(best.middle()))) return true;
-  if (!may_lean || !known) return false;
+  if (!may_lean || !known || missed) return false;
   // A spike that leans may lie beside the middle: it is followed just inside of its own surface.
   const Place from = place_of(best.middle());
   const double inside = tolerances::inside_surface * std::hypot(place.u - from.u, place.v - from.v);
@@ -207,39 +248,72 @@ bool Summit::measure(const Place& place, const Witness& best, bool may_lean, dou
 
 Witness Summit::climb(const Witness& start, const Witness& beside, double radius, double reach, Watch& watch) noexcept {
   constexpr int most_steps = 10;
-  constexpr int most_in_vain = 2;
-  constexpr double shorter = 0.35;  // where a step led out of the overlap
   const double rounding = rounding_of(radius);
   const bool may_lean = start.depth > tolerances::flat_overlap * radius;
+  bool may_begin_beside = may_lean && beside.depth < start.depth;  // until a step stayed within the overlap
+  bool has_begun_beside = false;
+  bool was_in_vain = false;
   Witness best = start;
-  double step = radius;
-  int in_vain = 0;  // steps out of the overlap, until there was one within it; -1: no longer counted
+  Witness here = start;
+  Stride stride(radius);
+  const double worth_going_to = 1.0 + tolerances::worth_a_step;
   for (int i = 0; i < most_steps && !watch.late(); ++i) {
-    const Place from = place_of(best.middle());
+    const Place from = place_of(here.middle());
     // Of surfaces that are not convex what was measured elsewhere may deny what is here.
-    of_a_.leave_out_below(from, -height_of(best.on_a), rounding);
-    of_b_.leave_out_below(from, height_of(best.on_b), rounding);
-    Place next = highest(from, step, watch);
-    const auto leads_on = [&]() noexcept {
-      return of_a_.at(next) + of_b_.at(next) > (1.0 + tolerances::level_overlap) * best.depth;
+    const auto leave_out_denied = [&]() noexcept {
+      of_a_.leave_out_below(from, -height_of(here.on_a), rounding);
+      of_b_.leave_out_below(from, height_of(here.on_b), rounding);
     };
-    if (step < radius && !leads_on()) next = highest(from, step = radius, watch);
-    if (!leads_on()) break;
+    const auto leads_beyond = [&](const Place& place, double depth) noexcept {
+      return allowed_at(place) > (1.0 + tolerances::level_overlap) * depth;
+    };
+    leave_out_denied();
+    Place next = highest(from, radius, watch);
+    if (!leads_beyond(next, best.depth)) break;
+    has_begun_beside = has_begun_beside && std::isfinite(allowed_at(next));
+    if (has_begun_beside) {
+      // Only what gets deeper than the start counts: unless the overlap reaches as far as that, this way is in vain.
+      const double part = (worth_going_to * best.depth - here.depth) / (allowed_at(next) - here.depth);
+      next = along(from, std::min(part, 1.0), along(next, -1.0, from));
+    } else if (stride.length() < radius) {
+      const Place nearby = highest(from, stride.length(), watch);
+      if (leads_beyond(nearby, here.depth)) {
+        next = nearby;
+      } else {
+        stride = Stride(radius);
+      }
+    }
+    const double way = length_of(along(next, -1.0, from));
     Witness found;
-    if (measure(next, best, may_lean, reach, watch, found)) {
-      in_vain = -1;
+    if (way > 0.0 && measure(next, here, may_lean, reach, watch, found)) {
+      may_begin_beside = false;
       if (found.depth > best.depth) best = found;
+      if (found.depth > here.depth) {
+        here = found;
+        has_begun_beside = false;
+        stride.went(from, place_of(here.middle()));
+        continue;
+      }
+    }
+    leave_out_denied();
+    if (!leads_beyond(next, has_begun_beside ? best.depth : here.depth)) continue;  // as is known now
+    if (has_begun_beside) break;
+    // By a wall, which bounds nothing, the overlap may be as deep as anything: that ends with the length of the way.
+    const bool is_bounded = allowed_at(from) <= worth_going_to * here.depth;
+    const bool is_worth_more =
+        allowed_at(next) > worth_going_to * best.depth && (is_bounded || way > tolerances::worth_a_step * radius);
+    if (may_begin_beside && (was_in_vain || !is_worth_more)) {
+      // At the side of a spike uphill leads out of it whatever the step.
+      may_begin_beside = false;
+      has_begun_beside = true;
+      here = beside;
       continue;
     }
-    step = shorter * std::max(std::abs(next.u - from.u), std::abs(next.v - from.v));
-    // At the side of a spike uphill leads out of it whatever the step.
-    if (may_lean && beside.depth < start.depth && in_vain >= 0 && ++in_vain == most_in_vain) {
-      best = beside;
-      step = radius;
-      in_vain = -1;
-    }
+    if (!is_worth_more) break;
+    was_in_vain = true;
+    stride.led_out(from, next);
   }
-  return best.depth > start.depth ? best : start;
+  return best;
 }
 
 }  // namespace odds::query::patch

@@ -59,7 +59,7 @@ class Summit {
   /// and where it is flat only along the normal. Under a wall's foot begins the floor.
   [[nodiscard]] bool may_be_at(const Vec3& place, double depth) const noexcept;
 
-  /// Something that was measured.
+  /// Something that was measured; also of bodies that are apart there.
   void add(const Witness& measured) noexcept;
 
   /// The deepest place that is found from `start`, which was added, by a few rays of length `reach`, in steps of up to
@@ -74,6 +74,8 @@ class Summit {
   /// Casts the rays that should meet both surfaces there.
   bool measure(const Roof::Place& place, const Witness& best, bool may_lean, double reach, Watch& watch,
                Witness& found) noexcept;
+  /// No overlap is deeper there, as far as is known.
+  [[nodiscard]] double allowed_at(const Roof::Place& place) const noexcept { return of_a_.at(place) + of_b_.at(place); }
   [[nodiscard]] double rounding_of(double radius) const noexcept;
   /// Where what is known allows the greatest depth, up to `radius` away along each axis.
   [[nodiscard]] Roof::Place highest(const Roof::Place& from, double radius, Watch& watch) const noexcept;
