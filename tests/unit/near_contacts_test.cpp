@@ -55,6 +55,22 @@ TEST_F(NearBricks, ThatTouchedKeepTheirContactsAsTheyPart) {
   EXPECT_TRUE(run(above(0.5 * margin)).empty()) << "what was let go is forgotten";
 }
 
+// The rays began as far behind as the margin reaches: a distance from there had lost the gap, and then the contact.
+TEST_F(NearBricks, AreMeasuredAsWellWithinAMarginFarLargerThanTheyAre) {
+  constexpr double gap = 1e-5;
+  for (const double wide : {0.1, 1e3, 1e9, 1e15, 1e30, 1e200, std::numeric_limits<double>::max()}) {
+    const std::size_t touching = run(above(-gap), request(wide)).size();
+    ASSERT_GE(touching, 4U) << wide;
+    const std::vector<Contact> contacts = run(above(gap), request(wide));
+    ASSERT_EQ(contacts.size(), touching) << wide;
+    for (const Contact& contact : contacts) {
+      EXPECT_NEAR(contact.depth, -gap, 1e-12) << wide;
+      EXPECT_NEAR(contact.position.z(), 0.0325 + 0.5 * gap, 1e-9) << wide;
+    }
+    pair.reset();
+  }
+}
+
 TEST_F(NearBricks, HaveNoneUnlessAskedOrBeforeTheyTouch) {
   EXPECT_TRUE(run(above(1e-5)).empty());
   ASSERT_FALSE(run(above(-1e-5), request(0.0)).empty());

@@ -1,5 +1,6 @@
 #include "query/memory/near_contacts.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -20,12 +21,14 @@ struct Gap {
 std::optional<Gap> gap_to(const Shape& shape, const Vec3& point, const Vec3& direction, double margin,
                           Spending& spending) noexcept {
   RayHit hit;
-  // From as far behind the point, which itself is on a surface that the other one may have just come through.
-  const Vec3 from = point - margin * direction;
-  if (cast_budgeted_ray(shape, from, direction, 2.0 * margin, spending, hit) != Seen::surface) return {};
+  // From as far behind the point, which itself is on a surface that the other one may have just come through; but no
+  // farther than the shape reaches, for a distance from far away has lost the gap to rounding.
+  const double behind = std::min(margin, shape.mesh().size());
+  const Vec3 from = point - behind * direction;
+  if (cast_budgeted_ray(shape, from, direction, behind + margin, spending, hit) != Seen::surface) return {};
   const double cosine = facing(shape, hit.triangle, direction);
   if (!((shape.is_solid() ? -cosine : std::abs(cosine)) > tolerances::same_contact_side)) return {};
-  return Gap{std::max(hit.distance - margin, 0.0), hit.triangle};
+  return Gap{std::max(hit.distance - behind, 0.0), hit.triangle};
 }
 
 /// Of what touched a run ago: how near the surfaces are there now, along the normal of then.
