@@ -7,6 +7,9 @@
 
 #include <atomic>
 #include <cerrno>
+#include <charconv>
+#include <optional>
+#include <string>
 #include <system_error>
 #include <utility>
 
@@ -15,14 +18,45 @@ namespace {
 
 std::string reason(int number) { return std::generic_category().message(number); }
 
+constexpr int most_links = 40;  // as Linux follows
+
 // A link stays a link: what it points to is replaced, or made.
 std::filesystem::path behind_links(std::filesystem::path path) {
-  constexpr int most_links = 40;  // as Linux follows
   std::error_code unknown;
   for (int i = 0; i < most_links && std::filesystem::is_symlink(path, unknown); ++i) {
     path = path.parent_path() / std::filesystem::read_symlink(path, unknown);  // the latter alone if it is absolute
   }
   return path;
+}
+
+/// The open file of this program that a path such as /dev/stdout or /dev/fd/3 stands for. To go through its link would
+/// replace a log that others write on, and what the program itself says there would get lost with the old one.
+std::optional<int> own_descriptor(std::filesystem::path path) {
+  std::error_code unknown;
+  const std::filesystem::path ours = std::filesystem::canonical("/proc/self/fd", unknown);
+  if (unknown) return std::nullopt;
+  for (int i = 0; i < most_links && !path.empty(); ++i) {
+    if (std::filesystem::canonical(path.has_parent_path() ? path.parent_path() : ".", unknown) == ours) {
+      const std::string name = path.filename().string();
+      int number = -1;
+      const auto end = std::from_chars(name.data(), name.data() + name.size(), number);
+      if (end.ec != std::errc{} || end.ptr != name.data() + name.size() || number < 0) return std::nullopt;
+      return number;
+    }
+    if (!std::filesystem::is_symlink(path, unknown)) return std::nullopt;
+    path = path.parent_path() / std::filesystem::read_symlink(path, unknown);
+  }
+  return std::nullopt;
+}
+
+/// Where the descriptor is, not at the beginning or the end of its file; null with errno.
+std::FILE* stream_of(int descriptor) {
+  const int own = fcntl(descriptor, F_DUPFD_CLOEXEC, 0);
+  std::FILE* const stream = own < 0 ? nullptr : fdopen(own, "w");
+  const int number = errno;
+  if (stream == nullptr && own >= 0) ::close(own);
+  errno = number;
+  return stream;
 }
 
 }  // namespace
@@ -52,7 +86,7 @@ Result<OutputFile> OutputFile::open_or_standard_output(const std::string& path) 
   if (path.empty()) {
     return Error{"", "", "the name of the output file is empty", "name a file, or - for standard output"};
   }
-  if (path == "-") return OutputFile({}, {}, stdout);
+  if (path == "-" || own_descriptor(path) == STDOUT_FILENO) return OutputFile({}, {}, stdout);
   return open(path);
 }
 
@@ -63,8 +97,9 @@ Result<OutputFile> OutputFile::open(const std::filesystem::path& path) {
     return Error{path.string(), "", "cannot be written: it is a directory", "name a file"};
   }
   // Devices and pipes cannot be replaced by renaming.
-  if (std::filesystem::exists(path, unknown) && !std::filesystem::is_regular_file(path, unknown)) {
-    std::FILE* stream = std::fopen(path.c_str(), "w");
+  const std::optional<int> descriptor = own_descriptor(path);
+  if (descriptor || (std::filesystem::exists(path, unknown) && !std::filesystem::is_regular_file(path, unknown))) {
+    std::FILE* stream = descriptor ? stream_of(*descriptor) : std::fopen(path.c_str(), "w");
     if (stream == nullptr) {
       return Error{path.string(), "", "cannot be written: " + reason(errno), "check the permissions"};
     }

@@ -17,12 +17,12 @@ namespace odds::mesh {
 
 /// Writes to a temporary file beside the target, of a name of its own, and renames it in `commit`, when the disk has
 /// it; until then, and after any failure, what stood at the target stays. A link stays a link, what it points to is
-/// replaced; devices and pipes are written at once. Any number of threads may write to one path: the last to commit
-/// wins whole.
+/// replaced; devices and pipes are written at once, and files that this program has open, as /dev/stdout, are written
+/// on. Any number of threads may write to one path: the last to commit wins whole.
 class OutputFile {
  public:
   static Result<OutputFile> open(const std::filesystem::path& path);
-  /// "-" is standard output, written at once.
+  /// "-" is standard output, written at once, and so is /dev/stdout.
   static Result<OutputFile> open_or_standard_output(const std::string& path);
   ~OutputFile();
   OutputFile(OutputFile&& other) noexcept;

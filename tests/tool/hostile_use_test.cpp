@@ -109,6 +109,19 @@ TEST_F(HostileUse, AFullOrClosedStandardOutputIsAnError) {
   }
 }
 
+TEST_F(HostileUse, StandardOutputByItsNameIsWrittenOn) {
+  if (!std::filesystem::exists("/dev/stdout")) GTEST_SKIP() << "there is no /dev/stdout";
+  folder.write("log.txt", "old\n");
+  const std::string tool = std::string("\"") + ODDS_TOOL + "\" ";
+  const Ran ran = run_tool(folder, "--help >/dev/null && (" + tool +
+                                       "query triangle.obj made:box --poses poses.csv --out /dev/stdout >>log.txt)");
+  EXPECT_EQ(ran.status, 0) << ran.errors;
+  const std::string log = contents_of(folder / "log.txt");
+  EXPECT_TRUE(log.starts_with("old\nrow,verdict")) << log;
+  EXPECT_EQ(std::count(log.begin(), log.end(), '\n'), 3) << log;
+  EXPECT_NE(ran.errors.find("microseconds"), std::string::npos) << "the table beside it";
+}
+
 // The system's way is to end the program without a word; its temporary files stayed.
 TEST_F(HostileUse, ALimitOnTheSizeOfFilesIsAnError) {
   const Ran ran = run_tool(

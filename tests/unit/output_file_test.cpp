@@ -92,6 +92,34 @@ TEST(OutputFiles, APipeIsWrittenToAndStaysAPipe) {
   EXPECT_TRUE(std::filesystem::is_fifo(path));
 }
 
+// A file behind /dev/stdout was replaced: what stood in a log was lost, and so was what the program went on to say.
+TEST(OutputFiles, AnOpenFileOfTheProgramIsWrittenOnAndNotReplaced) {
+  const TemporaryFolder folder;
+  folder.write("log", "old ");
+  const int log = ::open((folder / "log").c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+  ASSERT_GE(log, 0);
+  const std::string number = std::to_string(log);
+  std::filesystem::create_symlink("/dev/fd/" + number, folder / "link");
+  for (const std::string& path : {"/dev/fd/" + number, "/proc/self/fd/" + number, folder / "link"}) {
+    const auto error = write_file(path, "new ");
+    EXPECT_FALSE(error) << error->message();
+  }
+  EXPECT_EQ(::write(log, "on", 2), 2);
+  EXPECT_EQ(contents_of(folder / "log"), "old new new new on");
+  EXPECT_EQ(entries(folder), 2U);
+  std::filesystem::remove(folder / "log");
+  EXPECT_FALSE(write_file("/dev/fd/" + number, "new "));
+  EXPECT_EQ(entries(folder), 1U) << "one that has no name any more gets none";
+  ::close(log);
+  const auto refused = write_file("/dev/fd/" + number, "text");
+  ASSERT_TRUE(refused);
+  EXPECT_EQ(refused->file, "/dev/fd/" + number);
+  const int reading = ::open((folder / "file").c_str(), O_RDONLY | O_CREAT | O_CLOEXEC, 0600);
+  ASSERT_GE(reading, 0);
+  EXPECT_TRUE(write_file("/dev/fd/" + std::to_string(reading), "text"));
+  ::close(reading);
+}
+
 TEST(OutputFiles, OfSeveralWritersOneWinsWhole) {
   const TemporaryFolder folder;
   std::vector<std::thread> writers;
