@@ -126,6 +126,8 @@ std::size_t collect(const mesh::TriangleMesh&, const tree::Hierarchy<V>& hierarc
   const V enclosing = V::fit(corners, box.axes);
   const double reach = hierarchy.reach() + box.center.norm() + box.half_extents.norm();
   const auto same_frame = V::PreparedPose::make({}, 2.0 * reach);
+  // A volume about a larger box overflows where it is squared, and meets nothing.
+  const bool has_volume = reach < 1e15 * mesh::TriangleMesh::largest_coordinate;
   std::array<std::uint32_t, stack_capacity> stack;
   std::size_t size = 0;
   stack[size++] = 0;
@@ -135,7 +137,7 @@ std::size_t collect(const mesh::TriangleMesh&, const tree::Hierarchy<V>& hierarc
     if (visited >= budget_nodes) return count;
     ++visited;
     const auto& node = hierarchy.nodes()[stack[--size]];
-    if (!overlap(node.volume, enclosing, same_frame)) continue;
+    if (has_volume && !overlap(node.volume, enclosing, same_frame)) continue;
     if (!node.is_leaf()) {
       stack[size++] = node.first + 1;
       stack[size++] = node.first;
