@@ -67,6 +67,23 @@ TEST_F(Border, SizesBeyondAllReason) {
   }
 }
 
+// The squares of such lengths are infinite, and libccd went round in circles: no budget ended that.
+TEST_F(Border, ThinBodiesOfAWidthWhoseSquareIsInfiniteAreDoneWith) {
+  for (const double wide : {1e155, 1e200, 1e300}) {
+    for (const double thin : {1e-150, 1e-3, 1.0}) {
+      for (const double angle : {0.0, 0.3, 1.2}) {
+        SCOPED_TRACE(testing::Message() << wide << " m wide, " << thin << " m thick, turned by " << angle);
+        for (const dGeomID partner : {dCreateCylinder(space, wide, thin), dCreateBox(space, wide, wide, thin)}) {
+          dGeomSetPosition(partner, -0.35, 0.33, -0.2);
+          rotate(partner, Vec3(0.3, 0.5, 0.8).normalized(), angle);
+          expect_sound_in_both_orders(partner);
+          dGeomDestroy(partner);
+        }
+      }
+    }
+  }
+}
+
 TEST_F(Border, FarFromTheOriginAndExactlyOnEdges) {
   Partners partners(nullptr);
   for (const double far : {0.0, 1e6, 1e12}) {

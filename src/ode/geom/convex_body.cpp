@@ -94,6 +94,7 @@ void add_refined_exit(const ConvexBody& body, std::span<const Piece* const> patc
   }
   if (corners.count() == 0) return;
   const double size = body.box_half_extents().norm();
+  if (!std::isfinite(size)) return;  // there is no scale: libccd might go round in circles
   const double scale = scale_of(size);
   const Hull hull = {corners, sum / static_cast<double>(corners.count()), scale};
   ccd_t settings;
