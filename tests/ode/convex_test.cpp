@@ -383,6 +383,36 @@ TEST_F(ConvexTest, OtherPointsServeAtOnce) {
   dWorldDestroy(world);
 }
 
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wdeprecated-declarations"  // transforms are old, and still used
+// Where no space cleans the transform, ODE leaves the box of the geom within it where it was.
+TEST_F(ConvexTest, InATransformThatIsInNoSpaceItIsNoOtherGeomWhereverThatGoes) {
+  const Arrays arrays = cuboid(Vec3(0.3, 0.25, 0.2));
+  const dGeomID transform = dCreateGeomTransform(nullptr);
+  const dGeomID mesh = mesh_geom(box_shape(1, 1, 1, 3), space);
+  const dGeomID convex = convex_of(arrays);
+  dSpaceRemove(space, convex);
+  dGeomTransformSetGeom(transform, convex);
+  for (const double z : {0.6, 0.55, 5.0, 0.6}) {
+    dGeomSetPosition(transform, 0, 0, z);
+    EXPECT_EQ(collide(mesh, transform).empty(), z > 1.0) << z;
+  }
+  EXPECT_EQ(stats().changed_partners, 0u);
+  const Arrays larger = cuboid(Vec3(0.4, 0.25, 0.2));
+  dGeomSetConvex(convex, larger.planes.data(), larger.faces, larger.points.data(), larger.count(),
+                 larger.polygons.data());
+  dGeomGetAABB(transform, std::array<dReal, 6>{}.data());
+  dGeomSetPosition(transform, 0, 0, 0.5);
+  dGeomGetAABB(transform, std::array<dReal, 6>{}.data());
+  EXPECT_TRUE(collide(mesh, transform).empty());
+  EXPECT_EQ(stats().changed_partners, 1u) << "and another one is";
+  dGeomDestroy(transform);
+  oddsForgetGeom(convex);
+  dGeomDestroy(convex);
+  known.clear();
+}
+#pragma GCC diagnostic pop
+
 TEST_F(ConvexTest, AnExhaustedBudgetIsCountedAndSound) {
   const dGeomID mesh = mesh_geom(sphere_shape(1, 20), space);
   const Arrays arrays = cuboid(Vec3(0.5, 0.5, 0.5));

@@ -1,9 +1,11 @@
 // Finding, adding and forgetting partners.
 #include "ode/geom/partners.hpp"
 
+#include <bit>
 #include <cmath>
 #include <deque>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "ode/geom/pair_table.hpp"
@@ -158,9 +160,16 @@ std::unique_ptr<Partner> make_partner(dGeomID geom, std::shared_ptr<const Prepar
 
 namespace {
 
+std::uint64_t hash_of(std::span<const dReal, 6> box) noexcept {
+  std::uint64_t hash = 0;
+  for (const double side : box) hash = hash_of_pair(hash, std::bit_cast<std::uint64_t>(side));
+  return hash;
+}
+
 // Whether a convex geom still is what was registered: ODE's box around it is that around the registered points, placed
-// by ODE's own pose, which need not be as rigid as `world_pose` makes it.
-bool has_bounds_of(const ConvexShape& shape, dGeomID geom) noexcept {
+// by ODE's own pose, which need not be as rigid as `world_pose` makes it. Within a dGeomTransform ODE leaves the box
+// where it was until the transform's own is asked for: one that was right, and is the same, tells of no other geom.
+bool has_bounds_of(const ConvexShape& shape, dGeomID geom, std::atomic<std::uint64_t>& good_box) noexcept {
   if (!world_pose(geom)) return true;  // the collision itself answers bad poses
   const Vec3 place = vector_of(dGeomGetPosition(geom));
   const Mat3 turn = matrix_of(dGeomGetRotation(geom));
@@ -173,15 +182,16 @@ bool has_bounds_of(const ConvexShape& shape, dGeomID geom) noexcept {
     const double upper = place[axis] + shape.reach(along);
     const bool same =
         std::abs(aabb[2 * axis] - lower) <= tolerance && std::abs(aabb[2 * axis + 1] - upper) <= tolerance;
-    if (!same) return false;
+    if (!same) return hash_of(aabb) == good_box.load(std::memory_order_relaxed);
   }
+  good_box.store(hash_of(aabb), std::memory_order_relaxed);
   return true;
 }
 
 }  // namespace
 
 bool is_unchanged(Partner& partner) noexcept {
-  if (partner.convex != nullptr) return has_bounds_of(*partner.convex, partner.geom);
+  if (partner.convex != nullptr) return has_bounds_of(*partner.convex, partner.geom, partner.good_box);
   if (partner.heightfield_data != nullptr) {
     return dGeomHeightfieldGetHeightfieldData(partner.geom) == partner.heightfield_data;
   }

@@ -27,6 +27,7 @@ struct Partner {
   bool placeable = true;                     ///< false: a geom without a pose (only heightfields can be)
   std::atomic<std::uint32_t> next_check{0};  ///< triangle to compare with ODE's at the next collision
   std::atomic<bool> deformed{false};         ///< one was found elsewhere
+  std::atomic<std::uint64_t> good_box{0};    ///< hash of ODE's box around a convex when it was last that of its points
   int geom_class;                            ///< of another, something else is at the geom's address by now
 };
 
