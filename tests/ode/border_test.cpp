@@ -116,6 +116,24 @@ TEST_F(Border, AMeshOfSliversAndPoints) {
   }
 }
 
+// A contact without a direction makes ODE's solver abort.
+TEST_F(Border, ABallAboutATriangleThatIsALineOrAPointHasADirection) {
+  auto sharp = mesh::TriangleMesh::make({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {5, 5, 0}, {6, 5, 0}, {5, 6, 0}, {0, 0, 9}},
+                                        {{0, 1, 2}, {3, 4, 5}, {6, 6, 6}});
+  ASSERT_TRUE(sharp.ok()) << sharp.error().message();
+  auto shape = query::Shape::build(std::make_shared<const mesh::TriangleMesh>(std::move(sharp).value()));
+  ASSERT_TRUE(shape.ok());
+  const dGeomID slivers = mesh_geom(shape.value(), space);
+  const dGeomID ball = dCreateSphere(space, 0.3);
+  for (const Vec3& place : {Vec3(0.5, 0, 0), Vec3(1, 0, 0), Vec3(0, 0, 0), Vec3(0, 0, 9)}) {
+    dGeomSetPosition(ball, place.x(), place.y(), place.z());
+    const auto contacts = collide(slivers, ball);
+    EXPECT_EQ(contacts.size(), 1u) << place.transpose();
+    expect_sound(contacts, slivers, ball);
+    for (const dContactGeom& contact : contacts) EXPECT_TRUE(contact.side1 != 0 || contact.normal[0] == 0.0);
+  }
+}
+
 TEST_F(Border, ASecondInitAndCloseOfTheClientChangesNothing) {
   Partners partners(nullptr);
   for (const dGeomID partner : partners.all) dGeomSetPosition(partner, 0.3, 0.1, 0.4);

@@ -80,6 +80,15 @@ bool is_local_minimum(const PreparedMesh& mesh, const Places& places, std::size_
   return true;
 }
 
+// Across a triangle that is a line, anywhere from a point: a contact without a direction makes ODE's solver abort.
+Vec3 away_from_line(const Corners& corners) noexcept {
+  Vec3 longest = corners[1] - corners[0];
+  for (const Vec3& side : {Vec3(corners[2] - corners[1]), Vec3(corners[0] - corners[2])}) {
+    if (side.squaredNorm() > longest.squaredNorm()) longest = side;
+  }
+  return longest.squaredNorm() > 0.0 ? Vec3(longest.normalized().unitOrthogonal()) : Vec3(Vec3::UnitZ());
+}
+
 }  // namespace
 
 int collide_sphere(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int skip) noexcept {
@@ -111,7 +120,9 @@ int collide_sphere(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, in
     // Towards the mesh seen from outside; from the pseudo-normal where the centre is on the surface itself.
     const bool on_surface = nearest->distance <= same_place * radius;
     const double side = nearest->inside ? -1.0 : 1.0;
-    const Vec3 into_mesh = on_surface ? Vec3(-nearest->outward)
+    const bool has_side = nearest->outward != Vec3::Zero();
+    const Vec3 outward = has_side ? nearest->outward : away_from_line(mesh.corners(nearest->triangle));
+    const Vec3 into_mesh = on_surface ? Vec3(-outward)
                            : complete ? Vec3(side / nearest->distance * (nearest->point - center))
                                       : Vec3(-side * way_from_any(nearest->point, nearest->outward, center));
     writer.add(*pose * nearest->point, pose->rotation * into_mesh, radius - side * nearest->distance, nearest->triangle,

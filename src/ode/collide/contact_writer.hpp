@@ -28,8 +28,8 @@ class ContactWriter {
   [[nodiscard]] bool full() const noexcept { return count_ >= limit_; }
   void clear() noexcept { count_ = 0; }
 
-  /// World frame, unit normal into g1, depth >= 0 in metres. Refused: a full array, and a contact that is not finite
-  /// (so that a NaN never enters a simulation).
+  /// World frame, unit normal into g1, depth >= 0 in metres. Refused: a full array, a contact that is not finite (so
+  /// that a NaN never enters a simulation), and one without a direction, at which ODE's solver aborts.
   bool add(const Vec3& position, const Vec3& normal, double depth, std::uint32_t triangle_1,
            std::uint32_t triangle_2) noexcept {
     return depth >= 0.0 && add_signed(position, normal, depth, triangle_1, triangle_2);
@@ -38,7 +38,7 @@ class ContactWriter {
   bool add_signed(const Vec3& position, const Vec3& normal, double depth, std::uint32_t triangle_1,
                   std::uint32_t triangle_2) noexcept {
     const bool sound = position.allFinite() && normal.allFinite() && std::abs(depth) < dInfinity;
-    if (full() || !sound) return false;
+    if (full() || !sound || normal == Vec3::Zero()) return false;
     auto* contact = reinterpret_cast<dContactGeom*>(bytes_ + static_cast<std::ptrdiff_t>(count_) * skip_);
     for (int axis = 0; axis < 3; ++axis) {
       contact->pos[axis] = static_cast<dReal>(position[axis]);
