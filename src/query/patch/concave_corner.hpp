@@ -12,10 +12,23 @@
 
 namespace odds::query::patch {
 
+/// What is asked of a piece of rim for every face.
+struct CornerPiece {
+  Vec3 normal;  ///< out of the body; of a sheet, to the side on which the other body is
+  Vec3 place;   ///< of its middle, from the rim's origin
+  double length;
+  double cosine;  ///< to the normal that its face was begun with
+  std::uint32_t face;
+  bool counts;
+  bool tells;  ///< where a face is: it is no copy, nor a point
+};
+
 /// A face, flat or bent, that some of a rim is on.
 struct CornerFace {
-  ExitRange exit;          ///< between which heights it lies along the mean of its normals, out of the body
-  RimSums sums;            ///< of the pieces of rim on it
+  ExitRange exit;              ///< between which heights it lies along the mean of its normals, out of the body
+  Vec3 moment = Vec3::Zero();  ///< of the pieces that tell, as in RimSums
+  double length = 0.0;
+  RimSums sums;            ///< of the same, once there are two sides
   double spread = 0.0;     ///< radians; the largest angle between a normal and the mean
   std::size_t pieces = 0;  ///< how many
 };
@@ -39,9 +52,10 @@ class ConcaveCorner {
   /// Whether the faces of one body may form one, as far as sums say.
   [[nodiscard]] static bool may_be_of(bool of_b, const PatchInput& input, const RimSums& sums) noexcept;
 
-  ConcaveCorner(bool of_b, const PatchInput& input, const Components& components, const Rim& rim,
-                const RimSums& sums) noexcept
-      : of_b_(of_b), input_(input), components_(components), rim_(rim), sums_(sums) {}
+  /// `room`: for as many pieces as `find` is given.
+  ConcaveCorner(bool of_b, const PatchInput& input, const Components& components, const Rim& rim, const RimSums& sums,
+                std::span<CornerPiece> room) noexcept
+      : of_b_(of_b), input_(input), components_(components), rim_(rim), sums_(sums), told_(room) {}
 
   /// Finds the faces of the body on which the pieces, all of that rim, lie: bundles of normals, far apart from each
   /// other, and of flat faces also levels. Two are one side where they meet at an edge, neither in front of the other,
@@ -61,19 +75,25 @@ class ConcaveCorner {
   using Pieces = std::span<const std::uint32_t>;
 
   [[nodiscard]] Vec3 normal_of(const RimPiece& piece) const noexcept;
-  bool seed(Pieces pieces, Watch& watch) noexcept;
-  [[nodiscard]] bool any_in_front(Pieces pieces, Watch& watch) const noexcept;
-  void gather(Pieces pieces, Watch& watch) noexcept;
+  void look_up(Pieces pieces, Watch& watch) noexcept;
+  bool seed(Watch& watch) noexcept;
+  [[nodiscard]] bool any_in_front(Watch& watch) const noexcept;
+  void gather(Watch& watch) noexcept;
+  [[nodiscard]] double diagonal_of(std::size_t face, Pieces pieces, Watch& watch) const noexcept;
   bool part_levels(Pieces pieces, Watch& watch) noexcept;
   void compare(Pieces pieces, Watch& watch) noexcept;
+  [[nodiscard]] bool are_wide(std::size_t i, std::size_t j) const noexcept;
   [[nodiscard]] bool are_one_side(std::size_t i, std::size_t j) const noexcept;
-  void join() noexcept;
+  template <class AreOne>
+  std::size_t join(const AreOne& are_one) noexcept;
+  void sum_up(Pieces pieces, Watch& watch) noexcept;
 
   bool of_b_;
   const PatchInput& input_;
   const Components& components_;
   const Rim& rim_;
   const RimSums& sums_;
+  std::span<CornerPiece> told_;
   std::array<CornerFace, most> faces_;
   std::array<CornerSide, most> sides_;
   std::array<std::uint32_t, most + 1> side_of_{};              ///< of each face, and of no face

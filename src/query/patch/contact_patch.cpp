@@ -204,7 +204,8 @@ void PatchBuilder::Scratch::find_witnesses(Indices indices, const patch::Frame& 
 /// its depth: what lies at its rim bears nothing.
 std::size_t PatchBuilder::Scratch::probe(const PatchInput& input, const patch::RimSums& sums, const Vec3& centre,
                                          double reach, const patch::Frame& frame, const patch::Chosen& spread,
-                                         patch::ExitRanges exits, Measured& measured, Watch& watch) noexcept {
+                                         patch::ExitRanges exits, double most_depth, Measured& measured,
+                                         Watch& watch) noexcept {
   const auto measure = [&](const Vec3& place, Witness& found) noexcept {
     return !watch.late() && patch::probe_overlap(input, place, frame.normal, reach, watch, found) &&
            patch::all_have(exits, found);
@@ -222,7 +223,8 @@ std::size_t PatchBuilder::Scratch::probe(const PatchInput& input, const patch::R
     measured[count++] = inside;
   }
   const bool has_centre = count > 0;
-  for (std::size_t i = 0; i < spread.count; ++i) {
+  const auto is_too_deep = [&]() noexcept { return count > 0 && start.depth > most_depth; };
+  for (std::size_t i = 0; i < spread.count && !is_too_deep(); ++i) {
     Witness w = spread.witnesses[i];
     const Vec3 place = w.middle();
     const bool is_measured = measure(place + 0.02 * (centre - place), inside);
@@ -233,6 +235,10 @@ std::size_t PatchBuilder::Scratch::probe(const PatchInput& input, const patch::R
       w.on_b = place + frame.normal * frame.normal.dot(inside.on_b - place);
     }
     measured[count++] = w;
+  }
+  if (is_too_deep()) {
+    measured[0] = start;
+    return 1;
   }
   Witness deepest = patch::deepest_of({measured.data(), count}, frame, centre, 0.25 * reach);
   // The last run's summit is near this one's; starting from it, the climb follows one summit and does not flicker. That
@@ -276,7 +282,7 @@ Patch PatchBuilder::Scratch::make_patch(const PatchInput& input, const patch::Ri
 
 Patch PatchBuilder::Scratch::patch_along(const Vec3& normal, const PatchInput& input, const patch::RimSums& sums,
                                          Indices indices, const Effort& effort, Watch& watch,
-                                         patch::ExitRanges exits) noexcept {
+                                         patch::ExitRanges exits, double most_depth) noexcept {
   Patch made;
   made.lower = sums.lower;
   made.upper = sums.upper;
@@ -300,6 +306,7 @@ Patch PatchBuilder::Scratch::patch_along(const Vec3& normal, const PatchInput& i
   made.centre = centre;
   const double lever = patch::lever_of(input, centre);
   made.depth = deepest.depth;
+  if (made.depth > most_depth) return made;
   made.chosen = patch::choose(extremes.all(), frame, most_contacts, patch::spacing(made.depth, lever), &watch);
   Measured measured;
   std::size_t count = made.chosen.count;
@@ -308,9 +315,10 @@ Patch PatchBuilder::Scratch::patch_along(const Vec3& normal, const PatchInput& i
   if (exits.empty() && through_face) exits = {&*through_face, 1};
   const double reach = 2.0 * (sums.diagonal() + made.depth);
   if (can_measure && !patch::is_a_tip(input, rim, sums, indices, deepest)) {
-    count = probe(input, sums, centre, reach, frame, made.chosen, exits, measured, watch);
+    count = probe(input, sums, centre, reach, frame, made.chosen, exits, most_depth, measured, watch);
     if (watch.late()) return made;
     for (std::size_t i = 0; i < count; ++i) made.depth = std::max(made.depth, measured[i].depth);
+    if (made.depth > most_depth) return made;
   } else {
     for (std::size_t i = 0; i < count; ++i) measured[i] = patch::pulled_in(made.chosen.witnesses[i], deepest);
     // Where there is more than a tip its centre bears, too: no force may jump where it becomes one.

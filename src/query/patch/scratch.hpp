@@ -5,11 +5,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
 #include "odds/query/contact_patch.hpp"
 #include "query/patch/components.hpp"
+#include "query/patch/concave_corner.hpp"
 #include "query/patch/normal.hpp"
 #include "query/patch/overlap.hpp"
 #include "query/patch/rim.hpp"
@@ -60,7 +62,8 @@ struct PatchBuilder::Scratch {
         by_patch(pieces.size()),
         witnesses(patch::witnesses_per_pair * std::min(hit_capacity, patch::Telling::most) + 64),
         components(pieces.size(), hit_capacity),
-        telling(pieces.size()) {}
+        telling(pieces.size()),
+        corner_pieces(pieces.size()) {}
 
   /// Those that span the patch, its centre, its summits.
   using Measured = std::array<patch::Witness, most_contacts + 3>;
@@ -84,13 +87,15 @@ struct PatchBuilder::Scratch {
                 patch::Watch& watch) noexcept;
   void part_in_corner(const PatchInput& input, const patch::RimSums& sums, std::span<std::uint32_t> indices,
                       std::size_t others, patch::Watch& watch) noexcept;
+  /// Of a patch that is found to be deeper than `most_depth`, no more than a depth above it is told.
   patch::Patch patch_along(const Vec3& normal, const PatchInput& input, const patch::RimSums& sums, Indices indices,
-                           const patch::Effort& effort, patch::Watch& watch, patch::ExitRanges exits = {}) noexcept;
+                           const patch::Effort& effort, patch::Watch& watch, patch::ExitRanges exits = {},
+                           double most_depth = std::numeric_limits<double>::infinity()) noexcept;
   void find_witnesses(Indices indices, const patch::Frame& frame, patch::Watch& watch) noexcept;
   void add_witnesses(std::span<const patch::PlacedPair* const> asked, const patch::Frame& frame) noexcept;
   std::size_t probe(const PatchInput& input, const patch::RimSums& sums, const Vec3& centre, double reach,
-                    const patch::Frame& frame, const patch::Chosen& spread, patch::ExitRanges exits, Measured& measured,
-                    patch::Watch& watch) noexcept;
+                    const patch::Frame& frame, const patch::Chosen& spread, patch::ExitRanges exits, double most_depth,
+                    Measured& measured, patch::Watch& watch) noexcept;
   void drop_crumbs() noexcept;
   void drop_opposed(const Vec3* previous, patch::Watch& watch) noexcept;
   void write(const PatchInput& input, patch::Watch& watch) noexcept;
@@ -104,6 +109,7 @@ struct PatchBuilder::Scratch {
   std::vector<patch::Witness> witnesses;
   patch::Components components;
   patch::Telling telling;
+  std::vector<patch::CornerPiece> corner_pieces;
   patch::Fan fan;
   std::array<patch::Patch, patch::Components::most> patches;
   std::array<Contact, most_contacts> contacts;

@@ -62,7 +62,7 @@ void PatchBuilder::Scratch::straighten(const PatchInput& input, std::span<const 
     const patch::PatchView view{input, *kernels, rim, sums[i], indices, thorough.sample};
     const bool is_of_it = is_whole && is_seen_through(view, own, direction, most, watch);
     if (!is_of_it && !patch::is_of_direction(view, direction, most, watch)) continue;
-    const Patch straight = patch_along(direction, input, sums[i], indices, thorough, watch);
+    const Patch straight = patch_along(direction, input, sums[i], indices, thorough, watch, {}, most);
     if (watch.late()) return;  // it was not measured to its end
     if (!(straight.depth <= most)) continue;
     own = straight;
