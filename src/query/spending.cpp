@@ -8,6 +8,7 @@ namespace odds::query {
 void Spending::keep_time_for_contacts() noexcept {
   if (!timed_) return;
   contacts_wait_ = true;
+  patience_ = 0;
   const auto share_ns = static_cast<std::int64_t>((allowance_ns() < short_ns ? short_search_share : search_share) *
                                                   static_cast<double>(allowance_ns()));
   last_moment_ns_ = std::min(last_moment_ns_, deadline_ns_ - kept_ns(kept_.contacts_ns));
@@ -31,6 +32,7 @@ std::int64_t Spending::search_kept_ns(bool cold) const noexcept {
 }
 
 void Spending::end_earlier() noexcept {
+  patience_ = 0;
   const std::int64_t search_earlier_ns = search_kept_ns(true) - search_kept_ns(false);
   search_deadline_ns_ -= search_earlier_ns;
   if (contacts_ended_) return;

@@ -25,14 +25,21 @@ class Spending {
     std::int64_t last_contact_ns = 0;                       ///< a contact of a hit that comes last
     bool pieces_are_long = false;                           ///< a pair of volumes takes a microsecond
   };
+  /// A look at the clock costs as much as opening a pair does: of the processor's own, which tells what work takes, no
+  /// more are taken than it needs. A clock that counts its looks is looked at every time.
+  enum class Looks : std::uint8_t { always, as_needed };
+
   explicit Spending(const Budget& budget) noexcept : Spending(budget, Kept{}) {}
   Spending(const Budget& budget, const Kept& kept) noexcept
+      : Spending(budget, kept, is_own(budget.clock) ? Looks::as_needed : Looks::always) {}
+  Spending(const Budget& budget, const Kept& kept, Looks looks) noexcept
       : clock_(budget.clock.now_ns != nullptr ? budget.clock : realtime::fastest_clock()),
         polled_clock_(realtime::without_waiting(clock_)),
         start_ns_(polled_clock_()),
         ledger_(start_ns_),
         kept_(kept),
-        units_left_(budget.work_units) {
+        units_left_(budget.work_units),
+        looks_as_needed_(looks == Looks::as_needed) {
     if (std::isfinite(budget.microseconds)) {
       timed_ = true;
       const double ns = std::clamp(budget.microseconds * 1e3, 0.0, 1e15);
@@ -65,18 +72,29 @@ class Spending {
 
   /// Polls the clock if there is a deadline. False once the search should stop.
   [[nodiscard]] bool may_go_on() noexcept {
-    const std::int64_t now = last_piece_ns_ = poll();
-    nears_end_ = now >= search_deadline_ns_ - notice_ns;
+    const std::int64_t now = look(Part::all);
     if (now < search_deadline_ns_) return true;
     told_to_stop_ = true;
     return false;
   }
   /// The same, but looks at the clock only when `units` were spent since the last look.
   [[nodiscard]] bool may_go_on_after(std::uint32_t units) noexcept { return unpolled_units_ < units || may_go_on(); }
+  /// The same, or only when so many were spent that a small part of the time may be over: where no unit takes much
+  /// longer than one of an opened pair.
+  [[nodiscard]] bool may_go_on_in_time(std::uint32_t units) noexcept {
+    return unpolled_units_ < std::max(units, patience_) || may_go_on();
+  }
+  /// Looks before a test of two triangles; or not, as above.
+  [[nodiscard]] bool may_test_triangles() noexcept {
+    if (unpolled_units_ + units_of_a_test > patience_) return may_go_on();
+    unpolled_units_ += units_of_a_test;
+    return true;
+  }
   /// Whether the last look at the clock found the search's end near: time to ask the caches for what the answer needs.
   [[nodiscard]] bool nears_end() const noexcept { return nears_end_; }
   /// A search that changes its manner after a start has up to these shares, in [0, 1], of time and work for it.
   void begin_start(double time_share, double work_share) noexcept {
+    patience_ = 0;
     // No limit becomes 2^64 as a double, which does not fit back into 64 bits.
     const auto all = static_cast<double>(units_left_);
     const double of_budget = work_share * all;
@@ -87,11 +105,9 @@ class Spending {
   }
   [[nodiscard]] bool start_may_go_on_after(std::uint32_t units) noexcept {
     if (units_left_ <= start_units_end_) return false;
-    if (unpolled_units_ < units) return true;
+    if (unpolled_units_ < std::max(units, patience_)) return true;
     // Of a very short time the share may be more than the search has before its answer has to be made.
-    const std::int64_t now = last_piece_ns_ = poll();
-    nears_end_ = now >= search_deadline_ns_ - notice_ns;
-    return now < std::min(start_deadline_ns_, search_deadline_ns_);
+    return look(Part::start) < std::min(start_deadline_ns_, search_deadline_ns_);
   }
   /// From now on contacts are finished as `reserve` expects, which must outlive this and learns how long it took:
   /// `may_finish_contacts` says when that begins. `hasty_ns` before it they are made hastily: `may_make_contacts` says
@@ -106,9 +122,11 @@ class Spending {
   /// There is no time left but for ending: `reserve` learns how long that takes from the search's last piece on.
   void end_from_last_piece(EndingReserve& reserve) noexcept {
     if (!timed_) return;
-    if (contacts_ended_) note_contacts_ending(poll());
+    const bool looked_lately = unpolled_units_ < least_patience;
+    const std::int64_t now = contacts_ended_ || !looked_lately ? poll() : 0;
+    if (contacts_ended_) note_contacts_ending(now);
     contacts_reserve_ = &reserve;
-    last_moment_ns_ = last_piece_ns_;
+    last_moment_ns_ = looked_lately ? last_piece_ns_ : std::max(last_piece_ns_, now - usual_piece_ns);
     contacts_ended_ = true;
   }
   [[nodiscard]] bool may_make_contacts() noexcept { return poll_of_contacts() < contacts_deadline_ns_; }
@@ -157,6 +175,37 @@ class Spending {
  private:
   /// Some three pieces of work.
   static constexpr std::int64_t notice_ns = 400;
+  /// Units that may be spent between two looks while there is time. Of an opened pair one takes 4 to 6 ns, of one that
+  /// no cache knows 25 to 40: an eighth of what is left is over by then, or at worst all.
+  static constexpr std::uint32_t most_patience = 144;
+  static constexpr std::uint32_t least_patience = 24;
+  static constexpr std::int64_t slow_unit_ns = 40;
+  static constexpr std::int64_t slowest_unit_ns = 1'000;
+  /// An exact test takes up to 0.2 us.
+  static constexpr std::uint32_t units_of_a_test = 24;
+  static constexpr std::int64_t usual_piece_ns = 200;
+
+  [[nodiscard]] static bool is_own(const realtime::Clock& clock) noexcept {
+    return clock.now_ns == nullptr || clock.now_ns == realtime::fastest_clock().now_ns;
+  }
+
+  /// Looks at the clock before more of a search, or of its start.
+  enum class Part : std::uint8_t { start, all };
+  [[nodiscard]] std::int64_t look(Part part) noexcept {
+    const std::uint32_t units = unpolled_units_;
+    const std::int64_t before = last_piece_ns_;
+    const std::int64_t now = last_piece_ns_ = poll();
+    nears_end_ = now >= search_deadline_ns_ - notice_ns;
+    if (!timed_ || !looks_as_needed_) return now;
+    // A slow machine is known by what the last pieces took; not by a stall, which is the longest to be believed.
+    if (now - before > units * unit_ns_ && units >= least_patience) {
+      unit_ns_ = std::min((now - before) / units, slowest_unit_ns);
+    }
+    const std::int64_t end = part == Part::all ? search_deadline_ns_ : std::min(start_deadline_ns_, search_deadline_ns_);
+    const std::int64_t left = (end - now) / unit_ns_;
+    patience_ = left >= least_patience ? static_cast<std::uint32_t>(std::min<std::int64_t>(left, most_patience)) : 0;
+    return now;
+  }
 
   [[nodiscard]] std::int64_t allowance_ns() const noexcept { return deadline_ns_ - start_ns_; }
 
@@ -239,6 +288,9 @@ class Spending {
   Kept kept_;
   std::uint64_t units_left_;
   std::uint32_t unpolled_units_ = 0;
+  std::uint32_t patience_ = 0;  ///< units that may be spent before the next look, while that can do no harm
+  std::int64_t unit_ns_ = slow_unit_ns;
+  bool looks_as_needed_;
   bool timed_ = false;
   bool nears_end_ = false;
   bool told_to_stop_ = false;

@@ -46,7 +46,7 @@ class Frontier {
 
   /// Whether the budget allows to open one more pair.
   [[nodiscard]] bool may_open() noexcept {
-    return task.spending.may_go_on_after(units_between_polls) && task.spending.allows(wide_lanes);
+    return task.spending.may_go_on_in_time(units_between_polls) && task.spending.allows(wide_lanes);
   }
 
   /// False: the search has ended. If for the budget, the pairs of leaves are left open.

@@ -212,7 +212,7 @@ class Incremental {
   }
 
   [[nodiscard]] bool may_go_on() noexcept {
-    if (task_.spending.may_go_on_after(units_between_polls) && task_.spending.allows(wide_lanes)) {
+    if (task_.spending.may_go_on_in_time(units_between_polls) && task_.spending.allows(wide_lanes)) {
       return true;
     }
     task_.result.ended = Progressed::spent;

@@ -34,7 +34,7 @@ class Nearest {
         --size_;
         continue;
       }
-      if (!task_.spending.may_go_on_after(units_between_polls) || !task_.spending.allows(wide_lanes)) return leave();
+      if (!task_.spending.may_go_on_in_time(units_between_polls) || !task_.spending.allows(wide_lanes)) return leave();
       const SlotPair pair = stack_[size_ - 1].pair;
       if (is_leaf(0, pair.of[0]) && is_leaf(1, pair.of[1])) {
         if (!compare_leaves(pair)) return leave();

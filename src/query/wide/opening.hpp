@@ -43,7 +43,7 @@ ODDS_LANES_INLINE bool visit_triangles(Task& task, Slot slot_a, Slot slot_b, con
       const auto lane = static_cast<unsigned>(std::countr_zero(lanes));
       const std::uint32_t a = met.leaf(0, slot_a).leaf.triangle[lane];
       const std::uint32_t b = met.leaf(1, slot_b).leaf.triangle[row];
-      if (!task.spending.allows(1) || !task.spending.may_go_on()) {
+      if (!task.spending.allows(1) || !task.spending.may_test_triangles()) {
         task.result.ended = Progressed::spent;
         return false;
       }

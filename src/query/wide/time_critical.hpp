@@ -27,7 +27,7 @@ class TimeCritical {
     task_.queue->push(0, {tree::WideTree::root, tree::WideTree::root, unranked});
     if (!task_.spending.may_go_on()) finish(Progressed::spent);
     while (!task_.queue->empty() && !finished_) {
-      if (!task_.spending.may_go_on_after(units_between_polls)) {
+      if (!task_.spending.may_go_on_in_time(units_between_polls)) {
         finish(Progressed::spent);
         break;
       }
@@ -85,7 +85,7 @@ class TimeCritical {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
       opened = expanded.first + lane;
       child.rank = rank[lane];
-      is_time_up = is_time_up || !task_.spending.may_go_on_after(units_between_polls);
+      is_time_up = is_time_up || !task_.spending.may_go_on_in_time(units_between_polls);
       if (is_time_up) {
         keep(child, cost);
         continue;
