@@ -44,6 +44,7 @@ struct Settings {
   bool trajectory = false;
   bool cpu_time = false;
   bool untested_leaves = false;
+  std::vector<double> budgets_us;
   std::string csv;
 };
 
@@ -59,9 +60,16 @@ Peers make_peers(const Settings& settings, const MeshPair& meshes) {
   for (const std::string& word : settings.volumes) {
     for (const std::string& method : settings.methods) {
       const volume::Kind kind = volume::kind_from_name(word).value();
-      peers.push_back(make_odds_peer(meshes, kind, method_of(method), true, settings.builds));
+      OddsSettings ours{.volume = kind, .method = method_of(method)};
+      peers.push_back(make_odds_peer(meshes, ours, settings.builds));
+      for (const double budget_us : settings.budgets_us) {
+        OddsSettings limited = ours;
+        limited.budget_us = budget_us;
+        peers.push_back(make_odds_peer(meshes, limited, settings.builds));
+      }
       if (!settings.untested_leaves || kind == volume::Kind::wide) continue;
-      peers.push_back(make_odds_peer(meshes, kind, method_of(method), false, settings.builds));
+      ours.leaf_test = false;
+      peers.push_back(make_odds_peer(meshes, ours, settings.builds));
     }
   }
   for (const std::string& peer : settings.peers) {
@@ -237,6 +245,9 @@ void add_options(CLI::App& app, Settings& settings) {
   app.add_flag("--all", settings.all, "all contacts: 8 of ours made from all pairs, all of FCL and Bullet, 32 of ODE");
   app.add_flag("--cpu-time", settings.cpu_time,
                "time of the thread instead of wall time: for a machine that does other work");
+  app.add_option("--budgets-us", settings.budgets_us, "each method of ours also within so many microseconds")
+      ->delimiter(',')
+      ->check(CLI::PositiveNumber);
   app.add_flag("--untested-leaves", settings.untested_leaves,
                "each volume of ours but wide also without a test of volumes between leaves");
   app.add_flag("--trajectory", settings.trajectory, "sliding motion");

@@ -170,6 +170,7 @@ bool LateContacts::work(const math::Pose& pose_b_in_a, const Request& request, P
   }
   if (!scratch_->fiber->is_done()) {
     spending_ = &spending;
+    looks_to_spare_ = 0;
     const double left_us = spending.left_us();
     scratch_->fiber->resume();
     worked_us_ += left_us - spending.left_us();
@@ -208,7 +209,12 @@ std::int64_t LateContacts::read_clock(void* self) noexcept {
   constexpr std::int64_t tick_ns = 100;
   auto& late = *static_cast<LateContacts*>(self);
   late.time_ns_ += tick_ns;
+  if (late.looks_to_spare_ > 0 && !late.dropped_) {
+    --late.looks_to_spare_;
+    return late.time_ns_;
+  }
   while (!late.dropped_ && !late.spending_->may_make_contacts()) late.scratch_->fiber->yield();
+  if (!late.dropped_) late.looks_to_spare_ = late.spending_->looks_to_spare();
   return late.dropped_ ? std::numeric_limits<std::int64_t>::max() / 2 : late.time_ns_;
 }
 

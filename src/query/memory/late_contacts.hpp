@@ -121,6 +121,7 @@ class LateContacts {
   std::uint32_t last_ = 0;      ///< in the pool
   Scratch* scratch_ = nullptr;  ///< while a question is being worked on
   Spending* spending_ = nullptr;
+  std::int64_t looks_to_spare_ = 0;  ///< at that run's clock
   bool pressed_ = false;    ///< what is being worked on
   bool turned_ = false;     ///< the bodies, when it was asked
   bool gives_all_ = false;  ///< of what was made last
