@@ -33,6 +33,7 @@ std::int64_t Spending::search_kept_ns(bool cold) const noexcept {
 
 void Spending::end_earlier() noexcept {
   patience_ = 0;
+  spare_looks_ = 0;
   const std::int64_t search_earlier_ns = search_kept_ns(true) - search_kept_ns(false);
   search_deadline_ns_ -= search_earlier_ns;
   if (contacts_ended_) return;

@@ -116,6 +116,7 @@ class Spending {
     if (!timed_) return;
     if (contacts_ended_) note_contacts_ending(poll());
     contacts_reserve_ = &reserve;
+    spare_looks_ = 0;
     last_moment_ns_ = deadline_ns_ - kept_ns(reserve.ns());
     contacts_deadline_ns_ = last_moment_ns_ - hasty_ns;
   }
@@ -130,10 +131,20 @@ class Spending {
     contacts_ended_ = true;
   }
   [[nodiscard]] bool may_make_contacts() noexcept { return poll_of_contacts() < contacts_deadline_ns_; }
-  /// How many of the next such looks may be left out: of those it takes between two pieces of half a microsecond.
+  /// The same for pieces of half a microsecond: looks each time only when a few of them may take what is left.
+  [[nodiscard]] bool may_go_on_making() noexcept {
+    if (spare_looks_ > 0) {
+      --spare_looks_;
+      return true;
+    }
+    const bool may = may_make_contacts();
+    spare_looks_ = looks_to_spare();
+    return may;
+  }
+  /// How many of the next such looks may be left out.
   [[nodiscard]] std::int64_t looks_to_spare() const noexcept {
     constexpr std::int64_t most = 3;
-    constexpr std::int64_t longest_piece_ns = 2'000;
+    constexpr std::int64_t longest_piece_ns = 4'000;  // where others are at work, too
     const std::int64_t now = start_ns_ + ledger_.gross_ns();
     return timed_ && looks_as_needed_
                ? std::clamp<std::int64_t>((contacts_deadline_ns_ - now) / longest_piece_ns - 1, 0, most)
@@ -301,6 +312,7 @@ class Spending {
   std::uint32_t unpolled_units_ = 0;
   std::uint32_t patience_ = 0;  ///< units that may be spent before the next look, while that can do no harm
   std::int64_t unit_ns_ = slow_unit_ns;
+  std::int64_t spare_looks_ = 0;
   bool looks_as_needed_;
   bool timed_ = false;
   bool nears_end_ = false;

@@ -106,6 +106,25 @@ TEST(SpendingLooks, AClockThatCountsIsLookedAtEachTime) {
   }
 }
 
+TEST(SpendingLooks, AreFewerWhileContactsHaveTime) {
+  const auto looks_of = [](Looks looks, std::int64_t& ended_ns) {
+    realtime::ManualClock clock;
+    Budget budget = Budget::time(50.0);
+    budget.clock = clock.clock();
+    EndingReserve reserve({4'000, 600, 4'000, 100, 400, 1});
+    Spending spending(budget, {.search_ns = 600}, looks);
+    spending.reserve_for_contacts(reserve);
+    for (ended_ns = 0; spending.may_go_on_making(); ended_ns += 500) clock.advance(500);
+    return clock.readings();
+  };
+  std::int64_t always_ns = 0;
+  std::int64_t as_needed_ns = 0;
+  const std::int64_t always = looks_of(Looks::always, always_ns);
+  EXPECT_LT(looks_of(Looks::as_needed, as_needed_ns), always / 2);
+  EXPECT_EQ(always_ns, 46'000);
+  EXPECT_EQ(as_needed_ns, 46'000) << "as punctual";
+}
+
 // The last look of a search with much time may be long ago: what lies between is not its ending.
 TEST(SpendingLooks, AnEndingBeginsWithTheLastPiece) {
   realtime::ManualClock clock;

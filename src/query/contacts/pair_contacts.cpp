@@ -217,7 +217,7 @@ Made make_of(const PatchInput& input, PatchBuilder& patches, Pair::Implementatio
     }
   }
   if (!spending.may_make_contacts()) return Made::nothing;
-  const Deadline deadline{[](void* state) noexcept { return !static_cast<Spending*>(state)->may_make_contacts(); },
+  const Deadline deadline{[](void* state) noexcept { return !static_cast<Spending*>(state)->may_go_on_making(); },
                           &spending};
   const Deadline last{[](void* state) noexcept { return !static_cast<Spending*>(state)->may_finish_contacts(); },
                       &spending};
