@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <exception>
 #include <fstream>
+#include <mutex>
 #include <utility>
 
 #include "ode/geom/partners.hpp"
@@ -12,6 +13,7 @@
 #include "preload/environment.hpp"
 #include "preload/exit_page.hpp"
 #include "preload/real_functions.hpp"
+#include "preload/warm_up.hpp"
 
 namespace odds::preload {
 namespace {
@@ -48,6 +50,10 @@ class Session {
       std::fprintf(stderr, "warning: libodds_preload: no report: %s\n", error.what());
     }
   }
+  // Before the program's first mesh: one without meshes has no use for it.
+  void warm_up_once() {
+    std::call_once(warmed_, [this] { warm_up(environment_.takeover); });
+  }
   void take_over() noexcept {
     if (oddsTakeOverTriMesh(&environment_.takeover) == 0) {
       std::fprintf(stderr, "warning: libodds_preload: no takeover: %s\n", oddsGetLastError());
@@ -71,6 +77,7 @@ class Session {
   }
 
   Environment environment_;
+  std::once_flag warmed_;
 };
 
 Session& session() {
@@ -99,6 +106,15 @@ void after_close() noexcept {
   if (initialised.fetch_sub(1, std::memory_order_relaxed) > 1) return;
   const Inside guard;
   oddsGiveBackTriMesh();  // not of an ODE that hides its own colliders: there the takeover goes on
+}
+
+void before_mesh() noexcept {
+  if (inside || ode::is_reading_trimesh() || oddsGetClass() < 0) return;
+  const Inside guard;
+  try {
+    session().warm_up_once();
+  } catch (const std::exception&) {  // no lock: the first collision is slow, that is all
+  }
 }
 
 void after_mesh(dGeomID trimesh) noexcept {
@@ -155,6 +171,7 @@ void dCloseODE(void) {
 dGeomID dCreateTriMesh(dSpaceID space, dTriMeshDataID data, dTriCallback* callback, dTriArrayCallback* array_callback,
                        dTriRayCallback* ray_callback) {
   static const auto next = real<decltype(dCreateTriMesh)>("dCreateTriMesh");
+  odds::preload::before_mesh();
   const dGeomID geom = next(space, data, callback, array_callback, ray_callback);
   odds::preload::after_mesh(geom);
   return geom;

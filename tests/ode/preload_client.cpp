@@ -2,7 +2,8 @@
 // where they were put, and how many contacts were sideways. The test of the preload library runs it with and without.
 // With DEFORM set in the environment it tells ODE that it has moved the ground's vertices, with LATE_DATA it collides a
 // mesh that could not be read when it was made. With CYCLES it has used ODE several times before, with a class of geoms
-// of its own, and with COMMAS it sets a locale whose numbers have commas, if there is one.
+// of its own, and with COMMAS it sets a locale whose numbers have commas, if there is one. With ONE_RAY it collides
+// nothing but one ray with one mesh.
 #include <ode/ode.h>
 
 #include <algorithm>
@@ -83,6 +84,18 @@ int contacts_of_late_data() {
   return count;
 }
 
+int contacts_of_one_ray() {
+  dContactGeom found[8];
+  const Mesh floor(4, 4, 1);
+  const dGeomID ground = dCreateTriMesh(nullptr, floor.data, nullptr, nullptr, nullptr);
+  const dGeomID ray = dCreateRay(nullptr, 1);
+  dGeomRaySet(ray, 0.1, 0.2, 1, 0, 0, -1);  // ends within
+  const int count = dCollide(ground, ray, 8, found, sizeof(dContactGeom));
+  dGeomDestroy(ray);
+  dGeomDestroy(ground);
+  return count;
+}
+
 void use_a_class_of_its_own() {
   dInitODE2(0);
   dGeomClass description = {};
@@ -100,6 +113,11 @@ int main() {
   for (int i = 0; i < 6 && std::getenv("CYCLES") != nullptr; ++i) use_a_class_of_its_own();
   dInitODE2(0);
   dAllocateODEDataForThread(static_cast<unsigned>(dAllocateMaskAll));
+  if (std::getenv("ONE_RAY") != nullptr) {
+    std::printf("one_ray %d\n", contacts_of_one_ray());
+    dCloseODE();
+    return 0;
+  }
   double farthest = 0.0;
   {
     Simulation simulation;

@@ -127,6 +127,26 @@ TEST_F(Preload, NumbersAreReadAlikeInEveryLocale) {
   EXPECT_EQ(with.output.find("ODDS_BUDGET_US"), std::string::npos) << with.output;
 }
 
+// Its code had never run: finding it took longer than the budget, and the ray met nothing. One run in which the machine
+// was not elsewhere meanwhile is enough.
+TEST_F(Preload, TheFirstRayOfAProcessMeetsWhatIsThere) {
+  int met = 0;
+  for (int i = 0; i < 20 && met == 0; ++i) {
+    const ClientRun client = run("ONE_RAY=1 ODDS_BUDGET_US=30 ODDS_REPORT=" + page.string(), true);
+    ASSERT_EQ(client.status, 0) << client.output;
+    if (client.output.find("one_ray 1") != std::string::npos) ++met;
+  }
+  EXPECT_EQ(met, 1);
+  const std::string text = read_page();
+  const std::size_t row = text.find("\nray ");
+  ASSERT_NE(row, std::string::npos) << text;
+  int collisions = 0;
+  EXPECT_EQ(std::sscanf(text.c_str() + row, " ray %d", &collisions), 1);
+  EXPECT_EQ(collisions, 1) << "what warms up is not counted\n" << text;
+  EXPECT_EQ(text.find("\nsphere"), std::string::npos) << text;
+  EXPECT_NE(text.find("others ended by their budget: 0"), std::string::npos) << text;
+}
+
 // ODE was held open, and its room for classes filled up.
 TEST_F(Preload, AProgramMayCloseOdeAndUseItAgainWithAClassOfItsOwn) {
   const ClientRun alone = run("CYCLES=1", false);
