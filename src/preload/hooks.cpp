@@ -40,6 +40,7 @@ class Session {
       std::fprintf(stderr, "warning: libodds_preload: %s\n", mistake.c_str());
     }
     ode::observe_takeover(&note_collision);
+    ode::keep_hierarchies(true);  // for programs that make a geom of the same data again and again
   }
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -240,6 +241,12 @@ void dGeomTriMeshDataBuildSimple1(dTriMeshDataID data, const dReal* vertices, in
                                   const dTriIndex* indices, int index_count, const int* normals) {
   static const auto next = real<decltype(dGeomTriMeshDataBuildSimple1)>("dGeomTriMeshDataBuildSimple1");
   odds::preload::change(next, data, vertices, vertex_count, indices, index_count, normals);
+}
+
+void dGeomTriMeshDataDestroy(dTriMeshDataID data) {
+  static const auto next = real<decltype(dGeomTriMeshDataDestroy)>("dGeomTriMeshDataDestroy");
+  odds::ode::note_destroyed(data);  // before another thread has data at its address
+  next(data);
 }
 
 void dGeomDestroy(dGeomID geom) {

@@ -76,6 +76,36 @@ TEST_F(StandIn, GeomsOfOneDataShareOneHierarchyAndKeepTheirSettingsApart) {
   EXPECT_EQ(oddsForgetGeom(second), 1);
 }
 
+// A program that makes and destroys a geom of the same data in every step had its hierarchy built in every step.
+TEST_F(StandIn, AHierarchyThatIsKeptIsThatOfTheNextGeomUntilItsDataEnds) {
+  const auto prepare = [](dGeomID geom) {
+    EXPECT_EQ(oddsPrepareTriMesh(geom, nullptr), 1);
+    return std::weak_ptr<const ode::PreparedMesh>(ode::partner_table().find(geom)->mesh->mesh);
+  };
+  for (const bool keep : {false, true}) {
+    ode::keep_hierarchies(keep);
+    std::weak_ptr<const ode::PreparedMesh> first;
+    {
+      TriMesh mesh(box_shape(1, 1, 1)->mesh(), nullptr);
+      first = prepare(mesh.geom);
+      oddsForgetGeom(mesh.geom);
+      EXPECT_EQ(first.expired(), !keep);
+      dGeomDestroy(mesh.geom);
+      mesh.geom = dCreateTriMesh(nullptr, mesh.data, nullptr, nullptr, nullptr);
+      EXPECT_EQ(prepare(mesh.geom).lock() == first.lock(), keep);
+      mesh.vertices[0] *= 2.0;
+      dGeomTriMeshDataBuildDouble(mesh.data, mesh.vertices.data(), 3 * sizeof(double), 8, mesh.indices.data(),
+                                  static_cast<int>(mesh.indices.size()), 3 * sizeof(dTriIndex));
+      EXPECT_NE(prepare(mesh.geom).lock(), first.lock()) << "other data at the same address";
+      EXPECT_TRUE(first.expired());
+      first = prepare(mesh.geom);
+      ode::note_destroyed(mesh.data);
+    }
+    EXPECT_TRUE(first.expired());
+  }
+  ode::keep_hierarchies(false);
+}
+
 // The hierarchy of the first call was shared, whatever the second one asked for, were it nonsense.
 TEST_F(StandIn, OtherParametersOfOneDataBuildAnotherHierarchy) {
   const auto shape = sphere_shape(0.5, 8);

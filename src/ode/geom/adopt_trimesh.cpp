@@ -11,6 +11,7 @@
 #include "ode/geom/partners.hpp"
 #include "ode/last_error.hpp"
 #include "ode/mesh/mesh_data.hpp"
+#include "ode/statistics.hpp"
 #include "ode/vectors.hpp"
 
 namespace odds::ode {
@@ -89,9 +90,20 @@ bool has_triangles(dGeomID geom) noexcept {
 
 struct KnownMesh {
   std::weak_ptr<const PreparedMesh> prepared;
-  oddsBuildParams asked;  // without a name
+  oddsBuildParams asked;                     // without a name
+  std::shared_ptr<const PreparedMesh> kept;  // null, or the same
 };
-using Known = std::map<dTriMeshDataID, KnownMesh>;
+
+struct KnownMeshes {
+  std::mutex mutex;
+  std::map<dTriMeshDataID, KnownMesh> of_data;
+  bool keep = false;
+};
+
+KnownMeshes& known_meshes() noexcept {
+  static KnownMeshes& only = *new KnownMeshes;  // outlives what is static: that may still make geoms, or look at them
+  return only;
+}
 
 bool is_alike(const oddsBuildParams& a, const oddsBuildParams& b) noexcept {
   return a.volume == b.volume && a.leaf_triangles == b.leaf_triangles && a.tau == b.tau;
@@ -99,9 +111,9 @@ bool is_alike(const oddsBuildParams& a, const oddsBuildParams& b) noexcept {
 
 // Geoms of the same data share one hierarchy. The data's address alone says little: it may be that of other data now.
 std::shared_ptr<const PreparedMesh> prepared_like_before(dGeomID trimesh, const oddsBuildParams& params,
-                                                         const Known& known) {
-  const auto found = known.find(dGeomTriMeshGetData(trimesh));
-  if (found == known.end() || !is_alike(found->second.asked, params)) return nullptr;
+                                                         const KnownMeshes& known) {
+  const auto found = known.of_data.find(dGeomTriMeshGetData(trimesh));
+  if (found == known.of_data.end() || !is_alike(found->second.asked, params)) return nullptr;
   std::shared_ptr<const PreparedMesh> prepared = found->second.prepared.lock();
   if (prepared == nullptr) return nullptr;
   const std::size_t count = prepared->mesh().triangles().size();
@@ -119,15 +131,15 @@ std::shared_ptr<const PreparedMesh> prepared_like_before(dGeomID trimesh, const 
 }
 
 std::shared_ptr<const PreparedMesh> prepare(dGeomID trimesh, const oddsBuildParams& params) {
-  static std::mutex mutex;
-  static Known& known = *new Known;  // outlives what is static: that may still make geoms, or look at them
-  const std::lock_guard lock(mutex);
-  std::erase_if(known, [](const auto& entry) { return entry.second.prepared.expired(); });
+  KnownMeshes& known = known_meshes();
+  const std::lock_guard lock(known.mutex);
+  std::erase_if(known.of_data, [](const auto& entry) { return entry.second.prepared.expired(); });
   if (auto prepared = prepared_like_before(trimesh, params, known)) return prepared;
   IndexedMesh mesh = read_triangles(trimesh);
   oddsMeshData data;
   if (build_mesh_data(&data, std::move(mesh.vertices), std::move(mesh.triangles), &params) == 0) return nullptr;
-  known[dGeomTriMeshGetData(trimesh)] = {data.prepared, {params.volume, params.leaf_triangles, params.tau, nullptr}};
+  known.of_data[dGeomTriMeshGetData(trimesh)] = {
+      data.prepared, {params.volume, params.leaf_triangles, params.tau, nullptr}, known.keep ? data.prepared : nullptr};
   return data.prepared;
 }
 
@@ -141,6 +153,27 @@ void note_unreadable(dGeomID trimesh) {
 }  // namespace
 
 bool is_reading_trimesh() noexcept { return is_reading; }
+
+void note_destroyed(dTriMeshDataID data) noexcept {
+  try {
+    KnownMeshes& known = known_meshes();
+    const std::lock_guard lock(known.mutex);
+    known.of_data.erase(data);
+  } catch (...) {
+    count(statistics().caught);
+  }
+}
+
+void keep_hierarchies(bool keep) noexcept {
+  try {
+    KnownMeshes& known = known_meshes();
+    const std::lock_guard lock(known.mutex);
+    known.keep = keep;
+    for (auto& [data, mesh] : known.of_data) mesh.kept = keep ? mesh.prepared.lock() : nullptr;
+  } catch (...) {
+    count(statistics().caught);
+  }
+}
 
 Partner* adopt_trimesh(dGeomID trimesh, const oddsBuildParams* params, bool replace) noexcept {
   if (!has_triangles(trimesh)) {

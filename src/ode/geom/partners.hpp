@@ -61,6 +61,12 @@ class PartnerTable {
 [[nodiscard]] std::atomic<std::uint64_t>& changes_of(dTriMeshDataID data);
 /// The client has changed this data: no geom that was read from it is what it was.
 void note_changed(dTriMeshDataID data) noexcept;
+/// The client is about to destroy this data.
+void note_destroyed(dTriMeshDataID data) noexcept;
+
+/// True: the hierarchy of data is kept while there is no geom of it, for the next one, until note_destroyed; for a
+/// client of which every destruction is heard. False (default): it ends with the last geom.
+void keep_hierarchies(bool keep) noexcept;
 
 [[nodiscard]] PartnerTable& partner_table() noexcept;
 
