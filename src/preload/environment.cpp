@@ -5,7 +5,9 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <string_view>
+#include <system_error>
 #include <type_traits>
 
 namespace odds::preload {
@@ -72,6 +74,18 @@ unsigned read_partners(const char* text, std::vector<std::string>& mistakes) {
   return ODDS_TAKE_ALL;
 }
 
+// A program may go elsewhere before it ends, games to their data often before they initialise ODE: a file without a
+// folder is one where the program was started. Known from when this library is loaded.
+std::string place_of_report() {
+  const char* given = std::getenv("ODDS_REPORT");
+  const std::string report = given != nullptr && *given != '\0' ? given : "-";
+  if (report == "-" || report == "off") return report;
+  std::error_code unknown;  // then it stays what it is
+  const std::filesystem::path place = std::filesystem::absolute(report, unknown);
+  return unknown ? report : place.string();
+}
+const std::string report = place_of_report();
+
 }  // namespace
 
 Environment read_environment() {
@@ -83,8 +97,7 @@ Environment read_environment() {
   read_number("ODDS_BUDGET_US", 1e-3, 1e12, environment.takeover.budget_us, environment.mistakes);
   read_number("ODDS_WORK_UNITS", 0, 1e15, environment.takeover.work_units, environment.mistakes);
   read_number("ODDS_MAX_CONTACTS", 0, 8, environment.takeover.max_contacts, environment.mistakes);
-  const char* report = std::getenv("ODDS_REPORT");
-  environment.report = report != nullptr && *report != '\0' ? report : "-";
+  environment.report = report;
   return environment;
 }
 

@@ -10,7 +10,9 @@ namespace odds::preload {
 
 struct Environment {
   oddsTakeOverParams takeover;
-  std::string report;                 ///< file; "-": standard error; "off": none
+  /// A file, wherever the program has gone meanwhile; "-": standard error; "off": none. In it %p stands for the
+  /// process.
+  std::string report;
   std::vector<std::string> mistakes;  ///< what was wrong with a variable and what is used instead
 };
 

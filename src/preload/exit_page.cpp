@@ -1,6 +1,8 @@
 // Counters of collisions by partner, with a log-linear histogram of their times.
 #include "preload/exit_page.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -23,6 +25,10 @@ class Times {
     std::uint64_t seen = longest_.load(std::memory_order_relaxed);
     while (value > seen && !longest_.compare_exchange_weak(seen, value, std::memory_order_relaxed)) {
     }
+  }
+  void clear() noexcept {
+    for (Counter& bucket : buckets_) bucket.store(0, std::memory_order_relaxed);
+    longest_.store(0, std::memory_order_relaxed);
   }
   [[nodiscard]] double longest_us() const noexcept {
     return 1e-3 * static_cast<double>(longest_.load(std::memory_order_relaxed));
@@ -101,8 +107,25 @@ void note_collision(int partner_class, std::int64_t ns, int contacts, bool by_od
   }
 }
 
+bool has_collisions() noexcept {
+  const auto& all = all_counts();
+  return std::any_of(all.begin(), all.end(),
+                     [](const PartnerCounts& counts) { return counts.collisions.load(std::memory_order_relaxed) > 0; });
+}
+
+void forget_collisions() noexcept {
+  for (PartnerCounts& counts : all_counts()) {
+    for (Counter* counter : {&counts.collisions, &counts.touching, &counts.contacts, &counts.by_ode}) {
+      counter->store(0, std::memory_order_relaxed);
+    }
+    counts.times.clear();
+  }
+  oddsResetStats();
+}
+
 std::string exit_page() {
-  std::string page = "odds: collisions of dTriMesh geoms in this run\n";
+  std::string page;
+  print(page, "odds: collisions of dTriMesh geoms in this run (process %ld)\n", static_cast<long>(getpid()));
   print(page, "%-9s %11s %11s %8s %9s %9s %9s %9s %11s\n", "with", "collisions", "touching", "contacts", "p50 us",
         "p99 us", "p99.9 us", "max us", "left to ODE");
   for (const PartnerCounts& counts : all_counts()) {

@@ -1,11 +1,15 @@
 // The functions of ODE that libodds_preload.so puts itself in front of: a program that runs under LD_PRELOAD gets a
 // takeover of its dTriMesh geoms without being changed or built anew. Hierarchies are built where the program makes its
 // meshes, not where they collide.
+#include <pthread.h>
+#include <unistd.h>
+
 #include <atomic>
 #include <cstdio>
 #include <exception>
 #include <fstream>
 #include <mutex>
+#include <string>
 #include <utility>
 
 #include "ode/geom/partners.hpp"
@@ -32,6 +36,23 @@ class Inside {
   bool outer_;
 };
 
+std::atomic<bool> forked{false};
+
+// What the parent has collided it tells itself.
+void after_fork() noexcept {
+  forked.store(true, std::memory_order_relaxed);
+  forget_collisions();
+}
+
+// "page.%p" is a file for each process: those that a program starts inherit the variable.
+std::string with_process(std::string path) {
+  const std::string number = std::to_string(getpid());
+  for (std::size_t at = 0; (at = path.find("%p", at)) != std::string::npos; at += number.size()) {
+    path.replace(at, 2, number);
+  }
+  return path;
+}
+
 // Reads the environment once; says the page when the program ends.
 class Session {
  public:
@@ -40,6 +61,7 @@ class Session {
       std::fprintf(stderr, "warning: libodds_preload: %s\n", mistake.c_str());
     }
     ode::observe_takeover(&note_collision);
+    pthread_atfork(nullptr, nullptr, &after_fork);
     ode::keep_hierarchies(true);  // for programs that make a geom of the same data again and again
   }
   Session(const Session&) = delete;
@@ -64,16 +86,18 @@ class Session {
  private:
   void say() const {
     if (environment_.report == "off") return;
+    if (forked.load(std::memory_order_relaxed) && !has_collisions()) return;  // would take the place of the parent's
     const std::string page = exit_page();
     if (environment_.report == "-") {
       std::fputs(page.c_str(), stderr);
       return;
     }
-    std::ofstream file(environment_.report);
+    const std::string path = with_process(environment_.report);
+    std::ofstream file(path);
     file << page;
     if (!file.flush()) {
       std::fprintf(stderr, "warning: libodds_preload: %s cannot be written; set ODDS_REPORT to another file\n%s",
-                   environment_.report.c_str(), page.c_str());
+                   path.c_str(), page.c_str());
     }
   }
 

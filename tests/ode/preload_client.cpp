@@ -3,8 +3,11 @@
 // With DEFORM set in the environment it tells ODE that it has moved the ground's vertices, with LATE_DATA it collides a
 // mesh that could not be read when it was made. With CYCLES it has used ODE several times before, with a class of geoms
 // of its own, and with COMMAS it sets a locale whose numbers have commas, if there is one. With ONE_RAY it collides
-// nothing but one ray with one mesh.
+// nothing but one ray with one mesh; with FORKS it does so in a folder of its own choice, and has two children that
+// leave as it does: one collides nothing, one a ray of its own.
 #include <ode/ode.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <clocale>
@@ -115,6 +118,21 @@ int main() {
   dAllocateODEDataForThread(static_cast<unsigned>(dAllocateMaskAll));
   if (std::getenv("ONE_RAY") != nullptr) {
     std::printf("one_ray %d\n", contacts_of_one_ray());
+    dCloseODE();
+    return 0;
+  }
+  if (std::getenv("FORKS") != nullptr) {
+    std::printf("one_ray %d\n", contacts_of_one_ray());
+    std::fflush(stdout);
+    if (chdir("/") != 0) return 1;
+    for (const bool collides : {false, true}) {
+      const pid_t child = fork();
+      if (child == 0) {
+        if (collides) contacts_of_one_ray();
+        std::exit(0);
+      }
+      waitpid(child, nullptr, 0);
+    }
     dCloseODE();
     return 0;
   }

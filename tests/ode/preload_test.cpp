@@ -147,6 +147,37 @@ TEST_F(Preload, TheFirstRayOfAProcessMeetsWhatIsThere) {
   EXPECT_NE(text.find("others ended by their budget: 0"), std::string::npos) << text;
 }
 
+// A child told of its parent's collisions as well, one without any too, and in the place of the parent's page; and a
+// file without a folder was where the program had gone.
+TEST_F(Preload, EveryProcessTellsOfItsOwnCollisionsWhereItWasStarted) {
+  const auto occurrences = [](const std::string& text, const std::string& part) {
+    int count = 0;
+    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+    return count;
+  };
+  const std::string one_ray = "\nray                 1 ";
+  const ClientRun told = run("FORKS=1 ODDS_REPORT=-", true);
+  ASSERT_EQ(told.status, 0) << told.output;
+  EXPECT_EQ(occurrences(told.output, "collisions of dTriMesh geoms"), 2) << told.output;
+  EXPECT_EQ(occurrences(told.output, one_ray), 2) << told.output;
+
+  const std::filesystem::path folder = page.string() + "_pages";
+  std::filesystem::create_directories(folder);
+  const ClientRun written = run("--chdir=" + folder.string() + " FORKS=1 ODDS_REPORT=page.%p", true);
+  EXPECT_EQ(written.status, 0) << written.output;
+  int pages = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    std::ifstream file(entry.path());
+    const std::string text(std::istreambuf_iterator<char>(file), {});
+    EXPECT_EQ(occurrences(text, one_ray), 1) << text;
+    const std::string process = entry.path().filename().string().substr(std::string("page.").size());
+    EXPECT_NE(text.find("process " + process + ")"), std::string::npos) << entry.path() << text;
+    ++pages;
+  }
+  EXPECT_EQ(pages, 2);
+  std::filesystem::remove_all(folder);
+}
+
 // ODE was held open, and its room for classes filled up.
 TEST_F(Preload, AProgramMayCloseOdeAndUseItAgainWithAClassOfItsOwn) {
   const ClientRun alone = run("CYCLES=1", false);
