@@ -6,10 +6,12 @@
 
 #include <atomic>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <fstream>
 #include <mutex>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "ode/geom/partners.hpp"
@@ -112,10 +114,36 @@ Session& session() {
 
 std::atomic<int> initialised{0};  // by the program, which has not closed it as often yet
 
+// ODE's own functions come here where they call each other, also those of a program that has found them by itself, of
+// which we hear in no other way.
+class NotTakenOver {
+ public:
+  NotTakenOver() = default;
+  NotTakenOver(const NotTakenOver&) = delete;
+  NotTakenOver& operator=(const NotTakenOver&) = delete;
+  ~NotTakenOver() {
+    if (!meshes_.load(std::memory_order_relaxed) || initialised_.load(std::memory_order_relaxed)) return;
+    const char* const report = std::getenv("ODDS_REPORT");
+    if (report != nullptr && std::string_view(report) == "off") return;
+    std::fputs(
+        "warning: libodds_preload: no takeover: the program looked up ODE's functions by itself (dlsym), or never "
+        "initialised ODE\n",
+        stderr);
+  }
+  void note_mesh() noexcept { meshes_.store(true, std::memory_order_relaxed); }
+  void note_initialised() noexcept { initialised_.store(true, std::memory_order_relaxed); }
+
+ private:
+  std::atomic<bool> meshes_{false};
+  std::atomic<bool> initialised_{false};
+};
+NotTakenOver not_taken_over;
+
 // After every initialisation, so that a takeover outlives a real close of ODE.
 void after_init() noexcept {
   if (inside) return;
   initialised.fetch_add(1, std::memory_order_relaxed);
+  not_taken_over.note_initialised();
   const Inside guard;
   try {
     session().take_over();
@@ -161,6 +189,7 @@ void after_convex(dGeomID convex, const dReal* points, unsigned point_count, con
 template <class... Rest>
 void change(void (*next)(dTriMeshDataID, Rest...), dTriMeshDataID data, Rest... rest) {
   next(data, rest...);
+  not_taken_over.note_mesh();
   ode::note_changed(data);
 }
 

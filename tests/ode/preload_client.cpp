@@ -4,7 +4,9 @@
 // mesh that could not be read when it was made. With CYCLES it has used ODE several times before, with a class of geoms
 // of its own, and with COMMAS it sets a locale whose numbers have commas, if there is one. With ONE_RAY it collides
 // nothing but one ray with one mesh; with FORKS it does so in a folder of its own choice, and has two children that
-// leave as it does: one collides nothing, one a ray of its own.
+// leave as it does: one collides nothing, one a ray of its own. With LOOKED_UP it
+// finds ODE's functions by itself.
+#include <dlfcn.h>
 #include <ode/ode.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -99,6 +101,23 @@ int contacts_of_one_ray() {
   return count;
 }
 
+// Makes mesh data as a program does that is not linked to ODE.
+bool look_up_and_build() {
+  Dl_info library;
+  if (dladdr(dlsym(RTLD_DEFAULT, "dWorldCreate"), &library) == 0) return false;
+  void* const ode = dlopen(library.dli_fname, RTLD_NOW);
+  if (ode == nullptr) return false;
+  const auto init = reinterpret_cast<decltype(&dInitODE2)>(dlsym(ode, "dInitODE2"));
+  const auto create = reinterpret_cast<decltype(&dGeomTriMeshDataCreate)>(dlsym(ode, "dGeomTriMeshDataCreate"));
+  const auto build =
+      reinterpret_cast<decltype(&dGeomTriMeshDataBuildSimple)>(dlsym(ode, "dGeomTriMeshDataBuildSimple"));
+  if (init == nullptr || create == nullptr || build == nullptr || init(0) == 0) return false;
+  static const std::vector<dReal> corners = {0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0};
+  static const std::vector<dTriIndex> triangle = {0, 1, 2};
+  build(create(), corners.data(), 3, triangle.data(), 3);
+  return true;
+}
+
 void use_a_class_of_its_own() {
   dInitODE2(0);
   dGeomClass description = {};
@@ -114,6 +133,7 @@ void use_a_class_of_its_own() {
 int main() {
   if (std::getenv("COMMAS") != nullptr && std::setlocale(LC_ALL, "de_DE.UTF-8") != nullptr) std::puts("commas");
   for (int i = 0; i < 6 && std::getenv("CYCLES") != nullptr; ++i) use_a_class_of_its_own();
+  if (std::getenv("LOOKED_UP") != nullptr) return look_up_and_build() ? 0 : 1;
   dInitODE2(0);
   dAllocateODEDataForThread(static_cast<unsigned>(dAllocateMaskAll));
   if (std::getenv("ONE_RAY") != nullptr) {

@@ -147,6 +147,18 @@ TEST_F(Preload, TheFirstRayOfAProcessMeetsWhatIsThere) {
   EXPECT_NE(text.find("others ended by their budget: 0"), std::string::npos) << text;
 }
 
+// Nothing was said, as if it had been taken over.
+TEST_F(Preload, AProgramThatLooksUpOdesFunctionsIsToldThatItIsNotTakenOver) {
+  const std::string sentence = "looked up ODE's functions by itself";
+  const ClientRun told = run("LOOKED_UP=1 ODDS_REPORT=" + page.string(), true);
+  ASSERT_EQ(told.status, 0) << told.output;
+  EXPECT_NE(told.output.find(sentence), std::string::npos) << told.output;
+  const ClientRun quiet = run("LOOKED_UP=1 ODDS_REPORT=off", true);
+  EXPECT_EQ(quiet.output.find(sentence), std::string::npos) << quiet.output;
+  const ClientRun linked = run("ONE_RAY=1 ODDS_REPORT=-", true);
+  EXPECT_EQ(linked.output.find(sentence), std::string::npos) << linked.output;
+}
+
 // A child told of its parent's collisions as well, one without any too, and in the place of the parent's page; and a
 // file without a folder was where the program had gone.
 TEST_F(Preload, EveryProcessTellsOfItsOwnCollisionsWhereItWasStarted) {
