@@ -223,7 +223,8 @@ class Spending {
     if (now - before > units * unit_ns_ && units >= least_patience) {
       unit_ns_ = std::min((now - before) / units, slowest_unit_ns);
     }
-    const std::int64_t end = part == Part::all ? search_deadline_ns_ : std::min(start_deadline_ns_, search_deadline_ns_);
+    const std::int64_t end =
+        part == Part::all ? search_deadline_ns_ : std::min(start_deadline_ns_, search_deadline_ns_);
     const std::int64_t left = (end - near_end_ns - now) / unit_ns_;
     patience_ = left >= least_patience ? static_cast<std::uint32_t>(std::min<std::int64_t>(left, most_patience)) : 0;
     return now;

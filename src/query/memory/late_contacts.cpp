@@ -121,7 +121,9 @@ bool LateContacts::slide(const Contact& contact, double size) const noexcept {
   return math::motion_of(contact.position, pose_last_, pose_now_).norm() > tolerances::late_still * size;
 }
 
-bool LateContacts::turn() const noexcept { return math::turn_between(pose_last_, pose_now_) > tolerances::late_turning; }
+bool LateContacts::turn() const noexcept {
+  return math::turn_between(pose_last_, pose_now_) > tolerances::late_turning;
+}
 
 void LateContacts::ask(const math::Pose& pose_b_in_a, const Request& request, const Pair::Implementation& pair,
                        Press press) noexcept {

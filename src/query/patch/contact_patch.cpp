@@ -281,8 +281,8 @@ Patch PatchBuilder::Scratch::make_patch(const PatchInput& input, const patch::Ri
 }
 
 Patch PatchBuilder::Scratch::patch_along(const Vec3& normal, const PatchInput& input, const patch::RimSums& sums,
-                                         Indices indices, const Effort& effort, Watch& watch,
-                                         patch::ExitRanges exits, double most_depth) noexcept {
+                                         Indices indices, const Effort& effort, Watch& watch, patch::ExitRanges exits,
+                                         double most_depth) noexcept {
   Patch made;
   made.lower = sums.lower;
   made.upper = sums.upper;
