@@ -62,6 +62,11 @@ class Session {
     for (const std::string& mistake : environment_.mistakes) {
       std::fprintf(stderr, "warning: libodds_preload: %s\n", mistake.c_str());
     }
+    fits_ = dCheckConfiguration("ODE_double_precision") != 0;
+    if (!fits_) {
+      std::fputs("warning: libodds_preload: no takeover: this ODE was built in single precision\n", stderr);
+      return;
+    }
     ode::observe_takeover(&note_collision);
     pthread_atfork(nullptr, nullptr, &after_fork);
     ode::keep_hierarchies(true);  // for programs that make a geom of the same data again and again
@@ -80,6 +85,7 @@ class Session {
     std::call_once(warmed_, [this] { warm_up(environment_.takeover); });
   }
   void take_over() noexcept {
+    if (!fits_) return;
     if (oddsTakeOverTriMesh(&environment_.takeover) == 0) {
       std::fprintf(stderr, "warning: libodds_preload: no takeover: %s\n", oddsGetLastError());
     }
@@ -87,7 +93,7 @@ class Session {
 
  private:
   void say() const {
-    if (environment_.report == "off") return;
+    if (!fits_ || environment_.report == "off") return;
     if (forked.load(std::memory_order_relaxed) && !has_collisions()) return;  // would take the place of the parent's
     const std::string page = exit_page();
     if (environment_.report == "-") {
@@ -104,6 +110,7 @@ class Session {
   }
 
   Environment environment_;
+  bool fits_ = true;  // the program's ODE counts in doubles, as we do
   std::once_flag warmed_;
 };
 
@@ -179,7 +186,7 @@ void after_mesh(dGeomID trimesh) noexcept {
 
 void after_convex(dGeomID convex, const dReal* points, unsigned point_count, const unsigned* polygons,
                   unsigned face_count) noexcept {
-  if (inside || convex == nullptr) return;
+  if (inside || convex == nullptr || oddsGetClass() < 0) return;
   const Inside guard;
   oddsForgetGeom(convex);
   oddsRegisterConvex(convex, points, point_count, polygons, face_count);

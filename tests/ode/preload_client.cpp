@@ -16,7 +16,14 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <vector>
+
+// In front of ODE's: with SINGLE it tells of an ODE built in single precision.
+int dCheckConfiguration(const char* token) {
+  if (std::strcmp(token, "ODE_double_precision") == 0) return std::getenv("SINGLE") == nullptr ? 1 : 0;
+  return 1;
+}
 
 namespace {
 

@@ -147,6 +147,17 @@ TEST_F(Preload, TheFirstRayOfAProcessMeetsWhatIsThere) {
   EXPECT_NE(text.find("others ended by their budget: 0"), std::string::npos) << text;
 }
 
+// ODE's own default. Its numbers were read as doubles.
+TEST_F(Preload, AnOdeInSinglePrecisionIsLeftAloneAndThatIsSaid) {
+  const ClientRun alone = run("ODDS_REPORT=off", false);
+  const ClientRun with = run("SINGLE=1 ODDS_REPORT=" + page.string(), true);
+  ASSERT_EQ(with.status, 0) << with.output;
+  EXPECT_NE(with.output.find("single precision"), std::string::npos) << with.output;
+  EXPECT_EQ(with.contacts, alone.contacts);
+  EXPECT_EQ(with.moved_mm, alone.moved_mm);
+  EXPECT_FALSE(std::filesystem::exists(page));
+}
+
 // Nothing was said, as if it had been taken over.
 TEST_F(Preload, AProgramThatLooksUpOdesFunctionsIsToldThatItIsNotTakenOver) {
   const std::string sentence = "looked up ODE's functions by itself";
