@@ -321,5 +321,34 @@ TEST_F(CapsuleTest, ThroughAFinePlateItTakesTheShorterWayOut) {
   }
 }
 
+// The axis cuts an edge off. It is not pushed until its far end is over the plane of the face that it leaves first.
+TEST_F(CapsuleTest, WhoseAxisGoesInOverAnEdgeIsAsDeepAsItIsThere) {
+  const dGeomID box = mesh_geom(box_shape(1, 1, 1, 4), space);
+  const double radius = 0.05;
+  for (const double length : {0.4, 1.0}) {
+    const dGeomID capsule = dCreateCapsule(space, radius, length);
+    for (const double tilt : {20.0, 45.0, 70.0}) {
+      for (const double turn : {0.0, 30.0}) {
+        const double angle = tilt * M_PI / 180.0;
+        // Across the edge at x = z = 0.5; turned about the way out.
+        const Vec3 out(std::sin(angle), 0.0, std::cos(angle));
+        const Mat3 turned = Eigen::AngleAxisd(turn * M_PI / 180.0, out).toRotationMatrix();
+        const Vec3 axis = turned * Vec3(std::cos(angle), 0.0, -std::sin(angle));
+        rotate(capsule, Vec3::UnitZ().cross(axis).normalized(), std::acos(axis.z()));
+        for (const double inside : {-0.01, -1e-4, 1e-9, 1e-4, 0.01, 0.03}) {
+          const Vec3 place = Vec3(0.5, 0.1, 0.5) - inside * out;
+          dGeomSetPosition(capsule, place.x(), place.y(), place.z());
+          const auto contacts = collide(capsule, box);
+          expect_sound(contacts, capsule, box);
+          ASSERT_FALSE(contacts.empty()) << tilt << ", " << turn << ", " << inside;
+          EXPECT_NEAR(contacts[0].depth, inside + radius, 1e-9) << tilt << ", " << turn << ", " << inside;
+          EXPECT_NEAR(normal_of(contacts[0]).dot(out), 1.0, 1e-9) << tilt << ", " << turn << ", " << inside;
+          EXPECT_LT((position_of(contacts[0]) - Vec3(0.5, 0.1, 0.5)).norm(), 1e-9);
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace odds::test

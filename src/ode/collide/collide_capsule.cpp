@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "ode/collide/capsule_over_edge.hpp"
 #include "ode/collide/capsule_places.hpp"
 #include "ode/collide/contact_writer.hpp"
 #include "ode/collide/convex_contacts.hpp"
@@ -97,6 +98,19 @@ void add_ends_behind(const Capsule& capsule, const Vec3& on_surface, const Vec3&
   }
 }
 
+// Both ends are outside, on different sides of an edge: the edge, and each end where its own side holds it.
+void add_over_edge(const Capsule& capsule, const WayOverEdge& way, CapsuleContacts& contacts) noexcept {
+  contacts.add({way.on_edge, way.out, way.depth + capsule.radius, way.in.place->triangle});
+  const std::array<const WayOverEdge::Side*, 2> sides = {&way.in, &way.back};
+  for (std::size_t end = 0; end < sides.size(); ++end) {
+    const auto& [place, out] = *sides[end];
+    const double below = out.dot(place->on_surface - capsule.ends[end]);
+    const Vec3 on_surface = capsule.ends[end] + below * out;
+    if (contacts.near(on_surface, separate_end * capsule.radius)) continue;
+    contacts.add({on_surface, out, below + capsule.radius, place->triangle});
+  }
+}
+
 // How far the capsule's axis must go along `out` to be clear of a plane through `on_surface`.
 double depth_behind(const Capsule& capsule, const Vec3& on_surface, const Vec3& out) noexcept {
   return std::max(out.dot(on_surface - capsule.ends[0]), out.dot(on_surface - capsule.ends[1]));
@@ -133,8 +147,8 @@ std::optional<NearestSurface> way_out_sideways(const PreparedMesh& mesh, const C
   return best;
 }
 
-// The axis goes through the surface: of all crossings the one whose plane is left soonest tells the way out. A sheet
-// is left to the side of the capsule's middle.
+// The axis goes through the surface: of all crossings the one whose plane is left soonest tells the way out, or the
+// edge that it cuts off. A sheet is left to the side of the capsule's middle.
 std::optional<Vec3> add_crossing(const PreparedMesh& mesh, const Capsule& capsule, const CapsulePlaces& places,
                                  Limit& limit, CapsuleContacts& contacts) noexcept {
   const CapsulePlace* best = nullptr;
@@ -152,11 +166,19 @@ std::optional<Vec3> add_crossing(const PreparedMesh& mesh, const Capsule& capsul
     best_out = out;
   }
   if (best == nullptr) return std::nullopt;
+  std::optional<WayOverEdge> over_edge;
+  if (mesh.closed && !places.cut_off) over_edge = way_over_edge(mesh, capsule, places);
+  if (over_edge && !(over_edge->depth < least)) over_edge.reset();
+  if (over_edge) least = over_edge->depth;
   if (mesh.closed && least > capsule.radius) {
     if (const auto sideways = way_out_sideways(mesh, capsule, places, least, limit)) {
       add_ends_behind(capsule, sideways->point, sideways->outward, sideways->triangle, contacts);
       return sideways->outward;
     }
+  }
+  if (over_edge) {
+    add_over_edge(capsule, *over_edge, contacts);
+    return over_edge->out;
   }
   add_ends_behind(capsule, best->on_surface, best_out, best->triangle, contacts);
   return best_out;
