@@ -3,11 +3,12 @@
 // With DEFORM set in the environment it tells ODE that it has moved the ground's vertices, with LATE_DATA it collides a
 // mesh that could not be read when it was made. With CYCLES it has used ODE several times before, with a class of geoms
 // of its own, and with COMMAS it sets a locale whose numbers have commas, if there is one. With ONE_RAY it collides
-// nothing but one ray with one mesh; with FORKS it does so in a folder of its own choice, and has two children that
-// leave as it does: one collides nothing, one a ray of its own. With LOOKED_UP it
-// finds ODE's functions by itself.
+// nothing but one ray with one mesh, and counts the pages that the system had to bring for that; with FORKS it does so
+// in a folder of its own choice, and has two children that leave as it does: one collides nothing, one a ray of its
+// own. With LOOKED_UP it finds ODE's functions by itself.
 #include <dlfcn.h>
 #include <ode/ode.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -96,16 +97,29 @@ int contacts_of_late_data() {
   return count;
 }
 
-int contacts_of_one_ray() {
-  dContactGeom found[8];
+long page_faults() {
+  rusage usage = {};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_minflt + usage.ru_majflt;
+}
+
+struct OneRay {
+  int contacts;
+  long page_faults;  // of the collision
+};
+
+OneRay collide_one_ray() {
+  dContactGeom found[8] = {};
   const Mesh floor(4, 4, 1);
   const dGeomID ground = dCreateTriMesh(nullptr, floor.data, nullptr, nullptr, nullptr);
   const dGeomID ray = dCreateRay(nullptr, 1);
   dGeomRaySet(ray, 0.1, 0.2, 1, 0, 0, -1);  // ends within
+  const long before = page_faults();
   const int count = dCollide(ground, ray, 8, found, sizeof(dContactGeom));
+  const long after = page_faults();
   dGeomDestroy(ray);
   dGeomDestroy(ground);
-  return count;
+  return {count, after - before};
 }
 
 // Makes mesh data as a program does that is not linked to ODE.
@@ -144,18 +158,19 @@ int main() {
   dInitODE2(0);
   dAllocateODEDataForThread(static_cast<unsigned>(dAllocateMaskAll));
   if (std::getenv("ONE_RAY") != nullptr) {
-    std::printf("one_ray %d\n", contacts_of_one_ray());
+    const OneRay ray = collide_one_ray();
+    std::printf("one_ray %d page_faults %ld\n", ray.contacts, ray.page_faults);
     dCloseODE();
     return 0;
   }
   if (std::getenv("FORKS") != nullptr) {
-    std::printf("one_ray %d\n", contacts_of_one_ray());
+    std::printf("one_ray %d\n", collide_one_ray().contacts);
     std::fflush(stdout);
     if (chdir("/") != 0) return 1;
     for (const bool collides : {false, true}) {
       const pid_t child = fork();
       if (child == 0) {
-        if (collides) contacts_of_one_ray();
+        if (collides) collide_one_ray();
         std::exit(0);
       }
       waitpid(child, nullptr, 0);

@@ -1,4 +1,5 @@
 // The preload library in a program that knows nothing of it.
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -127,16 +128,22 @@ TEST_F(Preload, NumbersAreReadAlikeInEveryLocale) {
   EXPECT_EQ(with.output.find("ODDS_BUDGET_US"), std::string::npos) << with.output;
 }
 
-// Its code had never run: finding it took longer than the budget, and the ray met nothing. One run in which the machine
-// was not elsewhere meanwhile is enough.
-TEST_F(Preload, TheFirstRayOfAProcessMeetsWhatIsThere) {
-  int met = 0;
-  for (int i = 0; i < 20 && met == 0; ++i) {
-    const ClientRun client = run("ONE_RAY=1 ODDS_BUDGET_US=30 ODDS_REPORT=" + page.string(), true);
+// Its code had never run: the system brought its pages one by one, which took longer than a budget, and the ray met
+// nothing. Three at least without warming up; with it one at most, unless the system takes them away again.
+TEST_F(Preload, TheFirstRayOfAProcessFindsItsCodeReady) {
+  long fewest = 1000;
+  for (int i = 0; i < 10 && fewest > 1; ++i) {
+    const ClientRun client = run("ONE_RAY=1 ODDS_BUDGET_US=1e9 ODDS_REPORT=" + page.string(), true);
     ASSERT_EQ(client.status, 0) << client.output;
-    if (client.output.find("one_ray 1") != std::string::npos) ++met;
+    int contacts = -1;
+    long page_faults = -1;
+    const std::size_t told = client.output.find("one_ray ");
+    ASSERT_NE(told, std::string::npos) << client.output;
+    ASSERT_EQ(std::sscanf(client.output.c_str() + told, "one_ray %d page_faults %ld", &contacts, &page_faults), 2);
+    EXPECT_EQ(contacts, 1);
+    fewest = std::min(fewest, page_faults);
   }
-  EXPECT_EQ(met, 1);
+  EXPECT_LE(fewest, 1);
   const std::string text = read_page();
   const std::size_t row = text.find("\nray ");
   ASSERT_NE(row, std::string::npos) << text;
