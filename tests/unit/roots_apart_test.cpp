@@ -1,11 +1,16 @@
 // Bodies whose own boxes are apart, though boxes along the world's axes are not: no search is needed.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <memory>
 
 #include "odds/math/random.hpp"
 #include "odds/mesh/made/box.hpp"
 #include "odds/query/pair.hpp"
+#include "query/shape_data.hpp"
+#include "query/wide/encounter.hpp"
 
 namespace odds::query {
 namespace {
@@ -66,6 +71,53 @@ TEST(RootsApart, AreNeverSaidOfRodsThatMeet) {
     EXPECT_GT(hits, 300);
     EXPECT_GT(without_search, 300);
   }
+}
+
+/// How far two boxes about their origins are apart along the best of the fifteen axes, metres: negative if along none.
+/// Those across two edges are no longer than 1. `by_face`: along the best of the faces' own.
+double widest_gap(const Vec3& half_a, const Vec3& half_b, const math::Pose& b_in_a, double& by_face) {
+  double widest = -1e300;
+  const auto look_along = [&](const Vec3& axis) {
+    const double reach = half_a.dot(axis.cwiseAbs()) + half_b.dot((b_in_a.rotation.transpose() * axis).cwiseAbs());
+    widest = std::max(widest, std::abs(axis.dot(b_in_a.translation)) - reach);
+  };
+  for (int i = 0; i < 3; ++i) {
+    look_along(Vec3::Unit(i));
+    look_along(b_in_a.rotation.col(i));
+  }
+  by_face = widest;
+  for (int k = 0; k < 9; ++k) look_along(Vec3::Unit(k / 3).cross(b_in_a.rotation.col(k % 3)));
+  return widest;
+}
+
+// Along every axis.
+TEST(RootsApart, AreSaidWhereverThereIsAGap) {
+  math::Random random(7, 1);
+  const std::array<Vec3, 3> sides = {Vec3(1.0, 0.8, 1.2), Vec3(2.0, 0.3, 0.05), Vec3(0.1, 0.2, 3.0)};
+  const std::array shapes = {rod(sides[0]), rod(sides[1]), rod(sides[2])};
+  const auto tree = [](const Shape& shape) -> const auto& { return std::get<tree::WideTree>(shape.data().tree); };
+  int said = 0;
+  int by_edges = 0;
+  constexpr int poses = 30'000;
+  for (std::size_t k = 0; k < poses; ++k) {
+    math::Pose pose;
+    const double distance = 1.5 * random.uniform();
+    pose.translation = distance * random.direction();
+    const double angle = k % 5 != 0 ? 6.3 * random.uniform() : 0.0;
+    pose.rotation = Quat(Eigen::AngleAxisd(angle, random.direction())).toRotationMatrix();
+    const std::size_t i = k % 3;
+    const std::size_t j = k / 3 % 3;
+    double by_face = 0.0;
+    const double gap = widest_gap(0.5 * sides[i], 0.5 * sides[j], pose, by_face);
+    if (std::abs(gap - 2e-4) <= 2e-4) continue;
+    EXPECT_EQ(wide::Encounter::are_roots_apart(tree(*shapes[i]), tree(*shapes[j]), pose), gap > 0.0)
+        << k << ": " << gap;
+    if (gap > 0.0) ++said;
+    if (gap > 0.0 && by_face < 0.0) ++by_edges;
+  }
+  EXPECT_GT(said, poses / 4);
+  EXPECT_LT(said, poses * 3 / 4);
+  EXPECT_GT(by_edges, 100);
 }
 
 }  // namespace

@@ -28,10 +28,14 @@ struct RelativePose {
     RelativePose pose;
     pose.rotation = b_in_a.rotation.cast<float>();
     pose.translation = b_in_a.translation.cast<float>();
-    pose.abs_rotation = pose.rotation.cwiseAbs().array() + 2.4e-7F;
-    pose.margin = std::max(static_cast<float>(reach * 16.0 * 0x1p-24), least_margin);
+    pose.abs_rotation = pose.rotation.cwiseAbs().array() + more_than_rounding;
+    pose.margin = margin_of(reach);
     return pose;
   }
+  [[nodiscard]] static float margin_of(double reach) noexcept {
+    return std::max(static_cast<float>(reach * 16.0 * 0x1p-24), least_margin);
+  }
+  static constexpr float more_than_rounding = 2.4e-7F;  ///< of a rotation's entry
 };
 
 }  // namespace odds::volume

@@ -1,7 +1,9 @@
 #include "query/wide/encounter.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 #include "odds/math/float_sums.hpp"
 #include "query/wide/searches.hpp"
@@ -9,16 +11,43 @@
 namespace odds::query::wide {
 namespace {
 
-Turn make_turn(const volume::RelativePose& pose) noexcept {
-  const auto vector = [](const auto& v) { return Vector{v[0], v[1], v[2], 0.0F}; };
+using Bits = std::int32_t __attribute__((vector_size(16)));
+
+Vector magnitude(Vector v) noexcept { return std::bit_cast<Vector>(std::bit_cast<Bits>(v) & 0x7FFFFFFF); }
+Vector yzx(Vector v) noexcept { return Vector{v[1], v[2], v[0], v[3]}; }
+Vector zxy(Vector v) noexcept { return Vector{v[2], v[0], v[1], v[3]}; }
+bool any(Bits set) noexcept { return ((set[0] | set[1]) | set[2]) != 0; }
+
+Vector narrowed(double x, double y, double z) noexcept {
+  using Doubles = double __attribute__((vector_size(32)));
+  return __builtin_convertvector((Doubles{x, y, z, 0.0}), Vector);
+}
+Vector sum(const Vector (&of)[3], Vector weights) noexcept {
+  return (of[0] * weights[0] + of[1] * weights[1]) + of[2] * weights[2];
+}
+Turn turn_of(const math::Pose& pose) noexcept {
+  const Mat3& r = pose.rotation;
   Turn turn;
   for (int j = 0; j < 3; ++j) {
-    turn.column[j] = vector(pose.rotation.col(j));
-    turn.abs_column[j] = vector(pose.abs_rotation.col(j));
+    turn.column[j] = narrowed(r(0, j), r(1, j), r(2, j));
+    turn.abs_column[j] = magnitude(turn.column[j]) + volume::RelativePose::more_than_rounding;
   }
-  turn.t = vector(pose.translation);
+  turn.t = narrowed(pose.translation[0], pose.translation[1], pose.translation[2]);
   return turn;
 }
+/// The i-th numbers.
+Vector across(const Vector (&of)[3], int i) noexcept { return Vector{of[0][i], of[1][i], of[2][i], 0.0F}; }
+
+/// The box of a tree's root.
+struct RootBox {
+  Vector center;
+  Vector half;
+  explicit RootBox(const tree::WideTree& tree) noexcept {
+    const LaneNumbers numbers(*tree.nodes(), tree::WideTree::root);
+    center = Vector{numbers.center(0), numbers.center(1), numbers.center(2), 0.0F};
+    half = Vector{numbers.half(0), numbers.half(1), numbers.half(2), 0.0F};
+  }
+};
 
 }  // namespace
 
@@ -35,21 +64,37 @@ Encounter::Encounter(const tree::WideTree& a, const tree::WideTree& b, const Pos
   const double reach = std::max(a.reach() + b.reach(), pose.translation.norm());
   // Sums of up to 50 roundings of `reach` stand for a gap along a slab: twice the margin that single boxes need.
   relative_ = volume::RelativePose::make(pose, 4.0 * reach);
-  turns_[0] = make_turn(relative_);
-  turns_[1] = make_turn(volume::RelativePose::make(pose.inverse(), 4.0 * reach));
+  turns_[0] = turn_of(pose);
+  turns_[1] = turn_of(pose.inverse());
   margin_ = relative_.margin;
 }
 
+// As volume::faces_overlap and edges_overlap, but an axis in each lane: every query of bodies that may be near asks it.
 bool Encounter::are_roots_apart(const tree::WideTree& a, const tree::WideTree& b, const math::Pose& b_in_a) noexcept {
-  const volume::Aabb box_a = box(a, tree::WideTree::root);
-  const volume::Aabb box_b = box(b, tree::WideTree::root);
   const double reach = std::max(a.reach() + b.reach(), b_in_a.translation.norm());
-  const volume::RelativePose relative = volume::RelativePose::make(b_in_a, reach);
-  const volume::BoxPairView view = view_of(box_a, box_b, relative);
   // Rotations that are only just ones stretch boxes.
-  const float margin = relative.margin + static_cast<float>(8.0 * tolerances::pose_orthonormality * reach);
-  return !faces_overlap(box_a.half_, box_b.half_, view, margin) ||
-         !edges_overlap(box_a.half_, box_b.half_, view, margin);
+  const float margin =
+      volume::RelativePose::margin_of(reach) + static_cast<float>(8.0 * tolerances::pose_orthonormality * reach);
+  const RootBox of_a(a);
+  const RootBox of_b(b);
+  const auto [turn, steep, translation] = turn_of(b_in_a);
+  const Vector shift = (sum(turn, of_b.center) + translation) - of_a.center;
+  const Vector gaps_a = magnitude(shift) - (of_a.half + sum(steep, of_b.half));
+  if (any(gaps_a > margin)) return true;
+  const Vector back[3] = {across(turn, 0), across(turn, 1), across(turn, 2)};
+  const Vector steep_back[3] = {across(steep, 0), across(steep, 1), across(steep, 2)};
+  const Vector gaps_b = magnitude(sum(back, shift)) - (of_b.half + sum(steep_back, of_a.half));
+  if (any(gaps_b > margin)) return true;
+  Bits apart{};
+  for (int j = 0; j < 3; ++j) {
+    const int j1 = (j + 1) % 3;
+    const int j2 = (j + 2) % 3;
+    const Vector distance = magnitude(zxy(shift) * yzx(turn[j]) - yzx(shift) * zxy(turn[j]));
+    const Vector reach_a = yzx(of_a.half) * zxy(steep[j]) + zxy(of_a.half) * yzx(steep[j]);
+    const Vector reach_b = of_b.half[j1] * steep[j2] + of_b.half[j2] * steep[j1];
+    apart |= distance - (reach_a + reach_b) > 2.0F * margin;
+  }
+  return any(apart);
 }
 
 bool Encounter::triangles_meet(std::uint32_t triangle_a, std::uint32_t triangle_b) const noexcept {
