@@ -2,15 +2,13 @@
 
 #include <ode/ode.h>
 
-#include <array>
 #include <cstdarg>
 #include <cstdio>
 #include <stdexcept>
+#include <vector>
 
 namespace odds::benchmark {
 namespace {
-
-constexpr int most_contacts = 32;
 
 /// What ODE has to say of deep overlaps, thousands of times: the first is written, the rest is counted. Writing each
 /// would be measured as ODE's time.
@@ -66,7 +64,8 @@ class TrimeshData {
 
 class OdePeer final : public Peer {
  public:
-  OdePeer(const MeshPair& meshes, int builds) : Peer("ODE dTriMesh") {
+  OdePeer(const MeshPair& meshes, int contacts, int builds)
+      : Peer("ODE dTriMesh"), found_(static_cast<std::size_t>(contacts)) {
     Library::start();
     a_ = build_measured(meshes.a->triangles().size(), builds, [&] { return std::make_shared<TrimeshData>(*meshes.a); });
     b_ = meshes.b == meshes.a ? a_ : std::make_shared<TrimeshData>(*meshes.b);
@@ -82,7 +81,7 @@ class OdePeer final : public Peer {
     return run(pose_b_in_a, static_cast<int>(1U | static_cast<unsigned>(CONTACTS_UNIMPORTANT))) != 0;
   }
   [[nodiscard]] std::size_t contacts(const math::Pose& pose_b_in_a) override {
-    return static_cast<std::size_t>(run(pose_b_in_a, most_contacts));
+    return static_cast<std::size_t>(run(pose_b_in_a, static_cast<int>(found_.size())));
   }
 
  private:
@@ -101,13 +100,13 @@ class OdePeer final : public Peer {
   std::shared_ptr<TrimeshData> b_;
   dGeomID geom_a_ = nullptr;
   dGeomID geom_b_ = nullptr;
-  std::array<dContactGeom, most_contacts> found_{};
+  std::vector<dContactGeom> found_;
 };
 
 }  // namespace
 
-std::unique_ptr<Peer> make_ode_peer(const MeshPair& meshes, int builds) {
-  return std::make_unique<OdePeer>(meshes, builds);
+std::unique_ptr<Peer> make_ode_peer(const MeshPair& meshes, int contacts, int builds) {
+  return std::make_unique<OdePeer>(meshes, contacts, builds);
 }
 
 }  // namespace odds::benchmark

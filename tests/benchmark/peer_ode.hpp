@@ -5,7 +5,8 @@
 
 namespace odds::benchmark {
 
-/// dCollide of two dTriMesh geoms: one unimportant contact for `collide`, 32 for `contacts`.
-[[nodiscard]] std::unique_ptr<Peer> make_ode_peer(const MeshPair& meshes, int builds);
+/// dCollide of two dTriMesh geoms: one unimportant contact for `collide`, room for so many `contacts` (1 to 65,535)
+/// else; where more are found, it stops making them.
+[[nodiscard]] std::unique_ptr<Peer> make_ode_peer(const MeshPair& meshes, int contacts, int builds);
 
 }  // namespace odds::benchmark

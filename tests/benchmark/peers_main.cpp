@@ -38,6 +38,7 @@ struct Settings {
   double step = 3e-5;  // of A's size
   std::size_t repeat = 5;
   int builds = 3;
+  int ode_contacts = 32;
   int core = -1;
   std::uint64_t seed = 1;
   bool all = false;
@@ -74,7 +75,7 @@ Peers make_peers(const Settings& settings, const MeshPair& meshes) {
   }
   for (const std::string& peer : settings.peers) {
     if (peer == "fcl") peers.push_back(make_fcl_peer(meshes, settings.builds));
-    if (peer == "ode") peers.push_back(make_ode_peer(meshes, settings.builds));
+    if (peer == "ode") peers.push_back(make_ode_peer(meshes, settings.ode_contacts, settings.builds));
 #ifdef ODDS_WITH_BULLET
     if (peer == "bullet") peers.push_back(make_bullet_peer(meshes, settings.builds));
 #endif
@@ -242,7 +243,11 @@ void add_options(CLI::App& app, Settings& settings) {
   app.add_option("--seed", settings.seed, "of the poses")->capture_default_str();
   app.add_option("--core", settings.core, "processor that queries run on (the current one)");
   app.add_option("--csv", settings.csv, "file for every pose's times");
-  app.add_flag("--all", settings.all, "all contacts: 8 of ours made from all pairs, all of FCL and Bullet, 32 of ODE");
+  app.add_flag("--all", settings.all,
+               "all contacts: 8 of ours made from all pairs, all of FCL and Bullet, --ode-contacts of ODE");
+  app.add_option("--ode-contacts", settings.ode_contacts, "with --all: for so many ODE has room, and stops there")
+      ->check(CLI::Range(1, 65535))
+      ->capture_default_str();
   app.add_flag("--cpu-time", settings.cpu_time,
                "time of the thread instead of wall time: for a machine that does other work");
   app.add_option("--budgets-us", settings.budgets_us, "each method of ours also within so many microseconds")
