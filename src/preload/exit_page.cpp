@@ -140,6 +140,7 @@ std::string exit_page() {
           counts.times.percentile_us(0.5), counts.times.percentile_us(0.99), counts.times.percentile_us(0.999),
           counts.times.longest_us(), static_cast<unsigned long long>(counts.by_ode.load(std::memory_order_relaxed)));
   }
+  if (!has_collisions()) page += "none: no dTriMesh geom came near one of a class that is taken over\n";
   oddsStats stats;
   oddsGetStats(&stats);
   print(page,

@@ -74,6 +74,7 @@ TEST_F(Preload, PartnersThatAreNotTakenStayWithOde) {
   ASSERT_EQ(with.status, 0) << with.output;
   EXPECT_EQ(with.contacts, alone.contacts);
   EXPECT_EQ(with.moved_mm, alone.moved_mm);
+  EXPECT_NE(with.output.find("\nnone: no dTriMesh geom"), std::string::npos) << with.output;
 }
 
 TEST_F(Preload, AMeshWhoseVerticesTheProgramMovesIsOdesFromThenOn) {
