@@ -24,6 +24,7 @@ class Spending {
     std::int64_t contacts_ns = 0;                           ///< contacts, once there is a hit to make them from
     std::int64_t last_contact_ns = 0;                       ///< a contact of a hit that comes last
     bool pieces_are_long = false;                           ///< a pair of volumes takes a microsecond
+    bool timed = true;                                      ///< how long all takes is told also without a limit
   };
   /// A look at the clock costs as much as opening a pair does: of the processor's own, which tells what work takes, no
   /// more are taken than it needs. A clock that counts its looks is looked at every time.
@@ -35,7 +36,8 @@ class Spending {
   Spending(const Budget& budget, const Kept& kept, Looks looks) noexcept
       : clock_(budget.clock.now_ns != nullptr ? budget.clock : realtime::fastest_clock()),
         polled_clock_(realtime::without_waiting(clock_)),
-        start_ns_(polled_clock_()),
+        measured_(kept.timed || std::isfinite(budget.microseconds)),
+        start_ns_(measured_ ? polled_clock_() : 0),
         ledger_(start_ns_),
         kept_(kept),
         units_left_(budget.work_units),
@@ -169,9 +171,10 @@ class Spending {
 
   /// Closes the accounts; the last thing a query does.
   [[nodiscard]] Cost close() noexcept {
+    cost_.longest_unpolled_units = std::max(cost_.longest_unpolled_units, unpolled_units_);
+    if (!measured_) return cost_;
     const std::int64_t now = clock_();
     note_time(now);
-    cost_.longest_unpolled_units = std::max(cost_.longest_unpolled_units, unpolled_units_);
     if (told_to_stop_ && ledger_.stalls() == 0) ending_ns_ = now - std::max(search_deadline_ns_, start_ns_);
     note_contacts_ending(now);
     cost_.gross_us = static_cast<double>(ledger_.gross_ns()) * 1e-3;
@@ -295,6 +298,7 @@ class Spending {
 
   realtime::Clock clock_;
   realtime::Clock polled_clock_;  ///< to wait for all work before each look made queries a quarter longer
+  bool measured_;                 ///< whether the clock is read at all
   std::int64_t start_ns_;
   std::int64_t deadline_ns_ = std::numeric_limits<std::int64_t>::max();
   std::int64_t search_deadline_ns_ = std::numeric_limits<std::int64_t>::max();

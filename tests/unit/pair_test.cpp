@@ -160,6 +160,25 @@ TEST_P(PairOfSpheres, StopsAtAnInjectedDeadline) {
   EXPECT_LE(answer.cost.longest_unpolled_units, most);
 }
 
+TEST_P(PairOfSpheres, ReadsNoClockIfNothingAsksForTheTime) {
+  realtime::ManualClock clock(1000);
+  request_.budget.clock = clock.clock();
+  request_.max_contacts = 8;
+  request_.timed = false;
+  for (const double distance : {1.9, 2.1, 9.0}) {
+    const Answer& answer = at(distance);
+    EXPECT_EQ(answer.verdict, distance < 2.0 ? Verdict::hit : Verdict::clear);
+    EXPECT_EQ(answer.cost.gross_us, 0.0);
+  }
+  EXPECT_EQ(clock.readings(), 0);
+  request_.timed = true;
+  EXPECT_EQ(at(2.1).cost.gross_us, 1.0);
+  EXPECT_EQ(clock.readings(), 2);
+  request_.timed = false;
+  request_.budget.microseconds = 1e6;
+  EXPECT_GT(at(2.1).cost.gross_us, 0.0) << "a limit of time is kept all the same";
+}
+
 // A pair of hulls takes as long as dozens of boxes.
 class PairOfHulls : public PairOfSpheres {};
 

@@ -55,7 +55,7 @@ struct Contact {
   std::uint32_t triangle_b = no_feature;  ///< index into B's mesh, or no_feature
 };
 
-/// What the query spent. Times in microseconds by the budget's clock.
+/// What the query spent. Times in microseconds by the budget's clock; 0 where it was not asked for (Request::timed).
 struct Cost {
   std::uint64_t node_pairs = 0;      ///< pairs of bounding volumes tested
   std::uint64_t triangle_pairs = 0;  ///< pairs of triangles tested exactly, or found certain to meet; of the wide

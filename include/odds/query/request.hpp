@@ -56,11 +56,14 @@ struct Request {
   /// pair has seen not to do, are made over the runs that follow, in what is left of their budgets, and carried along
   /// with the bodies: complete, but of a pose some runs ago (Answer::contacts_late). Until the first of them they are
   /// guessed, and no deeper than 1e-4 of the smaller body's size: a guess holds, and hardly pushes. For bodies that
-  /// rest or move slowly, in a solver that holds what touches. Flat faces that lie on each other need no such work: they
-  /// have their contacts in the same run (Answer::contacts_flush). Without, contacts are made of what the budget has time
-  /// for (Answer::contacts_complete): rougher, but with a depth. Of pairs with PairOptions::late_contacts; not
+  /// rest or move slowly, in a solver that holds what touches. Flat faces that lie on each other need no such work:
+  /// they have their contacts in the same run (Answer::contacts_flush). Without, contacts are made of what the budget
+  /// has time for (Answer::contacts_complete): rougher, but with a depth. Of pairs with PairOptions::late_contacts; not
   /// polygon-free.
   bool late_contacts = true;
+  /// Whether Cost tells how long a query without a limit of time took. Two readings of the clock are for that alone, 20
+  /// to 60 ns together: of bodies that are hardly ever near each other, half of a query. With a limit it always does.
+  bool timed = true;
   /// Whether a pair of leaves has its volumes tested before its triangles (Algorithm 4.2 leaves it open). Of the
   /// generic framework only: the wide engine tests the eight leaves of a node at once with their siblings and has
   /// nothing to leave out.

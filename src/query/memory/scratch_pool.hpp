@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "odds/query/contact_patch.hpp"
@@ -45,23 +46,29 @@ class ScratchPool {
   void remove_pair() noexcept;
   [[nodiscard]] std::uint32_t size() const noexcept { return made_.load(std::memory_order_acquire); }
 
-  /// A scratch of one's own until the end of a scope.
+  /// A scratch of one's own until the end of a scope, or none.
   class Loan {
    public:
-    Loan(std::atomic<Scratch*>& place, Scratch& scratch) noexcept : place_(&place), scratch_(scratch) {}
+    Loan() = default;
+    Loan(std::atomic<Scratch*>& place, Scratch& scratch) noexcept : place_(&place), scratch_(&scratch) {}
     /// Of one that is the borrower's own.
-    explicit Loan(Scratch& own) noexcept : place_(nullptr), scratch_(own) {}
+    explicit Loan(Scratch& own) noexcept : scratch_(&own) {}
     ~Loan() {
-      if (place_ != nullptr) place_->store(&scratch_, std::memory_order_release);
+      if (place_ != nullptr) place_->store(scratch_, std::memory_order_release);
     }
-    Loan(const Loan&) = delete;
-    Loan& operator=(const Loan&) = delete;
-    [[nodiscard]] Scratch& operator*() const noexcept { return scratch_; }
-    [[nodiscard]] Scratch* operator->() const noexcept { return &scratch_; }
+    Loan(Loan&& other) noexcept : place_(std::exchange(other.place_, nullptr)), scratch_(other.scratch_) {}
+    Loan& operator=(Loan&& other) noexcept {
+      std::swap(place_, other.place_);
+      std::swap(scratch_, other.scratch_);
+      return *this;
+    }
+    [[nodiscard]] explicit operator bool() const noexcept { return scratch_ != nullptr; }
+    /// Precondition: there is one.
+    [[nodiscard]] Scratch* operator->() const noexcept { return scratch_; }
 
    private:
-    std::atomic<Scratch*>* place_;
-    Scratch& scratch_;
+    std::atomic<Scratch*>* place_ = nullptr;
+    Scratch* scratch_ = nullptr;
   };
   /// One that is free: the `last` one that this pair had, if it is. Lock-free: there is one for each pair that runs.
   /// Only of more threads at once than `most_threads` one waits until another is done. Precondition: a pair was added.
@@ -84,7 +91,7 @@ class ScratchPool {
   std::vector<Place> places_;
   std::atomic<std::uint32_t> made_{0};
   std::atomic<std::int32_t> free_{0};  ///< made, and not taken: asked in each run, which has no time for 64 places
-  std::mutex changing_;  ///< guards what follows
+  std::mutex changing_;                ///< guards what follows
   std::uint32_t pairs_ = 0;
   std::vector<std::unique_ptr<Scratch>> scratches_;
 };

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 #include <type_traits>
 
 #include "odds/math/tolerances.hpp"
@@ -40,7 +39,7 @@ Method order_of(const Request& request) noexcept {
 }
 
 template <volume::BoundingVolume V>
-SearchResult search(const Encounter<V>& encounter, const PosedMeshes&, const Request& request, BucketQueue& queue,
+SearchResult search(const Encounter<V>& encounter, const PosedMeshes&, const Request& request, BucketQueue* queue,
                     Pair::Implementation& pair, Spending& spending) noexcept {
   SearchResult result;
   if (encounter.far_apart()) return result;
@@ -67,7 +66,7 @@ SearchResult search(const Encounter<V>& encounter, const PosedMeshes&, const Req
     remember_witness(pair);
     return result;
   }
-  return TimeCriticalSearch<V>(encounter, request, wanted, queue, pair.hits, spending).run({0, 0, 0.0F});
+  return TimeCriticalSearch<V>(encounter, request, wanted, *queue, pair.hits, spending).run({0, 0, 0.0F});
 }
 
 /// Whether searches from the roots are tried. Shorter budgets find next to nothing from there, and keep the front; but
@@ -110,11 +109,11 @@ void search_from_front(wide::Task& task, const math::Pose& pose, Pair::Implement
 }
 
 SearchResult search(const wide::Encounter& encounter, const PosedMeshes& meshes, const Request& request,
-                    BucketQueue& queue, Pair::Implementation& pair, Spending& spending) noexcept {
+                    BucketQueue* queue, Pair::Implementation& pair, Spending& spending) noexcept {
   SearchResult result;
   if (encounter.far_apart()) return result;
   const std::uint32_t wanted = wanted_hits(request, pair);
-  wide::Task task{encounter, request, wanted, &queue, pair.hits, spending, result};
+  wide::Task task{encounter, request, wanted, queue, pair.hits, spending, result};
   const Method order = order_of(request);
   if (order == Method::exact) {
     pair.wide->exact(task);
@@ -127,6 +126,15 @@ SearchResult search(const wide::Encounter& encounter, const PosedMeshes& meshes,
   search_from_front(task, meshes.pose(), pair);
   remember_witness(pair);
   return result;
+}
+
+/// Whether a search may push pairs into a queue.
+template <volume::BoundingVolume V>
+bool needs_queue(const Encounter<V>&, const Request&) noexcept {
+  return true;
+}
+bool needs_queue(const wide::Encounter&, const Request& request) noexcept {
+  return request.p_min < 1.0 || request.polygon_free;
 }
 
 /// Verdict, basis and probability from what the search found; `undecided_probability` is that of a hit where it left
@@ -300,14 +308,16 @@ void search_and_answer(const Tree& a, const Tree& b, const PosedMeshes& meshes, 
       return conclude(meshes, pose_b_in_a, reaches, result, request, nullptr, pair, spending);
     }
   }
-  const ScratchPool::Loan scratch = pair.scratch.borrow();
+  ScratchPool::Loan scratch;
   if (!is_witnessed) {
     const auto encounter = encounter_of(a, b, meshes, request);
-    result = search(encounter, meshes, request, scratch->queue, pair, spending);
+    if (needs_queue(encounter, request)) scratch = pair.scratch.borrow();
+    result = search(encounter, meshes, request, scratch ? &scratch->queue : nullptr, pair, spending);
     forecast(encounter, pose_b_in_a, result, request, spending, pair);
     if (answer.basis == Basis::budget) judge_by_flat_faces(meshes, request, pair, spending);
   }
-  conclude(meshes, pose_b_in_a, reaches, result, request, &scratch->patches, pair, spending);
+  if (!scratch && !pair.hits.empty() && request.max_contacts > 0) scratch = pair.scratch.borrow();
+  conclude(meshes, pose_b_in_a, reaches, result, request, scratch ? &scratch->patches : nullptr, pair, spending);
 }
 
 /// A hit that the search finds last still wants its contact, a rough one.
@@ -324,7 +334,8 @@ void run_on(const Tree& a, const Tree& b, const math::Pose& pose_b_in_a, const R
                     {.search_ns = pair.endings.search.ns(),
                      .contacts_ns = (request.max_contacts > 1 ? pair.endings.rough : pair.endings.single).ns(),
                      .last_contact_ns = last_contact_ns(request, pair.endings),
-                     .pieces_are_long = are_pieces_long(pair.a->volume())});
+                     .pieces_are_long = are_pieces_long(pair.a->volume()),
+                     .timed = request.timed});
   Answer& answer = pair.answer;
   answer = {};
   pair.hits.clear();
@@ -358,59 +369,6 @@ bool usable(const math::Pose& pose, const Request& request) noexcept {
 }
 
 }  // namespace
-
-Result<Pair> Pair::make(std::shared_ptr<const Shape> a, std::shared_ptr<const Shape> b, const PairOptions& options) {
-  if (!a || !b) return Error{"", "", "a pair needs two shapes", "build both shapes first"};
-  if (a->volume() != b->volume()) {
-    return Error{b->mesh().name(), "",
-                 "its bounding volume is " + std::string(volume::name(b->volume())) + ", but that of " +
-                     a->mesh().name() + " is " + std::string(volume::name(a->volume())),
-                 "build both shapes with the same volume"};
-  }
-  if (options.queue_capacity < 64 || options.queue_capacity > (1U << 20U)) {
-    return Error{"", "", "queue_capacity is " + std::to_string(options.queue_capacity), "choose 64 to 1048576"};
-  }
-  if (options.hit_capacity < 8 || options.hit_capacity > 65536) {
-    return Error{"", "", "hit_capacity is " + std::to_string(options.hit_capacity), "choose 8 to 65536"};
-  }
-  if (options.slice_capacity < 64 || options.slice_capacity > (1U << 24U)) {
-    return Error{"", "", "slice_capacity is " + std::to_string(options.slice_capacity), "choose 64 to 16777216"};
-  }
-  if (options.calibration_poses > 1'000'000) {
-    return Error{"", "", "calibration_poses is " + std::to_string(options.calibration_poses), "choose 0 to 1000000"};
-  }
-  if (options.calibration_poses > 0 && !(a->has_polygons() && b->has_polygons())) {
-    return Error{a->has_polygons() ? b->mesh().name() : a->mesh().name(), "",
-                 "without polygons nothing is proved that odds could be learnt from",
-                 "choose calibration_poses (--calibrate) 0, or shapes with polygons"};
-  }
-  if (wide::searches_for(options.instruction_set) == nullptr) {
-    return Error{"", "", "this processor, or this build, lacks the instructions asked for",
-                 "choose InstructionSet::best"};
-  }
-  static_cast<void>(realtime::fastest_clock());  // calibrates now, so that no query has to
-  const bool may_be_late = options.late_contacts && a->has_polygons() && b->has_polygons();
-  auto late = may_be_late ? std::make_unique<LateContacts>(a, b, options) : nullptr;
-  Pair pair(std::make_unique<Implementation>(std::move(a), std::move(b), options));
-  if (late) {
-    Implementation& made = *pair.implementation_;
-    made.flush = FlushContacts(made.a->data().flat_faces(), made.b->data().flat_faces(), made.wide->patch);
-  }
-  pair.implementation_->late = std::move(late);
-  // Once through what a query ends with, so that the first real one does not wait for pages of code. How long that took
-  // says nothing of other endings, and would differ from run to run.
-  Request first;
-  first.budget = {.microseconds = 1.0, .work_units = 64};
-  first.max_contacts = 0;
-  static_cast<void>(pair.run({}, first));
-  pair.reset();
-  pair.implementation_->endings = {};
-  if (options.calibration_poses > 0) {
-    pair.implementation_->recalibration = learn_recalibration(pair, options.calibration_poses);
-    pair.reset();
-  }
-  return pair;
-}
 
 Pair::Pair(std::unique_ptr<Implementation> implementation) : implementation_(std::move(implementation)) {}
 Pair::~Pair() = default;
