@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstring>
+#include <memory>
 #include <thread>
 #include <vector>
 
@@ -39,13 +40,13 @@ TEST(ScratchPool, GivesTheSameOneAgain) {
   const auto pool = ScratchPool::of(small);
   for (int i = 0; i < 3; ++i) pool->add_pair();
   std::uint32_t last = 0;
-  const Scratch* first = &*pool->borrow(last);
+  const Scratch* first = std::to_address(pool->borrow(last));
   const support::AllocationCounter counter;
-  for (int i = 0; i < 10; ++i) EXPECT_EQ(&*pool->borrow(last), first);
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(std::to_address(pool->borrow(last)), first);
   {
     const auto other = pool->borrow(last);
     std::uint32_t of_another_pair = 0;
-    EXPECT_NE(&*pool->borrow(of_another_pair), first);
+    EXPECT_NE(std::to_address(pool->borrow(of_another_pair)), first);
     EXPECT_NE(of_another_pair, 0u);
   }
   EXPECT_EQ(counter.allocations(), 0u);
