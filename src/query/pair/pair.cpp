@@ -128,13 +128,15 @@ SearchResult search(const wide::Encounter& encounter, const PosedMeshes& meshes,
   return result;
 }
 
-/// Whether a search may push pairs into a queue.
+/// Whether a search borrows what it may push pairs into, and contacts are made in: not at the end of its time, when no
+/// cache knows where that is.
 template <volume::BoundingVolume V>
-bool needs_queue(const Encounter<V>&, const Request&) noexcept {
+bool borrows_first(const Encounter<V>&, const Request&) noexcept {
   return true;
 }
-bool needs_queue(const wide::Encounter&, const Request& request) noexcept {
-  return request.p_min < 1.0 || request.polygon_free;
+bool borrows_first(const wide::Encounter&, const Request& request) noexcept {
+  return request.p_min < 1.0 || request.polygon_free ||
+         (request.max_contacts > 0 && std::isfinite(request.budget.microseconds));
 }
 
 /// Verdict, basis and probability from what the search found; `undecided_probability` is that of a hit where it left
@@ -311,7 +313,7 @@ void search_and_answer(const Tree& a, const Tree& b, const PosedMeshes& meshes, 
   ScratchPool::Loan scratch;
   if (!is_witnessed) {
     const auto encounter = encounter_of(a, b, meshes, request);
-    if (needs_queue(encounter, request)) scratch = pair.scratch.borrow();
+    if (borrows_first(encounter, request)) scratch = pair.scratch.borrow();
     result = search(encounter, meshes, request, scratch ? &scratch->queue : nullptr, pair, spending);
     forecast(encounter, pose_b_in_a, result, request, spending, pair);
     if (answer.basis == Basis::budget) judge_by_flat_faces(meshes, request, pair, spending);
